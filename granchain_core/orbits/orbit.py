@@ -23,7 +23,6 @@ from ..scene import Scene
 from ..scene.refusals import require_scene
 from ..scene.state import State
 from ..steady.regime_criteria import LONGEST_LOCKED_PERIOD
-from ..steady.returns import relative_change
 from ..steady.settling.advance import run_until_settled
 from ..steady.settling.nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS
 from ..tables import Column, Labelled, Table, axis, bead_axis, or_nan, provenance
@@ -32,7 +31,7 @@ from ..tables.words import multiplier_columns, state_columns
 from .multiplier_errors import derivative_change, errors_of
 from .stroboscopic_map import FLOW_METHOD, Flow, StroboscopicMap, refuse_cut
 
-#: Residual at which an orbit is found, relative to the largest displacement and w.
+#: Residual at which an orbit is found (`StroboscopicMap.residual`).
 CONVERGED = 1e-11
 #: Newton's iterations at most.
 MOST_ITERATIONS = 12
@@ -55,7 +54,7 @@ class Orbit(Labelled):
     state : State
         Where the orbit is at drive phase 0.
     residual : float
-        Change of the state by the map, relative to the largest displacement and the largest w.
+        Change of the state by the map, relative to displacements and w (`StroboscopicMap.residual`).
     newton_residuals : tuple of float
         The residuals of all iterations.
     multipliers : numpy.ndarray of complex, shape (2N,)
@@ -256,9 +255,9 @@ def random_state(scene: Scene, seed: int) -> State:
 
 
 def _newton(stroboscopic_map: StroboscopicMap, x: np.ndarray) -> tuple[np.ndarray, Flow, list[float]]:
-    """Damped Newton iterations; the residual is taken relative to the largest displacement and the largest w."""
+    """Damped Newton iterations."""
     flow = _flow(stroboscopic_map, x)
-    history = [relative_change(flow.end - x, x)]
+    history = [stroboscopic_map.residual(flow.end, x)]
     while history[-1] > CONVERGED and len(history) <= MOST_ITERATIONS:
         step = _newton_step(stroboscopic_map, x, flow)
         for halving in range(_MOST_HALVINGS):
@@ -267,12 +266,12 @@ def _newton(stroboscopic_map: StroboscopicMap, x: np.ndarray) -> tuple[np.ndarra
                 after = _flow(stroboscopic_map, trial)
             except ComputationError:  # a state too far away to be followed: a shorter step is nearer
                 continue
-            if relative_change(after.end - trial, trial) < history[-1]:
+            if stroboscopic_map.residual(after.end, trial) < history[-1]:
                 break
         else:
             break
         x, flow = trial, after
-        history.append(relative_change(flow.end - x, x))
+        history.append(stroboscopic_map.residual(flow.end, x))
     if history[-1] > 100.0 * CONVERGED:
         shown = ", ".join(f"{r:.1e}" for r in history)
         raise ComputationError(f"Newton's method found no orbit of {stroboscopic_map.periods} drive periods near this "

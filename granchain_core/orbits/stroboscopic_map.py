@@ -21,6 +21,7 @@ from ..kernels.flow.velocity_tangent import VelocityTangent, new_velocity_tangen
 from ..kernels.status import EVENTS_PER_CONTACT
 from ..scene import Scene
 from ..scene.refusals import refuse_undriven
+from ..steady.returns import NO_SIZE
 
 #: Tolerance of one step, relative to the largest displacement and w. The map is then accurate enough for Newton's
 #: method to converge to `CONVERGED` (orbit.py), and a chain with its observer is followed to about 1e-11.
@@ -32,6 +33,8 @@ TANGENT_ERROR = 1e-7
 #: Error of a multiplier near the unit circle: ten times that, as the largest entry of the derivative is 2 to 13 and the
 #: eigenvectors are well separated. For single orbits it is computed (multiplier_errors.py).
 MULTIPLIER_ERROR = 10.0 * TANGENT_ERROR
+#: Smallest size of displacements at phase 0, relative to the amplitude of w over the drive rate.
+_LEAST_DISPLACEMENT = 1e-3
 #: The method, in the provenance of results.
 FLOW_METHOD = "tangent flow (DOP853, time substitution at events)"
 #: An orbit that is back within this, relatively, after a part of its period has that shorter period.
@@ -92,6 +95,18 @@ class StroboscopicMap:
     def inner(self, y: np.ndarray) -> np.ndarray:
         """The beads' part of a whole state array."""
         return self.engine.scaled.beads_of(y)
+
+    def residual(self, end: np.ndarray, x: np.ndarray) -> float:
+        """Change from x (2N,) to `end`, of displacements and of w, each relative to the largest in x.
+
+        The size of displacements is taken to be at least `_LEAST_DISPLACEMENT` of the amplitude that w has at the drive
+        rate: beads that follow a slow drive pass their rest positions at phase 0, and their displacements there are
+        rounding.
+        """
+        n, sizes = len(x) // 2, np.abs(x).reshape(2, -1).max(axis=1)
+        displacement = max(sizes[0], _LEAST_DISPLACEMENT * sizes[1] / self.engine.scaled.beta)
+        change = np.abs(end - x)
+        return float(max(change[:n].max() / max(NO_SIZE, displacement), change[n:].max() / max(NO_SIZE, sizes[1])))
 
     def __call__(self, x: np.ndarray, observer: bool = False, directions: np.ndarray | None = None) -> Flow:
         """The flow from x with the derivative, or its product with the columns of `directions` (2N, columns).

@@ -7,13 +7,13 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 #: [no threshold] Stands for a size of zero, by which nothing can be divided: far below any, and no subnormal number.
-_NO_SIZE = 1e-300
+NO_SIZE = 1e-300
 
 
 def sizes(x: np.ndarray) -> np.ndarray:
     """The largest displacement and the largest w, each for its own half of a state (2N,)."""
     half = len(x) // 2
-    largest = [max(_NO_SIZE, float(np.abs(part).max())) for part in (x[:half], x[half:])]
+    largest = [max(NO_SIZE, float(np.abs(part).max())) for part in (x[:half], x[half:])]
     return np.repeat(largest, half)
 
 

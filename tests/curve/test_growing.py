@@ -27,9 +27,9 @@ class Host(FakeHost):
         self.session = Session()
         self.later: list[tuple[float, Callable[[], None]]] = []
 
-    def call_later(self, seconds: float, action: Callable[..., None], *arguments: object) -> None:
+    def call_later(self, seconds: float, action: Callable[..., None], *args: object) -> None:
         """The test lets the time pass."""
-        self.later.append((seconds, lambda: action(*arguments)))
+        self.later.append((seconds, lambda: action(*args)))
 
 
 def point(f: float) -> Progress:

@@ -99,3 +99,14 @@ def test_the_state_of_an_orbit_comes_back_after_its_period() -> None:
     stroboscopic_map = StroboscopicMap(orbit.scene, 3)
     x = stroboscopic_map.inner(stroboscopic_map.engine.scaled.from_si(orbit.state))
     assert np.abs(stroboscopic_map(x).end - x).max() < 1e-10 * np.abs(x).max()  # the residual, after conversion to SI and back
+
+
+def test_an_orbit_whose_displacements_vanish_at_phase_0_is_found() -> None:
+    """The beads follow a slow drive and pass their rest positions at phase 0, to 3e-8 of their amplitude.
+
+    Relative to displacements there, rounding kept the residual at 1e-7, and Newton's method was said to fail.
+    """
+    chain = scene("sec2").evolve(N=3, A0=9.787e-8, D=2.0578, kappa=1.835e-3, F0=0.79338, f=84.05)
+    found = granchain_core.orbit(chain)
+    assert found.period == 1 and found.stable and found.residual < 1e-9
+    assert found.liouville is not None and abs(found.liouville) < 1e-8
