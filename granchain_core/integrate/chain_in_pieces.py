@@ -24,6 +24,7 @@ from ..kernels.step_ends import END_ROWS
 from ..scene.hertz import RATE_POWER
 from ..scene.state import State
 from .counts import Counts
+from .failure import not_finite
 from .methods import fixed_step_setting
 from .scaling import ScaledChain
 from .stated import Computations, force_differences, least_errors, relative_difference
@@ -95,9 +96,8 @@ class ChainInPieces:
             raise Cancelled
         if status == NOT_FINITE:
             bead = first_not_finite(y, row)
-            whose = f" of bead {bead}" if bead else ""
-            raise ComputationError(f"The motion{whose} stopped being a finite number at about "
-                                   f"{self._time[done - 1]:.6g} s; look at the force there, or lower the damping.",
+            raise ComputationError(not_finite(f"at about {self._time[done - 1]:.6g} s", bead,
+                                              "look at the force there, or lower the damping"),
                                    "not-finite", bead or None)
         return samples
 

@@ -43,8 +43,7 @@ def initial_step(scaled: ScaledChain) -> float:
 class ErrorControlledStepper(ABC):
     """Steps of a method in (u, w) with error control: all of a `Stepper` but its workspace and its kernel.
 
-    `method` is the slot that the kernel takes. The workspace has the slopes of all stages in `k` (stages, M), with the
-    slope at the present state in k[0], `forces`, and the parts of `ErrorControl`.
+    `method` is the slot that the kernel takes. Its workspace is as `kernels/error_control/step.py` describes it.
     """
 
     def __init__(self, method: Any, scaled: ScaledChain, samples: int) -> None:
@@ -109,14 +108,14 @@ class ErrorControlledStepper(ABC):
     def periods(self, y: np.ndarray, strobes: np.ndarray, maxima: np.ndarray, watch: bool,
                 out: KernelIO) -> tuple[int, int]:
         """Advance whole periods, filling strobes and, with `watch`, largest forces; returns status and periods done."""
-        keep, row = empty_samples(self.scaled, 2), self.scaled.bodies
-        strobes[0] = y[:row], self.work.k[0, :row]
+        keep, bodies = empty_samples(self.scaled, 2), self.scaled.bodies
+        strobes[0] = y[:bodies], self.work.k[0, :bodies]
         for p in range(len(maxima)):
             next_period(out.log.peaks)
             status, _ = self.run_range(y, 0, self.grid, self.grid if watch else 0, keep, out)
             if status != DONE:
                 return status, p
-            strobes[p + 1] = y[:row], self.work.k[0, :row]
+            strobes[p + 1] = y[:bodies], self.work.k[0, :bodies]
             self.pause()
             if watch:
                 maxima[p] = largest_forces(out.log.peaks)
@@ -129,6 +128,6 @@ class ErrorControlledStepper(ABC):
     def locate_failure(self, y: np.ndarray, start: CallStart | None, done: float,
                        stop: Stop) -> tuple[int, int | None]:
         """The bead is found stage by stage: in one stage a failure spreads to the next beads only."""
-        row = self.scaled.bodies
-        first = next((bead for bead in (first_not_finite(slope, row) for slope in self.work.k) if bead), 0)
-        return first or first_not_finite(y, row), None
+        bodies = self.scaled.bodies
+        first = next((bead for bead in (first_not_finite(slope, bodies) for slope in self.work.k) if bead), 0)
+        return first or first_not_finite(y, bodies), None

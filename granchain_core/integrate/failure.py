@@ -9,6 +9,12 @@ from ..kernels.status import CANCELLED, CHATTER, NOT_FINITE, STEP_TOO_SMALL, TOO
 from ..scene import Scene
 
 
+def not_finite(when: str, bead: int = 0, advice: str = "lower the damping or ask for a higher accuracy") -> str:
+    """A sentence on a motion whose numbers failed, with the bead where that is known (else 0)."""
+    whose = f" of bead {bead}" if bead else ""
+    return f"The motion{whose} stopped being a finite number {when}; {advice}."
+
+
 @dataclass(frozen=True)
 class Failure:
     """A computation that ended before it was done.
@@ -34,10 +40,8 @@ class Failure:
         when = f"at about {time:.6g} s ({self.periods:.6g} drive periods)"
         if self.status == NOT_FINITE:
             where = "" if self.step is None else f" in step {self.step} of its period"
-            whose = f" of bead {self.bead}" if self.bead else ""
-            return ComputationError(f"The motion{whose} stopped being a finite number {when}{where}; "
-                                    f"lower the damping or ask for a higher accuracy.", "not-finite", self.bead or None,
-                                    time, self.step, self.cost)
+            return ComputationError(not_finite(f"{when}{where}", self.bead), "not-finite", self.bead or None, time,
+                                    self.step, self.cost)
         if self.status == STEP_TOO_SMALL:
             return ComputationError(f"The step of {self.method} became too small {when}; ask for less accuracy than "
                                     f"{self.scene.accuracy:g}, or on the command line for --method rk4-split.",

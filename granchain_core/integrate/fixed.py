@@ -163,28 +163,28 @@ class FixedStep:
 
         Raises `Cancelled`.
         """
-        n, row = self.grid, self.scaled.bodies
+        steps, bodies = self.grid, self.scaled.bodies
         if start is None:
-            return first_not_finite(y, row), None
+            return first_not_finite(y, bodies), None
         here, slope, first = start
-        low = first + round(done * n)
+        low = first + round(done * steps)
         here, slopes = self._again(here, slope, first, low, stop, vectors=True)
         slope = slopes[0]
-        high = min((low // n + 1) * n, low + self._every)
+        high = min((low // steps + 1) * steps, low + self._every)
         while high - low > 1:
             middle = (low + high) // 2
             there, slopes = self._again(here, slope, low, middle, stop, vectors=True)
-            if first_not_finite(there, row):
+            if first_not_finite(there, bodies):
                 high = middle
             else:
                 low, here, slope = middle, there, slopes[0]
         # each stage spreads to the next beads only: the earliest stage names the bead
-        stages = self._rk4_slopes(here, slope, low % n)
-        if not any(first_not_finite(k, row) for k in stages):  # what failed is not in the equations, as in a table
+        stages = self._rk4_slopes(here, slope, low % steps)
+        if not any(first_not_finite(k, bodies) for k in stages):  # what failed is not in the equations, as in a table
             _, slopes = self._again(here, slope, low, high, stop)
             end, _ = self._again(here, slope, low, high, stop, vectors=True)
             stages = [*slopes[1:], end]
-        return next((b for b in (first_not_finite(k, row) for k in stages) if b), 0), low % n
+        return next((b for b in (first_not_finite(k, bodies) for k in stages) if b), 0), low % steps
 
     def _rk4_slopes(self, y: np.ndarray, slope: np.ndarray, step: int) -> list[np.ndarray]:
         """Slopes of the later three stages of a step of RK4 that is not split, in the variables of the method.

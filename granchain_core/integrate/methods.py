@@ -118,8 +118,8 @@ class Method:
         Orders in theory with damping: where no contact opens or closes, and across contact events.
     observed_smooth, observed_order, observed_with_cut : float
         Observed orders where no contact opens or closes; across contact events, at the accuracies the method is used
-        for; and where tension is cut, NaN where that is not measured or the method refuses the cut. Only dop853 ends
-        its steps at the kink of a cut force, F = 0.
+        for; and where tension is cut, NaN where that is not measured or the method refuses the cut. Methods that
+        `run_error_controlled` runs end their steps at the kink of a cut force, F = 0.
     error_control : bool
         Whether an error control sets the steps.
     symplectic : bool
@@ -231,7 +231,7 @@ METHODS: dict[str, Method] = {
 
 #: A largest force is at a jump if the largest jump is at least this part of it.
 AT_A_JUMP = 0.95
-#: Quadrature error of ∫ s^{3/2} in units of h^{5/2}: 0.0024 over the step after an onset, with room for several
+#: Quadrature error of ∫ s^{3/2} in units of h^{5/2}: 0.0024 over the step after a closing, with room for several
 #: contacts.
 _JUMP_ERROR = 0.01
 #: Smallest refinement: steps twice as long as the fixed-step method's own.
@@ -287,8 +287,8 @@ def jump_errors(setting: Setting, scaled: ScaledChain, step: float, jumps: np.nd
 
     All in scaled units.
 
-    At the end of a step that was split at an onset its quadrature error and those of the next two steps are subtracted,
-    the latter before they arise. If another contact closes in between, its momentum is off by a part of
+    At the end of a step that was split at a closing its quadrature error and those of the next two steps are
+    subtracted, the latter before they arise. If another contact closes in between, its momentum is off by a part of
     K v^{3/2} h^{5/2} (contact_events.py), hence its rate v, relatively, by a part of K √v h^{5/2}/m. The sign changes
     with the step size, so the difference of two computations does not bound it.
     """

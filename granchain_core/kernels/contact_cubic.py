@@ -27,8 +27,8 @@ def hermite_value(d0, s0, d1, s1, x):
 def hermite_root(d0, s0, d1, s1, high):
     """The root in [0, high] of the cubic with values d0, d1 and slopes s0, s1 at 0 and 1; its sign changes there.
 
-    Newton's method within a bracket that is halved where a step would leave it: 40 halvings find the root to 1e-12,
-    which is far below what the cubic misses of the overlap.
+    Newton's method within a bracket, which is halved where a step would leave it. At most 40 iterations are made;
+    halvings alone would find the root to 1e-12, which is far below what the cubic misses of the overlap.
     """
     low = 0.0
     a = 2.0 * (d0 - d1) + s0 + s1
@@ -55,9 +55,10 @@ def hermite_turn(d0, s0, d1, s1):
     """Where the same cubic turns between ends at which its slopes have opposite signs."""
     a = 2.0 * (d0 - d1) + s0 + s1
     b = 3.0 * (d1 - d0) - 2.0 * s0 - s1
-    # s0 + 2b x + 3a x² = 0, the root between 0 and 1, without cancellation
-    disc = sqrt(max(0.0, b * b - 3.0 * a * s0))
-    return s0 / (disc - b) if s0 > 0.0 else -s0 / (disc + b)
+    # The root of s0 + 2b x + 3a x² = 0 between 0 and 1: the one farther from 0 where s0 and b have the same sign, else
+    # the nearer one. |b| and the root of the discriminant are added for either, so that nothing cancels.
+    q = abs(b) + sqrt(max(0.0, b * b - 3.0 * a * s0))
+    return q / abs(3.0 * a) if (s0 > 0.0) == (b > 0.0) else abs(s0) / q
 
 
 @inline_numba

@@ -11,17 +11,17 @@ CANCELLED = 1
 NOT_FINITE = 2
 #: Error control asked for a step too small to change the time.
 STEP_TOO_SMALL = 3
-#: A contact opens and closes more often than time can resolve.
+#: A period has more contact events than `EVENTS_PER_CONTACT` times the number of contacts.
 CHATTER = 4
 #: A period took more steps than are worth waiting for.
 TOO_MANY_STEPS = 5
 #: The array that records the run is too small for it: it is computed again with a larger one.
 FULL = 6
-#: A step of the flow was aimed at a release, but the contact does not open there: the step is tried again. Only kernels
-#: of the flow see it.
+#: A step of the flow was aimed at an opening, but the contact does not open there: the step is tried again. Only
+#: kernels of the flow see it.
 LOST = -1
 
-#: More events in a period than this, times the number of contacts, are CHATTER.
+#: A period with more contact events than this, times the number of contacts, ends with CHATTER.
 EVENTS_PER_CONTACT = 2000
 #: Most fixed steps between two readings of the stop flag; with error control it is read before every step.
 STEPS_BETWEEN_STOP_CHECKS = 4096

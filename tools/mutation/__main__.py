@@ -1,13 +1,13 @@
 """Program: change the core in one place at a time and see whether a test notices.
 
-    python -m tools.mutation [--only PART_OF_A_NAME ...] [--list | --check] [--minutes M] [--seed S]
+    python -m tools.mutation [--only PART_OF_A_NAME ...] [--list | --at FILE | --check] [--minutes M] [--seed S]
                              [--work FOLDER] [--named]
 
 The tests named in the table are first run on the unchanged core, then with each mutant. One that survives them is
 run against all tests of the core before it counts as survived. With --seed the order is drawn, so that --minutes gives
-a sample of the table. --check runs nothing and lists the entries that no longer fit the source or the tests' names;
-where there are any, nothing else is begun either. --work keeps the copy and the compiled kernels of the unchanged core
-for the next time.
+a sample of the table. --at runs nothing and lists the mutants of a file, by line, with the tests named. --check runs
+nothing and lists the entries that no longer fit the source or the tests' names; where there are any, nothing else is
+begun either. --work keeps the copy and the compiled kernels of the unchanged core for the next time.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from pathlib import Path
 
 from .bench import Bench, Outcome
 from .in_step import problems
-from .mutant import Mutant
+from .mutant import ROOT, Mutant
 from .table import BROAD, DEMANDED, MUTANTS
 
 #: Time that the named tests may take [s]. A mutant that hangs is killed by the clock and listed so.
@@ -35,6 +35,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", nargs="*", default=[], help="mutants with one of these words in their name")
     parser.add_argument("--list", action="store_true", help="the table without running anything")
+    parser.add_argument("--at", metavar="FILE", help="the mutants of a file and their tests, without running anything")
     parser.add_argument("--check", action="store_true", help="whether the table is in step with source and tests")
     parser.add_argument("--minutes", type=float, default=1e9, help="begin no mutant after this")
     parser.add_argument("--seed", type=int, help="draw the order")
@@ -48,6 +49,8 @@ def main() -> int:
         for one in chosen:
             print(f"{one.name}: {one.breaks} ({one.path})")
         return 0
+    if args.at:
+        return _list_at(args.at, chosen)
     if found := problems():
         print("The table is out of step with the source:", *found, sep="\n  ")
         return 1
@@ -56,6 +59,18 @@ def main() -> int:
         return 0
     with Bench(args.work) as bench:
         return _run(bench, chosen, time.perf_counter() + 60.0 * args.minutes, args.named)
+
+
+def _list_at(file: str, chosen: list[Mutant]) -> int:
+    """Print the mutants of a file in the order of its lines, with the tests named; 1 if there are none."""
+    path = Path(file).resolve()
+    found = sorted((one.line, one.name, one) for one in chosen
+                   if path == ROOT / one.path or file in (one.file, one.path))
+    for line, _, one in found:
+        print(f"{one.path}:{line}  {one.name}: {one.breaks}\n    {' '.join(one.killers)}")
+    if not found:
+        print(f"No mutant changes {file}.")
+    return 0 if found else 1
 
 
 def _run(bench: Bench, chosen: list[Mutant], end: float, named_only: bool) -> int:

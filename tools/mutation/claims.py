@@ -83,7 +83,7 @@ STATED = (
 )
 
 FAILING = (
-    Mutant("failed-step-of-its-end", "integrate/fixed.py", "if b), 0), low % n", "if b), 0), high % n",
+    Mutant("failed-step-of-its-end", "integrate/fixed.py", "if b), 0), low % steps", "if b), 0), high % steps",
            "the step after the one that failed is named", ("tests/hard_cases/test_outcomes.py", "-k", "middle_of_a_long_call")),
     Mutant("failed-time-since-call", "integrate/engine.py", "Failure(status, self.elapsed + done, bead,", "Failure(status, done, bead,",
            "the time of a failure is counted from the present call", k.FAILURES_T),

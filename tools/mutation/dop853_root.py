@@ -27,7 +27,7 @@ DOP853_ROOT = (
            "dq/dξ is δ̇ instead of δ̇/p", k.ROOT),
     Mutant("dop853-root-dense-row", _STEP, "2.0 * change - (last + first)", "2.0 * change - (last - first)",
            "dense output with a wrong row", k.ROOT),
-    Mutant("dop853-root-release-unseen", _CHANGES, "crossed = crossed | own if at(step.end.q, 0) < 0.0 else crossed & ~own",
+    Mutant("dop853-root-opening-unseen", _CHANGES, "crossed = crossed | own if at(step.end.q, 0) < 0.0 else crossed & ~own",
            "crossed = crossed & ~own", "a contact that a step aims at never opens", k.ROOT_FORCES),
     Mutant("dop853-root-touch-unseen", _CHANGES, "turned = turns(bits, rising, risen)",
            "turned = bits & 0", "a touch inside a step is not seen", k.ROOT_TOUCH),

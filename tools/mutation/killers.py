@@ -21,7 +21,8 @@ REFERENCE = ("tests/physics/test_reference.py::test_displacements_agree_to_1e_8_
 
 #: What happens inside one fixed step, run by Python; a whole touch inside one.
 STEP_EVENTS = ("tests/kernels/rk4/test_step_events.py",)
-EVENT_TESTS = ("tests/kernels/test_event_tests.py",)
+CUBIC = ("tests/kernels/test_contact_cubic.py",)
+EVENT_PREDICATES = ("tests/kernels/test_event_predicates.py",)
 JUMPS_LOCATED = ("tests/kernels/forces/test_largest_forces.py::test_a_jump_is_read_where_the_overlap_vanishes",)
 STEP_TOUCH = ("tests/numerics/test_fixed_step_touches.py", "-k", "1e-06-True")
 

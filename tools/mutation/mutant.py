@@ -39,6 +39,13 @@ class Mutant:
         """Whether every kernel is compiled anew with it."""
         return self.file.startswith("kernels/")
 
+    @property
+    def line(self) -> int:
+        """Number of the line at which the change begins."""
+        text = (ROOT / self.path).read_text(encoding="utf-8")
+        start = len(self.old.join(text.split(self.old)[: self.which]))
+        return 1 + text.count("\n", 0, start) + (len(self.old) - len(self.old.lstrip("\n")))
+
     def applied(self, text: str) -> str:
         """The file's text with the change in it; `ValueError` where `old` does not stand there as often as said."""
         found = text.count(self.old)

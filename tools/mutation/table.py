@@ -18,7 +18,7 @@ MUTANTS: tuple[Mutant, ...] = LAWS + STEPS + FORCE_FREE + TANGENT_FLOW + VECTORS
 
 #: The eight kinds of mistake that must always be noticed (docs/mutation.md), and the mutants of each.
 DEMANDED: dict[str, tuple[str, ...]] = {
-    "no saltation": ("no-saltation", "no-saltation-in-second-route", "saltation-at-onset-only"),
+    "no saltation": ("no-saltation", "no-saltation-in-second-route", "saltation-at-closing-only"),
     "determinant-only check": ("determinant-only-check", "determinant-only-comparison"),
     "missing last contact": ("missing-last-contact", "motion-without-last-contact", "flow-without-last-contact",
                              "batch-without-last-contact", "tangent-without-last-contact"),

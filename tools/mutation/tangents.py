@@ -43,12 +43,12 @@ FLOW = (
            "the driver stands still while its contact is looked for", k.MONODROMY),
     Mutant("flow-event-tolerance-loose", _EVENTS, "_LARGEST_EVENT_OVERLAP = 1e-14", "_LARGEST_EVENT_OVERLAP = 1e-7",
            "the flow's events are located to 1e-7", k.MONODROMY),
-    Mutant("onset-of-last-period-kept", _FLOW, "onset -= period", "onset -= 0.0",
-           "time behind an onset is counted from the wrong period", k.TWO_PERIODS),
+    Mutant("closing-of-last-period-kept", _FLOW, "last_closing -= period", "last_closing -= 0.0",
+           "time behind a closing is counted from the wrong period", k.TWO_PERIODS),
     Mutant("events-logged-in-their-period", _FLOW, "toggle_contact(slots, contacts, tangent, contact, p * period + t)",
            "toggle_contact(slots, contacts, tangent, contact, t)", "the log's times begin anew each period", k.SAME_EVENTS),
-    Mutant("onset-not-remembered", _FLOW, "                    onset = t\n", "                    onset = -np.inf\n",
-           "a step behind an onset is taken in plain time, where nothing is smooth", k.MONODROMY),
+    Mutant("closing-not-remembered", _FLOW, "                    last_closing = t\n", "                    last_closing = -np.inf\n",
+           "a step behind a closing is taken in plain time, where nothing is smooth", k.MONODROMY),
 )
 
 TANGENTS = (
@@ -56,8 +56,8 @@ TANGENTS = (
            "tangents go on across an event as if the dashpot's force did not jump there", k.COLUMNS, blind=k.LIOUVILLE),
     Mutant("no-saltation-in-second-route", _SALTATION, "shear = tangent.jumps * damping(slots.dissipation, 1.0)",
            "shear = 0.0 * tangent.jumps", "the (u, v) form without its jumps", k.ROUTES),
-    Mutant("saltation-at-onset-only", _SALTATION, "        shear = -shear\n", "        shear = 0.0\n",
-           "tangents do not jump at release", k.ROUTES),
+    Mutant("saltation-at-closing-only", _SALTATION, "        shear = -shear\n", "        shear = 0.0\n",
+           "tangents do not jump at an opening", k.ROUTES),
     Mutant("saltation-of-one-side", _SALTATION, "if c > 0:\n            T[n + c - 1, q] -= shear",
            "if c > n:\n            T[n + c - 1, q] -= shear", "only the bead behind a contact feels its jump", k.ROUTES),
     Mutant("determinant-only-check", "tests/orbits/test_multipliers.py",

@@ -39,8 +39,9 @@ def cache_folder() -> Path | None:
     """The folder of the compiled kernels; None, with one message, where nothing can be kept.
 
     It is in $GRANCHAIN_CACHE, else in the user's cache, if only this user or the administrator can write to it, and
-    nobody else can put another folder in its place. Where it cannot be written, kernels that are there already are
-    used; else a folder in the temporary directory is, if it is this user's alone.
+    nobody else can put another folder in its place. Links on the way there are followed once, here: the path that is
+    returned has none. Where it cannot be written, kernels that are there already are used; else a folder in the
+    temporary directory is, if it is this user's alone.
     """
     base, problem = _chosen_base(), "there is no home folder"
     if base is not None:
@@ -81,13 +82,13 @@ def _fingerprint_file() -> str:
 
 
 def _chosen_base() -> Path | None:
+    """The folder for folders of kernels, without links; None where the system does not know the user."""
     chosen = os.environ.get("GRANCHAIN_CACHE")
-    if chosen:
-        return Path(chosen)
     try:
-        return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "granchain"
-    except RuntimeError:  # a user whom the system does not know
+        base = Path(chosen or Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "granchain")
+    except RuntimeError:
         return None
+    return Path(os.path.realpath(base))
 
 
 def _holds_kernels(folder: Path) -> bool:
@@ -107,13 +108,15 @@ def _close_to_others(base: Path) -> None:
 def _why_unsafe(base: Path, folder: Path) -> str | None:
     """Why others than this user and the administrator may have written kernels in `folder`; None if they cannot.
 
-    The files are unpickled and run. Whoever may write to `base` could put another folder in the place of the one that
-    was looked at, unless the sticky bit leaves every folder in it to its owner. A link in a sticky folder may be
-    another user's, who could let it point to this user's folder now and elsewhere later.
+    The files are unpickled and run. Whoever may write to `base`, or to a folder above it, could put another folder in
+    the place of the one that was looked at, unless the sticky bit leaves every folder in it to its owner. A link in a
+    sticky folder may be another user's, who could let it point to this user's folder now and elsewhere later: `base`
+    has had none since it was chosen, and none is followed here.
     """
     if not hasattr(os, "getuid"):
         return None
-    for one, found, sticky in ((base, base.stat(), stat.S_ISVTX), (folder, folder.lstat(), 0)):
+    for one in (*reversed(base.parents), base, folder):
+        found, sticky = one.lstat(), 0 if one == folder else stat.S_ISVTX
         if stat.S_ISLNK(found.st_mode):
             return f"{one} is a link"
         if found.st_uid not in (0, os.getuid()) or (found.st_mode & _OTHERS and not found.st_mode & sticky):

@@ -5,7 +5,8 @@
     `internal`       a function of kernels, compiled by itself and linked into its callers
     `inline_llvm`    the same, inlined by LLVM, so that values stay in registers
     `inline_numba`   the same, inlined by Numba before types are inferred: for functions with one caller
-    `by_slot`        a term of an effect: the type of its slot chooses the code; None is that of an absent effect
+    `by_slot`        the type of the first argument chooses the code, and that argument may be None: the slot of an
+                     effect that may be absent (a term of the effect), tangents, a workspace of vectors
     `by_type`        the same for other types, such as widths of vectors or quantities inside a step
     `…_inlined`      both, inlined by LLVM
 

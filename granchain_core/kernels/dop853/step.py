@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..compiling.jit import inline_llvm, inline_numba, internal
-from ..error_control.step import attempt, error_order, evaluate, inside, prepare_dense, stages
+from ..error_control.step import attempt, dense_value, error_order, evaluate, prepare_dense, stages
 from .tableau import ALL_STAGES, DENSE_EVALUATIONS, DENSE_WEIGHTS, E3, E5, STAGES, A, C
 
 
@@ -89,7 +89,7 @@ def error_norm(tolerance, h, y, workspace, bodies):
 
 @prepare_dense.of(Dop853Workspace)
 def _(workspace, step):
-    slots, drive, y, workspace = step.trajectory
+    slots, drive, y, _ = step.trajectory
     for s in range(STAGES + 1, ALL_STAGES):
         combine(y, step.h, workspace.k, s, workspace.stage)
         evaluate(slots, drive.beta, step.t + C[s] * step.h, workspace.stage, workspace.k[s], workspace.forces)
@@ -132,7 +132,7 @@ def interpolant(start, rows, x):
     return start + (value + rows[0]) * x
 
 
-@inside.of(Dop853Workspace)
+@dense_value.of(Dop853Workspace)
 def _(workspace, y, h, x, i):
     dense = workspace.dense
     rows = (dense[0, i], dense[1, i], dense[2, i], dense[3, i], dense[4, i], dense[5, i], dense[6, i])

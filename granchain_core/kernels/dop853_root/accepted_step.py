@@ -129,7 +129,7 @@ def accepted_attempt(context, begin, chosen, dt, units):
 def accepted_step(context, begin, chosen, dt, units, g):
     """An accepted step past point g of the grid, in which no contact opens but the one its time transform is made for.
 
-    A release that the step did not aim at is aimed at in another attempt. Returns (status, `CheckedStep`, dt), with dt
+    An opening that the step did not aim at is aimed at in another attempt. Returns (status, `CheckedStep`, dt), with dt
     as in `accepted_attempt`.
     """
     slots, work, values, counts = context.slots, context.work, context.values, context.out.counts

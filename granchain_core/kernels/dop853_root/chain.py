@@ -1,13 +1,13 @@
 """A short chain in vectors, in a transformed time ξ in which the motion next to one contact's event is smooth.
 
-After an onset at t_e the overlap of contact c grows as t − t_e and its force as the power 3/2, so the motion has no
-Taylor series in t there; the same holds before a release. It has one in ξ, with
+After a closing at t_e the overlap of contact c grows as t − t_e and its force as the power 3/2, so the motion has no
+Taylor series in t there; the same holds before an opening. It has one in ξ, with
 
     q = δ_c^{1/p},    dt/dξ = q^{p−1},    dq/dξ = δ̇_c/p
 
 and p as in flow/event_time.py. (Sundman transformed time so in celestial mechanics.) q and t are integrated along with
-the chain, and the forces of contact c are powers of q. At a release q passes through zero with everything else smooth,
-so that an attempt may go beyond the release, which is then a root on its dense output: it need not be repeated.
+the chain, and the forces of contact c are powers of q. At an opening q passes through zero with everything else smooth,
+so that an attempt may go beyond the opening, which is then a root on its dense output: it need not be repeated.
 Contacts that are open stay so within an attempt, for the same reason. Far from events ξ is the time.
 
 Lane 0 is the driver, which moves as an oscillator: no stage needs a sine. q and t have vectors of their own, with the

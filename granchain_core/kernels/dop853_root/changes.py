@@ -20,14 +20,14 @@ _LEAST_SPEED = 1e-300
 _OPEN_AWAY = 1e30
 #: A contact that moves less than this part of the largest displacement in a step is at rest: it transforms no time.
 _REST_PART = 1e-9
-#: Length of the first step after an onset, and of the last before a release, as a part of the step in t. By
+#: Length of the first step after a closing, and of the last before an opening, as a part of the step in t. By
 #: measurement, as are the numbers above and below: over seven motions of section 2 and of the rig, 0.06 to 0.2 here and
 #: 0.7 to 2.5 steps away above change the evaluations for an error of 1e-8 by 7 % at most, in either sense.
 _STEP_AFTER_EVENT = 0.12
-#: A step that would reach this part of the way to a release goes beyond it.
-_RELEASE_PART = 0.8
-#: Length of such a step, as a factor of the way to the release.
-_RELEASE_FACTOR = 1.3
+#: A step that would reach this part of the way to an opening goes beyond it.
+_OPENING_PART = 0.8
+#: Length of such a step, as a factor of the way to the opening.
+_OPENING_FACTOR = 1.3
 #: A distance between two values of a step is searched if the cubic's rise above both, enlarged by this part, reaches 0.
 _MISSED_PART = 0.25
 
@@ -61,15 +61,15 @@ def size_in_xi(power, q, speed, dt):
     if reach > 0.0:
         end = nonnegative_root(reach, power)
         h = 2.0 * dt / (q + end) if power == 2 else 4.0 * dt / ((q + end) * (q * q + end * end))
-    if speed < 0.0 and -speed * h > _RELEASE_PART * power * q:
-        h = _RELEASE_FACTOR * power * q / -speed
+    if speed < 0.0 and -speed * h > _OPENING_PART * power * q:
+        h = _OPENING_FACTOR * power * q / -speed
     most = power * nonnegative_root(_STEP_AFTER_EVENT * dt * abs(speed), power) / abs(speed)
     return min(h, most), h > most
 
 
 @inline_llvm
 def nearest_event(rates, closed, scale, dt):
-    """The closed contact whose onset or release is nearest in time, before or after; −1 if none is within
+    """The closed contact whose closing or opening is nearest in time, before or after; −1 if none is within
     `_MOST_STEPS_AWAY` steps of dt.
     """
     speed, still = abs(rates.rate), _REST_PART * scale

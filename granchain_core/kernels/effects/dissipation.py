@@ -6,7 +6,7 @@ Equation   F_d = λ δ^a δ̇ H(δ),   g = λ δ^a,   G = λ δ^{1+a}/(1 + a)
              KuwabaraKono    a = 1/2   Kuwabara & Kono 1987
 Values     coefficient: λ = D (A₀/δ_r)^a/(mφ), at an overlap of one length unit where a > 0
 Law        defined by its `exponent` a and its `power` δ^a, from which all other terms follow, here and elsewhere
-Terms      damping, damping_slope, dashpot_force, onset_force, dashpot_slope, primitive, times_primitive,
+Terms      damping, damping_slope, dashpot_force, closing_force, dashpot_slope, primitive, times_primitive,
            unit_primitive = G/λ, v_from_w and its inverse w_from_v (absent: v = w); write_primitive, put_primitive and
            put_prescribed_primitive write into the array of G
 """
@@ -134,12 +134,12 @@ def _(law, overlap, rate):
 
 
 @by_slot
-def onset_force(law, rate):
-    """g(0+) δ̇, the force just after an onset."""
+def closing_force(law, rate):
+    """g(0+) δ̇, the force just after a closing."""
     return 0.0
 
 
-@onset_force.of(*LAWS)
+@closing_force.of(*LAWS)
 def _(law, rate):
     return damping(law, TINY) * rate
 

@@ -1,4 +1,4 @@
-"""The equation of motion of a short chain, up to 30 beads, in one vector of 8, 16 or 32 doubles.
+"""The equation of motion of a short chain, whose bodies fit into one vector of 8, 16 or 32 doubles.
 
 Body i is lane i of the displacements and of w, contact c lane c of the overlaps; bodies beyond the wall have an
 inverse mass of 0 and contacts beyond it no stiffness. rk4/short_chain.py steps it. dop853_root/chain.py repeats it in a

@@ -20,7 +20,7 @@ from ..equations.motion import write_w
 from ..simd.functions import gate, root
 from ..status import EVALUATIONS
 from .bracket import Bracket, root_inside, value_at
-from .step import evaluate, interpolate, prepare_dense, stages
+from .step import evaluate, prepare_dense, stages, write_dense_state
 
 #: What `first_kink` finds.
 NO_KINK, KINK, WRONG_SIDE = range(3)
@@ -53,7 +53,7 @@ def _(law, stiffness, d, rate):
 def _(quantity, step, x):
     slots, drive, _, workspace = step.trajectory
     c = quantity.contact
-    interpolate(step, x)
+    write_dense_state(step, x)
     evaluate(slots, drive.beta, step.t + x * step.h, workspace.probe, workspace.slope, workspace.forces)
     quantity.counts[EVALUATIONS] += 1
     d = positive_part(overlap(slots.preload, workspace.probe, c))

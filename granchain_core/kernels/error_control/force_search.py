@@ -25,7 +25,7 @@ from ..forces.largest import cubic_top, force_slope
 from ..forces.peaks import row_of
 from ..status import EVALUATIONS
 from .bracket import maximum_inside, value_at
-from .step import evaluate, interpolate, prepare_dense, stages
+from .step import evaluate, prepare_dense, stages, write_dense_state
 
 #: Golden sections around a maximum of a force; each shrinks the bracket by 0.618 and, since a maximum is flat, its
 #: error by 0.382.
@@ -60,7 +60,7 @@ def forces_of(slots, y, dy):
 def forces_in_step(step, x):
     """The three forces at fraction x of the step, whose dense output is prepared."""
     slots, drive, _, workspace = step.trajectory
-    interpolate(step, x)
+    write_dense_state(step, x)
     evaluate(slots, drive.beta, step.t + x * step.h, workspace.probe, workspace.slope, workspace.forces)
     return forces_of(slots, workspace.probe, workspace.slope)
 

@@ -1,6 +1,6 @@
 """A step with error control that ends where a contact opens or closes, and where a cut force has a kink.
 
-The slope is continuous across an event but its derivative is not, and after an onset the solution has a term
+The slope is continuous across an event but its derivative is not, and after a closing the solution has a term
 (t − t_e)^{5/2}: no method for smooth equations keeps its order across. So every contact event inside a step is located
 on the dense output, the step is repeated so that it ends just past it, and the next one starts small.
 """

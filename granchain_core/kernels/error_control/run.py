@@ -13,7 +13,7 @@ from ..status import CANCELLED, CHATTER, DONE, EVALUATIONS, EVENTS_PER_CONTACT, 
 from .force_kinks import leave_force_free
 from .force_search import update_forces_in_step
 from .located_step import located_step
-from .step import GOAL_TOLERANCE, Step, evaluate, interpolate, new_scale, prepare_dense, stages
+from .step import GOAL_TOLERANCE, Step, evaluate, new_scale, prepare_dense, stages, write_dense_state
 
 
 class SampleRange(NamedTuple):
@@ -43,7 +43,7 @@ def record_step(step, point, passed, spacing, row, every, samples, out):
                 out.counts[EVALUATIONS] += prepare_dense(workspace, step)
                 ready = True
             at = p * spacing
-            interpolate(step, min(1.0, (at - t) / h))
+            write_dense_state(step, min(1.0, (at - t) / h))
             lost = force_free_loss(slots.account, slots, y, workspace.probe)
             add_to_account(slots.account, workspace.probe, 0.0, lost)
             evaluate(slots, drive.beta, at, workspace.probe, workspace.slope, workspace.forces)

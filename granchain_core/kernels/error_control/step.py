@@ -1,7 +1,7 @@
 """A step with error control: what a method says about its own, and the sizes of steps from its error.
 
 A method is a slot with its `tolerance` and `largest_step`, whose type chooses `attempt` and `error_order`. The type of
-its workspace chooses `stages` and the dense output, `prepare_dense` and `inside`. Every workspace has
+its workspace chooses `stages` and the dense output, `prepare_dense` and `dense_value`. Every workspace has
 
     k (rows, M)       slopes: k[0] at the state, k[stages] at the step's end
     end (M,)          the state at the step's end
@@ -28,10 +28,10 @@ from .bracket import Bracket, maximum_inside, root_inside, value_at
 TURN_SECTIONS = 40
 #: An overlap's root is found when its fraction of the step changes by less than this.
 _ROOT_CHANGE = 1e-15
-#: Largest factor from one step to the next, as in Hairer's dop853.f.
-_LARGEST_GROWTH = 6.0
-#: Smallest factor from one attempt to the next. Hairer has 1/3; over ten scenes both take as many evaluations.
-_SMALLEST_GROWTH = 0.1
+#: Largest factor from one step to the next, as in Hairer's dop853.f (FAC2).
+_MAX_FACTOR = 6.0
+#: Smallest factor from one attempt to the next (FAC1). Hairer has 1/3; over ten scenes both take as many evaluations.
+_MIN_FACTOR = 0.1
 #: Part of the step at which the error is expected to be the tolerance, as in Hairer's dop853.f.
 _SAFETY = 0.9
 #: ε in the resolution of t, ε·(t + 1/β): the spacing of floating-point numbers at 1.
@@ -65,7 +65,7 @@ class Overlap(NamedTuple):
 
 @by_type
 def attempt(method, step):
-    """Try a step from y, whose slope is workspace.k[0]; the result is workspace.end, its slope k[stages].
+    """Make a trial step from y, whose slope is workspace.k[0]; the result is workspace.end, its slope k[stages].
 
     Returns the error over the tolerance: at most 1 for a step to accept, NaN if the numbers failed.
     """
@@ -87,7 +87,7 @@ def prepare_dense(workspace, step):
 
 
 @by_type
-def inside(workspace, y, h, x, i):
+def dense_value(workspace, y, h, x, i):
     """Component i of the state at fraction x of the step of size h from y, whose dense output is prepared."""
 
 
@@ -100,7 +100,7 @@ def evaluate(slots, beta, t, y, dy, forces):
 @internal
 def shrunk(method, h, error):
     """A smaller step after one with too large an error."""
-    return h * max(_SMALLEST_GROWTH, _SAFETY * error ** (-1.0 / error_order(method)))
+    return h * max(_MIN_FACTOR, _SAFETY * error ** (-1.0 / error_order(method)))
 
 
 @internal
@@ -109,7 +109,7 @@ def growth(method, error, rejected):
 
     After a rejected attempt the step does not grow, as in Hairer's dop853.f: it would be rejected again.
     """
-    most = 1.0 if rejected else _LARGEST_GROWTH
+    most = 1.0 if rejected else _MAX_FACTOR
     return min(most, _SAFETY * max(error, 1e-12) ** (-1.0 / error_order(method)))
 
 
@@ -142,11 +142,11 @@ def accepted_step(method, trajectory, t, h, counts):
 
 
 @internal
-def interpolate(step, x):
+def write_dense_state(step, x):
     """Write the state at fraction x of the step into workspace.probe."""
     y, workspace = step.trajectory.y, step.trajectory.workspace
     for i in range(y.size):
-        workspace.probe[i] = inside(workspace, y, step.h, x, i)
+        workspace.probe[i] = dense_value(workspace, y, step.h, x, i)
 
 
 @by_type
@@ -164,7 +164,7 @@ def _(quantity, step, x):
     slots, _, y, workspace = step.trajectory
     probe, c = workspace.probe, quantity.contact
     for i in range(c, c + 2):
-        probe[i] = inside(workspace, y, step.h, x, i)
+        probe[i] = dense_value(workspace, y, step.h, x, i)
     if c == 0:  # the driver's own motion is known exactly
         probe[0] = driver_displacement(slots.driver, drive_phase(step, x))
     return quantity.sign * overlap(slots.preload, probe, c)

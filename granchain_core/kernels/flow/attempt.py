@@ -1,8 +1,8 @@
 """One attempt at a step of the flow: Dormand–Prince 8 in the time in which the motion is smooth, and its first event.
 
 Which contacts are closed is part of the state (`FrozenContacts` in the workspace's forces) and does not change within a
-step, so that neither the motion's nor the tangents' slopes jump there. An onset is located from before it, where
-nothing is singular yet. The time of a release is estimated, the step ends there in a time variable that is the root of
+step, so that neither the motion's nor the tangents' slopes jump there. A closing is located from before it, where
+nothing is singular yet. The time of an opening is estimated, the step ends there in a time variable that is the root of
 the distance, and Newton's method on the resulting overlap corrects the estimate.
 """
 
@@ -29,14 +29,14 @@ from ..error_control.step import (
     turning_point,
 )
 from ..status import DONE, EVALUATIONS, NOT_FINITE, REJECTED, STEP_TOO_SMALL
-from .event_time import Time, rate_at, slope_in_x, time_at
+from .event_time import Time, rate_at, slope_in_s, time_at
 
 
 class ContactStatus(NamedTuple):
     """State of the contacts: `first` (M,) is dy/dt at the step's start, `closed` (N+1,) 1 where a contact is closed.
 
-    `log` (events, 2) has contact + 1 with the sign of onset or release and the time of each event, `logged` (1,) their
-    number.
+    `log` (events, 2) has contact + 1, positive for a closing and negative for an opening, and the time of each event,
+    `logged` (1,) their number.
     """
 
     first: np.ndarray
@@ -54,7 +54,7 @@ class FlowProblem(NamedTuple):
 
 
 class FlowStep(NamedTuple):
-    """A step of a trajectory, of size h in the variable x of `time`."""
+    """A step of a trajectory, of size h in the substituted time s of `time`."""
 
     trajectory: Trajectory
     time: Time
@@ -73,7 +73,7 @@ def record_stage(tangent, state, slope, stage):
 
 @internal
 def attempt_in_time(method, problem, time, h):
-    """Try a step of size h in x from y; the result is in workspace.end, its slope in t in workspace.slope.
+    """Try a step of size h in s from y; the result is in workspace.end, its slope in t in workspace.slope.
 
     Returns the error over the tolerance.
     """
@@ -85,7 +85,7 @@ def attempt_in_time(method, problem, time, h):
     record_stage(tangent, y, contacts.first, 0)
     for s in range(1, STAGES + 1):
         combine(y, h, workspace.k, s, workspace.end)
-        slope_in_x(slots, drive.beta, time, C[s] * h, workspace.end, s, workspace)
+        slope_in_s(slots, drive.beta, time, C[s] * h, workspace.end, s, workspace)
         record_stage(tangent, workspace.end, workspace.slope, s)
     return error_norm(method.tolerance, h, y, workspace, slots.chain.inverse_mass.size)
 
@@ -110,12 +110,12 @@ def accepted_in_time(method, problem, time, h, counts):
 
 @inline_numba
 def prepare_dense_in_time(step):
-    """Fill workspace.dense for the step in x from y to workspace.end; workspace.slope is again that of the end."""
+    """Fill workspace.dense for the step in s from y to workspace.end; workspace.slope is again that of the end."""
     slots, drive, y, workspace = step.trajectory
     time, h = step.time, step.h
     for s in range(STAGES + 1, ALL_STAGES):
         combine(y, h, workspace.k, s, workspace.stage)
-        slope_in_x(slots, drive.beta, time, C[s] * h, workspace.stage, s, workspace)
+        slope_in_s(slots, drive.beta, time, C[s] * h, workspace.stage, s, workspace)
     dense_coefficients(h, y, workspace)
     evaluate(slots, drive.beta, time_at(time, h), workspace.end, workspace.slope, workspace.forces)
 

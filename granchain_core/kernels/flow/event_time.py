@@ -1,9 +1,9 @@
 """Time as a power of the distance from a contact event, in which the motion next to it is smooth.
 
-After the onset t_e of a contact the overlap grows as t − t_e and the elastic force as its power 3/2, so the motion has
-no Taylor series in t there. It has one in s, where
+After the closing t_e of a contact the overlap grows as t − t_e and the elastic force as its power 3/2, so the motion
+has no Taylor series in t there. It has one in s, where
 
-    t = t_e + s^p  after an onset,    t = t_e − s^p  before a release,    p = 2
+    t = t_e + s^p  after a closing,    t = t_e − s^p  before an opening,    p = 2
 
 and p = 4 for damping ∝ δ^{1/4}, δ^{3/4} or δ^{5/4}, whose G grows as a power with quarters. A step of Dormand and
 Prince that begins at an event is then as long as anywhere else, for motion and tangents alike. In t, error control
@@ -19,12 +19,15 @@ from ..compiling.jit import by_slot, internal
 from ..effects.dissipation import LAWS, exponent
 from ..error_control.step import evaluate
 
-#: Kinds of time: after an onset, plain, before a release.
+#: Kinds of time: after a closing, plain, before an opening.
 AFTER, PLAIN, BEFORE = 1, 0, -1
 
 
 class Time(NamedTuple):
-    """t(x) of a step from `start`, x = 0, with its event; `s` is the root of their distance, `power` p."""
+    """The substituted time s of a step from `start`, next to `event`: its value `s` at the start, and p, the `power`.
+
+    `ds` below is by how much s has changed since the start, without its sign; where the kind is `PLAIN`, s is t.
+    """
 
     kind: int
     event: float
@@ -60,11 +63,11 @@ def time_from(kind, event, start, power):
 
 
 @internal
-def time_at(time, x):
-    """t at x."""
+def time_at(time, ds):
+    """The time t after a change ds."""
     if time.kind == PLAIN:
-        return time.start + x
-    s = time.s + time.kind * x
+        return time.start + ds
+    s = time.s + time.kind * ds
     s *= s
     if time.power == 4:
         s *= s
@@ -72,17 +75,17 @@ def time_at(time, x):
 
 
 @internal
-def rate_at(time, x):
-    """dt/dx at x."""
+def rate_at(time, ds):
+    """The rate |dt/ds| after a change ds."""
     if time.kind == PLAIN:
         return 1.0
-    s = time.s + time.kind * x
+    s = time.s + time.kind * ds
     return 2.0 * s if time.power == 2 else 4.0 * s * s * s
 
 
 @internal
 def size_of(time, dt):
-    """The x at which dt has passed since the step's start."""
+    """The ds after which dt has passed since the step's start."""
     if time.kind == PLAIN:
         return dt
     distance = time.kind * (time.start + dt - time.event)
@@ -90,9 +93,9 @@ def size_of(time, dt):
 
 
 @internal
-def slope_in_x(slots, beta, time, x, state, row, workspace):
-    """Slope `row` in x, at `state`; the slope in t is left in workspace.slope."""
-    evaluate(slots, beta, time_at(time, x), state, workspace.slope, workspace.forces)
-    rate = rate_at(time, x)
+def slope_in_s(slots, beta, time, ds, state, row, workspace):
+    """Slope `row` in s, at `state`; the slope in t is left in workspace.slope."""
+    evaluate(slots, beta, time_at(time, ds), state, workspace.slope, workspace.forces)
+    rate = rate_at(time, ds)
     for i in range(state.size):
         workspace.k[row, i] = rate * workspace.slope[i]

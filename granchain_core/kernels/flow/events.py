@@ -1,4 +1,4 @@
-"""Event location for the flow: steps that end at a release, at an onset, or at neither.
+"""Event location for the flow: steps that end at an opening, at a closing, or at neither.
 
 A step returns (status, time, size, contact that changed at its end or −1); the state is in workspace.end.
 """
@@ -17,21 +17,21 @@ from .event_time import AFTER, BEFORE, PLAIN, rate_at, size_of, smooth_power, ti
 
 #: Largest overlap at a located event, in units of the largest displacement: a few roundings.
 _LARGEST_EVENT_OVERLAP = 1e-14
-#: A step aims at the next release if that is at most this many step sizes away.
-_RELEASE_STEPS = 1.5
+#: A step aims at the next opening if that is at most this many step sizes away.
+_OPENING_STEPS = 1.5
 #: Most attempts to locate one event.
 _LOCATION_ATTEMPTS = 8
 #: Most attempts to take one step.
 _STEP_ATTEMPTS = 60
 #: Shortest next step to try, in t. Two events that rounding puts at nearly the same time do not make it smaller.
 _SHORTEST_STEP = 1e-9
-#: A first step after an onset covers at most this part of the time to the next release.
+#: A first step after a closing covers at most this part of the time to the next opening.
 _FIRST_STEP_PART = 0.5
 
 
 @inline_numba
-def next_release(slots, y, contacts):
-    """(contact, time left) of the nearest release at present speeds, (−1, ∞) if no contact opens."""
+def next_opening(slots, y, contacts):
+    """(contact, time left) of the nearest opening at present speeds, (−1, ∞) if no contact opens."""
     contact, first = -1, np.inf
     for c in range(contacts.closed.size):
         if contacts.closed[c] != 0:
@@ -67,8 +67,8 @@ def locate_change(method, problem, time, h, c, counts):
 
 
 @inline_numba
-def step_to_release(method, problem, t, goal, c, counts):
-    """Step from t towards the release of contact c, estimated at `goal`: onto it, or part of the way.
+def step_to_opening(method, problem, t, goal, c, counts):
+    """Step from t towards the opening of contact c, estimated at `goal`: onto it, or part of the way.
 
     Returns (status, time, size, c or −1, goal), with a status of LOST where the contact does not open there.
     """
@@ -110,8 +110,8 @@ def step_to_release(method, problem, t, goal, c, counts):
 
 
 @internal
-def flow_step(method, problem, t, onset, counts):
-    """One accepted step from y at local time t, at most to the period's end, with the last onset at `onset` (−∞: none).
+def flow_step(method, problem, t, last_closing, counts):
+    """One accepted step from y at local time t, at most to the period's end; `last_closing` is a time (−∞: none).
 
     Returns (status, time, size, contact); a size of 0 with a contact: it changes at t itself.
     workspace.next_step[0] is the next step to try, in t.
@@ -120,15 +120,15 @@ def flow_step(method, problem, t, onset, counts):
     slots, drive, y, workspace = trajectory
     next_step, limit = workspace.next_step, drive.period
     dt = min(next_step[0], method.largest_step, limit - t)
-    target, wait = next_release(slots, y, contacts)
+    target, wait = next_opening(slots, y, contacts)
     goal = t + wait
-    aiming, lost = target >= 0 and wait < _RELEASE_STEPS * dt and t > onset, False
-    usual = time_from(AFTER if onset > -np.inf else PLAIN, onset, t, smooth_power(slots.dissipation))
+    aiming, lost = target >= 0 and wait < _OPENING_STEPS * dt and t > last_closing, False
+    usual = time_from(AFTER if last_closing > -np.inf else PLAIN, last_closing, t, smooth_power(slots.dissipation))
     time, h = usual, size_of(usual, dt)
     for _ in range(_STEP_ATTEMPTS):
         located, factor = -1, 1.0
         if aiming:
-            status, time, h, located, goal = step_to_release(method, problem, t, goal, target, counts)
+            status, time, h, located, goal = step_to_opening(method, problem, t, goal, target, counts)
             if status == LOST:
                 aiming, lost = False, True
                 time, h = usual, size_of(usual, dt)
@@ -146,7 +146,7 @@ def flow_step(method, problem, t, onset, counts):
         if x * h == 0.0:
             return DONE, time, 0.0, contact
         if contacts.closed[contact] != 0 and not lost:
-            if t > onset:
+            if t > last_closing:
                 aiming, target, goal = True, contact, time_at(time, x * h)
             else:
                 h *= _FIRST_STEP_PART * x
@@ -158,7 +158,7 @@ def flow_step(method, problem, t, onset, counts):
 
 @inline_numba
 def next_dt(time, h, factor, before, limit):
-    """The next step in t after an accepted one of size h in x; not less than before where only the limit cut it."""
+    """The next step in t after an accepted one of size h in s; not less than before where only the limit cut it."""
     end = time_at(time, h)
     dt = time_at(time, h + h * factor) - end
     return max(dt, before, _SHORTEST_STEP) if end >= limit else max(dt, _SHORTEST_STEP)

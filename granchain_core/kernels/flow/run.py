@@ -61,7 +61,7 @@ def run_flow(method, problem, periods, counts, stop):
     """
     trajectory, contacts, tangent = problem
     slots, drive, y, workspace = trajectory
-    bodies, period, trace, onset = slots.chain.inverse_mass.size, drive.period, 0.0, -np.inf
+    bodies, period, trace, last_closing = slots.chain.inverse_mass.size, drive.period, 0.0, -np.inf
     begin(slots, y, contacts)
     contacts.logged[0] = 0
     for p in range(periods):
@@ -73,7 +73,7 @@ def run_flow(method, problem, periods, counts, stop):
             if steps > _MOST_STEPS:
                 return TOO_MANY_STEPS, p, trace
             evaluate(slots, drive.beta, t, y, contacts.first, workspace.forces)
-            status, time, h, contact = flow_step(method, problem, t, onset, counts)
+            status, time, h, contact = flow_step(method, problem, t, last_closing, counts)
             if status != DONE:
                 return status, p, trace
             if h > 0.0:
@@ -87,9 +87,9 @@ def run_flow(method, problem, periods, counts, stop):
                 if contacts.logged[0] >= contacts.log.shape[0]:
                     return CHATTER, p, trace
                 if toggle_contact(slots, contacts, tangent, contact, p * period + t):
-                    onset = t
+                    last_closing = t
                 counts[EVENTS] += 1
-        onset -= period
+        last_closing -= period
         if first_not_finite(y, bodies) != 0:
             return NOT_FINITE, p, trace
     return DONE, periods, trace

@@ -117,7 +117,7 @@ def _(tangent, slots, time, h, contacts):
 
 @inline_numba
 def linearise(slots, time, h, contacts, tangent):
-    """Tangent stiffness s and damping g of every contact in every stage, times dt/dx; returns ∫ trace over the step."""
+    """Tangent stiffness s and damping g of every contact in every stage, times |dt/ds|; returns ∫ trace over a step."""
     trace, inverse_mass, stages = 0.0, slots.chain.inverse_mass, tangent.stages
     for stage in range(STAGES):
         rate = rate_at(time, C[stage] * h)
@@ -136,7 +136,7 @@ def linearise(slots, time, h, contacts, tangent):
 
 @by_slot_inlined
 def linearise_dashpot(law, dampings, c, d, rate, weight):
-    """Store the damping g of contact c, times dt/dx, 0 where it is open; returns it times `weight`. Absent: 0.
+    """Store the damping g of contact c, times |dt/ds|, 0 where it is open; returns it times `weight`. Absent: 0.
 
     A closed contact stays damped even if rounding makes its overlap negative.
     """

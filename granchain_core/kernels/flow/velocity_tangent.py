@@ -1,8 +1,8 @@
 """The tangent flow in (u, v), the second route: tangents jump where a dashpot contact opens or closes.
 
 Equation   m_i δv̇_i = s_{i-1} δδ_{i-1} − s_i δδ_i + g_{i-1} δδ̇_{i-1} − g_i δδ̇_i + δP_i,   δu̇_i = δv_i
-Saltation  at the onset of contact c   δv_c −= (λ/m_c) δδ_c,   δv_{c+1} += (λ/m_{c+1}) δδ_c,   at release the reverse:
-           neighbouring trajectories cross the event at different times
+Saltation  at the closing of contact c   δv_c −= (λ/m_c) δδ_c,   δv_{c+1} += (λ/m_{c+1}) δδ_c,   at an opening the
+           reverse: neighbouring trajectories cross the event at different times
 Source     saltation matrices: Leine & Nijmeijer 2004, chapter 7; for this force they are constant shears
 Use        a check of flow/tangent.py that shares the motion and its steps with it. The shear has determinant 1, so
            Liouville's formula cannot see whether it is there; the columns do. Linear dashpot or no damping.
@@ -53,7 +53,7 @@ def _(tangent, state, slope, stage):
 
 @inline_numba
 def velocity_slope(slots, rate, u, v, closed, T, out):
-    """Slope of all columns T at one stage with displacements u and velocities v, times dt/dx."""
+    """Slope of all columns T at one stage with displacements u and velocities v, times |dt/ds|."""
     n, columns = T.shape[0] // 2, T.shape[1]
     for i in range(n):
         for q in range(columns):

@@ -17,7 +17,7 @@ import numpy as np
 from ..compiling.jit import by_slot, inline_numba, internal
 from ..contact_cubic import hermite_turn, hermite_value
 from ..effects.contact import elastic_force, elastic_slope, positive_part
-from ..effects.dissipation import JUMP_LAWS, SMOOTH_LAWS, dashpot_force, dashpot_slope, onset_force
+from ..effects.dissipation import JUMP_LAWS, SMOOTH_LAWS, closing_force, dashpot_force, dashpot_slope
 from ..effects.driver import driver_acceleration
 from ..effects.preload import overlap
 from ..effects.tension import cut_at_zero
@@ -87,7 +87,7 @@ def force_at_event(slots, y, dy, e, c, event, closed):
         return contact_force(slots, y, dy, e, c)
     if not closed:
         return 0.0
-    return cut_at_zero(slots.tension, onset_force(slots.dissipation, dy[c] - dy[c + 1]))
+    return cut_at_zero(slots.tension, closing_force(slots.dissipation, dy[c] - dy[c + 1]))
 
 
 @internal
@@ -195,7 +195,7 @@ def record_closing(law, rate, c, last, theta, log):
 @record_closing.of(*JUMP_LAWS)
 def _(law, rate, c, last, theta, log):
     if rate > 0.0:
-        force = onset_force(law, rate)
+        force = closing_force(law, rate)
         if c == 0:
             update_largest(log.peaks, INPUT, force)
             update_largest(log.peaks, INPUT_JUMP, force)

@@ -1,6 +1,6 @@
 """Contact events inside a step of fixed size: their times, and the quadrature error of a step next to one.
 
-An overlap is a cubic in between, from its values and rates at the step's two ends. After an onset at s = 0 the
+An overlap is a cubic in between, from its values and rates at the step's two ends. After a closing at s = 0 the
 elastic force grows like s^{3/2}, whose integral Simpson's rule (and RK4 with it) misses by a part of h^{5/2}: that
 part is known, because the speed is, and is subtracted. For laws with a > 0 the corresponding error of ∫G dt is
 subtracted from the displacement.

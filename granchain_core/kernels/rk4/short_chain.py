@@ -1,4 +1,4 @@
-"""A short chain, up to 30 beads: RK4 split at contact events, in one vector (equations/chain_in_vector.py).
+"""A short chain: RK4 split at contact events, in one vector (equations/chain_in_vector.py).
 
 A step evaluates three slopes and the one at its end, which is the next step's first. Nothing is evaluated twice, and
 only the forces at the two ends go through memory.
@@ -70,7 +70,7 @@ def chain_step(values, ua, ub, vb, h, x, shift, impulse):
     _, _, du3, net_force3 = chain_slope(values, ua, x.u + half * du2, x.w + half_m * net_force2)
     _, _, du4, net_force4 = chain_slope(values, ub, x.u + h * du3, x.w + whole_m * net_force3)
     return chain_at(values, ub, vb, x.u + sixth * (x.du + du4 + 2.0 * (du2 + du3)) + shift,
-                  x.w + sixth_m * (x.net_force + net_force4 + 2.0 * (net_force2 + net_force3)) + impulse)
+                    x.w + sixth_m * (x.net_force + net_force4 + 2.0 * (net_force2 + net_force3)) + impulse)
 
 
 @inline_llvm

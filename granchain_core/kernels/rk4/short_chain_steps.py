@@ -63,7 +63,7 @@ def split_short_step(short, trajectory, j, u_end, v_end, out):
             stepped = part
             middle, there = theta + dtheta * (done + 0.5 * part), theta + dtheta * (done + part)
             event = chain_step(values, driver_displacement(driver, middle), driver_displacement(driver, there),
-                             driver_velocity(driver, there), h * part, start, blank(start.u), blank(start.w))
+                               driver_velocity(driver, there), h * part, start, blank(start.u), blank(start.w))
             store_state(short, BEGIN, event)
             out.counts[EVALUATIONS] += 4
             part = nearer_event(slots.dissipation, ends, contact, last, part, 1.0 - done, h)
@@ -75,8 +75,8 @@ def split_short_step(short, trajectory, j, u_end, v_end, out):
         update_end_forces_at_event(slots, ends, contact, there, out.log)
         middle = theta + dtheta * 0.5 * (1.0 + done)
         end = chain_step(values, driver_displacement(driver, middle), u_end, v_end, h * (1.0 - done), event,
-                       chain_correction(values, load_row(short.width, ends, DISPLACEMENT_ERROR)),
-                       chain_correction(values, load_row(short.width, ends, MOMENTUM_ERROR)))
+                         chain_correction(values, load_row(short.width, ends, DISPLACEMENT_ERROR)),
+                         chain_correction(values, load_row(short.width, ends, MOMENTUM_ERROR)))
         store_state(short, END, end)
         out.counts[EVALUATIONS] += 4
         out.counts[EVENTS] += 1
@@ -116,7 +116,7 @@ def start_chain(short, values, trajectory, j):
     for i in range(bodies):
         rows[U, i], rows[W, i] = y[i], y[bodies + i]
     return chain_at(values, tabulated_displacement(slots, drive, 2 * j), tabulated_velocity(slots, drive, 2 * j),
-                  load_row(short.width, rows, U), load_row(short.width, rows, W))
+                    load_row(short.width, rows, U), load_row(short.width, rows, W))
 
 
 @inline_numba

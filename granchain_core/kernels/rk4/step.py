@@ -106,11 +106,8 @@ def rk4(slots, ua, va, ub, vb, h, y, workspace):
 def may_change(slots, y, slope, end, end_slope):
     """Whether a contact may open or close within the step: its overlap has another sign at the end, or turns.
 
-    short_chain_steps.py and dop853_root/changes.py make the same test for all contacts at once, long_chain.py and
-    forces/crossings.py for turns of the two end contacts; `contact_root` (contact_cubic.py), `may_turn`
-    (error_control/bracket.py) and `may_touch` (dop853_root/changes.py) ask further how near to zero it comes. A
-    batch looks for signs alone (batch/contact_correction.py): it corrects no touch within a step.
-    tests/kernels/test_event_tests.py compares them.
+    docs/method.md has a table of this test in the other integrators; tests/kernels/test_event_predicates.py compares
+    them.
     """
     changed = 0
     for c in range(slots.chain.stiffness.size):

@@ -11,6 +11,7 @@ import numpy as np
 from ...execution.stop import Stop
 from ...integrate import Engine, fixed_step_setting
 from ...integrate.batch import Batch
+from ...integrate.failure import not_finite
 from ...integrate.methods import AT_A_JUMP, typical_error
 from ...integrate.scaling import ScaledChain
 from ...integrate.stated import relative_changes
@@ -241,7 +242,5 @@ def failed(job: BatchJob) -> SteadyState:
 
     Which bead failed and when is found where it is settled alone (starts.py).
     """
-    sentence = (f"At {job.scene.f:g} Hz the motion stopped being finite; too strong damping is the "
-                "usual cause.")
     return SteadyState(job.scene, np.full(3, np.nan), Regime.unsettled(job.periods_run), None, job.scaled.to_si(job.y),
-                       sentence, "not-finite", job.number)
+                       not_finite(f"at {job.scene.f:g} Hz"), "not-finite", job.number)

@@ -169,6 +169,56 @@ def test_a_link_in_place_of_a_folder_of_kernels_is_not_followed(
     assert chosen == f"{link} is a link" if writable else "Permission denied" in chosen
 
 
+@pytest.mark.parametrize("place", ["the folder itself", "a folder above it"])
+def test_a_link_in_place_of_the_chosen_folder_is_followed_once(place: str, tmp_path: Path,
+                                                               monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whoever made it in a sticky folder may let it point elsewhere later, when the files are read."""
+    shared, own = tmp_path / "shared", tmp_path / "own"
+    for folder in (shared, own, own / "inside"):
+        folder.mkdir(mode=0o755)
+    shared.chmod(0o1777)
+    (shared / "link").symlink_to(own)
+    inside = Path() if place == "the folder itself" else Path("inside")
+    monkeypatch.setenv("GRANCHAIN_CACHE", str(shared / "link" / inside))
+    chosen = cache_folder.cache_folder()
+    assert chosen is not None and chosen.parent == own / inside
+
+
+@pytest.mark.parametrize("writable", [True, False], ids=["writable", "read-only"])
+@pytest.mark.parametrize(("rights", "safe"), [(0o755, True), (0o777, False), (0o775, False), (0o1777, True)], ids=oct)
+def test_nobody_else_can_rename_a_folder_above_the_chosen_one(
+        rights: int, safe: bool, writable: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Then another could be put in its place, with another cache in it."""
+    def denied(**_: Any) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    above = tmp_path / "above"
+    base = above / "between" / "base"
+    folder = base / f"kernels-{cache_folder.sources_hash()}"
+    folder.mkdir(parents=True)
+    (folder / "one.nbc").write_bytes(b"")
+    for one in (above / "between", base, folder):
+        one.chmod(0o755)
+    above.chmod(rights)
+    monkeypatch.setenv("GRANCHAIN_CACHE", str(base))
+    if not writable:
+        monkeypatch.setattr(tempfile, "TemporaryFile", denied)
+    monkeypatch.setattr(cache_folder, "_temporary_folder", lambda problem: Path(problem))
+    chosen = cache_folder.cache_folder()
+    assert (chosen == folder) is safe
+    assert safe or not writable or str(chosen) == f"others may write to {above}"
+
+
+@pytest.mark.skipif(os.getuid() != 0, reason="only root can give a folder away")
+def test_a_folder_above_the_chosen_one_is_not_another_users(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    above = tmp_path / "above"
+    (above / "base").mkdir(parents=True, mode=0o755)
+    os.chown(above, 12345, 12345)
+    monkeypatch.setenv("GRANCHAIN_CACHE", str(above / "base"))
+    monkeypatch.setattr(cache_folder, "_temporary_folder", lambda problem: Path(problem))
+    assert str(cache_folder.cache_folder()) == f"others may write to {above}"
+
+
 def test_the_users_own_cache_is_closed_to_others(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """It is granchain's alone, and earlier versions made it with the rights that a umask of 002 leaves to the group."""
     base = tmp_path / "granchain"

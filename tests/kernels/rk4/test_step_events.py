@@ -1,4 +1,4 @@
-"""Events inside a fixed step: the cubic's roots and turns, the first of several, and what Simpson's rule misses."""
+"""Events inside a fixed step: the first of several, and what Simpson's rule misses."""
 
 from __future__ import annotations
 
@@ -7,10 +7,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from granchain_core.kernels import contact_cubic
 from granchain_core.kernels.effects.dissipation import KuwabaraKono, LinearDashpot, Tsuji
 from granchain_core.kernels.effects.energy_account import EnergyAccount
-from granchain_core.kernels.error_control.bracket import may_turn
 from granchain_core.kernels.rk4 import contact_events as events
 from granchain_core.kernels.rk4 import step as fixed_step
 from granchain_core.kernels.step_ends import (
@@ -24,39 +22,10 @@ from granchain_core.kernels.step_ends import (
 )
 
 
-def ends_of(*roots: float, sign: float = 1.0) -> tuple[float, float, float, float]:
-    """Values and slopes at 0 and 1 of sign·Π(x − root), a polynomial of degree three at most."""
-    p = sign * np.poly1d(np.poly(roots))
-    return p(0.0), p.deriv()(0.0), p(1.0), p.deriv()(1.0)
-
-
-@pytest.mark.parametrize(("roots", "sign", "first"), [
-    ((0.3, -2.0, 4.0), 1.0, 0.3), ((0.3, -2.0, 4.0), -1.0, 0.3), ((0.9,), 1.0, 0.9),
-    ((0.2, 0.7), 1.0, 0.2), ((0.2, 0.7), -1.0, 0.2), ((0.5, 0.6, 3.0), -1.0, 0.5),  # there and back inside the step
-    ((1.2, 1.7), 1.0, 2.0), ((-0.2, 1.5), -1.0, 2.0), ((0.5 + 0.2j, 0.5 - 0.2j), 1.0, 2.0), ((0.5 + 0.2j, 0.5 - 0.2j), -1.0, 2.0),
-])
-def test_a_contact_changes_at_the_cubics_first_root(roots, sign, first) -> None:  # type: ignore[no-untyped-def]
-    """Contacts that open, close, do both, and neither; 2 means not in this step."""
-    found = contact_cubic.contact_root.py_func(*(float(np.real(x)) for x in ends_of(*roots, sign=sign)))
-    assert found == pytest.approx(first, abs=1e-11)  # the iteration ends at 1e-12
-
-
-@pytest.mark.parametrize(("s0", "d1", "root"), [(1.0, 0.5, 0.0), (-1.0, -0.5, 2.0), (1.0, -0.5, 2.0)])
-def test_beads_that_touch_close_where_they_are_pushed_together(s0: float, d1: float, root: float) -> None:
-    assert contact_cubic.contact_root.py_func(0.0, s0, d1, s0) == root
-
-
-def test_the_turn_is_where_the_slope_is_zero() -> None:
-    for roots, sign in (((0.2, 0.7), 1.0), ((0.2, 0.7), -1.0), ((0.1, 0.4, 2.0), 1.0)):
-        turns = np.roots(np.poly1d(np.poly(roots)).deriv())
-        inside = [x for x in turns if 0.0 < x < 1.0]
-        assert contact_cubic.hermite_turn.py_func(*ends_of(*roots, sign=sign)) == pytest.approx(inside[0], rel=1e-12)
-
-
 def test_the_first_of_several_contacts_is_taken() -> None:
     ends = np.zeros((END_ROWS, 3))
     for c, root in enumerate((0.6, 0.25, 0.8)):
-        ends[OVERLAP, c], ends[RATE, c], ends[OVERLAP_END, c], ends[RATE_END, c] = ends_of(root)
+        ends[OVERLAP, c], ends[RATE, c], ends[OVERLAP_END, c], ends[RATE_END, c] = -root, 1.0, 1.0 - root, 1.0
     ends[[RATE, RATE_END]] /= 0.5  # rates are in time, for a step of 0.5
     contact, found = events.first_event.py_func(ends, 3, 0.5)
     assert (found, contact) == (pytest.approx(0.25, rel=1e-11), 1)
@@ -80,7 +49,7 @@ def test_the_excess_of_simpsons_rule_over_a_kink(r: float) -> None:
 @pytest.mark.parametrize(("law", "scale", "power"), [
     (LinearDashpot(0.3), 0.0, 1.25), (Tsuji(0.3), 0.8 * 0.3, 1.25), (KuwabaraKono(0.3), 2.0 / 3.0 * 0.3, 1.5)])
 def test_impulse_and_path_beside_an_event(rate, part, law, scale, power) -> None:  # type: ignore[no-untyped-def]
-    """K v^{3/2} h^{5/2} and c v^p h^{p+1} times the excess over the closed side: behind an onset, before a release."""
+    """K v^{3/2} h^{5/2} and c v^p h^{p+1} times the excess over the closed side: after a closing, before an opening."""
     ends, h = np.zeros((END_ROWS, 2)), 0.2
     ends[RATE, 1] = rate
     events.add_quadrature_errors.py_func(law, 1.4, ends, 1, h, 0.25)
@@ -100,19 +69,3 @@ def test_the_excess_is_taken_back_from_beads_and_from_the_drivers_work() -> None
     fixed_step.correct_state.py_func(slots, ends, 0.25, y)
     # bead i is pushed forward by contact i − 1 and back by contact i
     assert y == pytest.approx([0.0, 0.3, 0.25, 0.0, 0.0, 2.0, 1.5, 0.0, -3.0 * 0.25, 0.0], abs=1e-15)
-
-
-@pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_where_the_cubic_through_a_steps_ends_crosses_a_touch_is_looked_for(sign: float) -> None:
-    """A contact of the same sign at both ends of a step: open ones that may close, closed ones that may open."""
-    rng, crossed = np.random.default_rng(1), 0
-    x = np.linspace(0.0, 1.0, 401)
-    for _ in range(400):
-        d0, d1 = -(10.0 ** rng.uniform(-4.0, 0.0, 2))
-        s0, s1 = 10.0 ** rng.uniform(-3.0, 0.7), -(10.0 ** rng.uniform(-3.0, 0.7))
-        cubic = d0 + x * (s0 + x * (3.0 * (d1 - d0) - 2.0 * s0 - s1 + x * (2.0 * (d0 - d1) + s0 + s1)))
-        if cubic.max() > 0.0:
-            crossed += 1
-            assert may_turn.py_func(sign * d0, sign * s0, sign * d1, sign * s1, sign)
-        assert not may_turn.py_func(sign * d0, -sign * s0, sign * d1, sign * s1, sign)  # moves away at first
-    assert 100 < crossed < 300

@@ -1,4 +1,4 @@
-"""The tests for a contact event inside a step, in every form that a kernel needs, agree with the cubic."""
+"""The predicates for a contact event inside a step, in every form that a kernel needs, agree with the cubic."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import itertools
 from types import SimpleNamespace
 
 import numpy as np
+import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
@@ -15,8 +16,10 @@ from granchain_core.kernels.error_control.bracket import may_turn
 from granchain_core.kernels.rk4.long_chain import comes_nearer
 from granchain_core.kernels.rk4.step import may_change
 
-#: Overlaps and rates: nothing near zero, where rounding decides.
-_SIZE = st.floats(0.05, 5.0)
+#: Overlaps and rates of all sizes that a step may have.
+_SIZE = st.floats(-15.0, 0.7).map(lambda exponent: 10.0**exponent)
+#: Rounding of a cubic's value, as a part of the largest of its ends and slopes.
+_ROUNDING = 1e-14
 _NUMBER = st.tuples(_SIZE, st.sampled_from([-1.0, 1.0])).map(lambda pair: pair[0] * pair[1])
 _STEP = st.tuples(_NUMBER, _NUMBER, _NUMBER, _NUMBER)
 _ALL_SIGNS = [tuple(float(sign) for sign in signs) for signs in itertools.product((-1, 1), repeat=4)]
@@ -70,10 +73,11 @@ def test_whatever_crosses_zero_is_looked_into(step: tuple[float, float, float, f
     """
     d0, s0, d1, s1 = step
     values = hermite_value(d0, s0, d1, s1, np.linspace(0.0, 1.0, 401))
-    crosses, turns_twice = bool((np.sign(values) != np.sign(d0)).any()), s0 * s1 > 0.0 < d0 * d1
+    beyond = np.sign(d0) * values < -_ROUNDING * max(abs(one) for one in step)
+    crosses, turns_twice = d0 * d1 < 0.0 or bool(beyond.any()), s0 * s1 > 0.0 < d0 * d1
     assume(not (crosses and turns_twice))
     root = contact_root(d0, s0, d1, s1)
-    assume(crosses or root == 2.0)  # else it crosses between two of the places
+    assume(crosses or root == 2.0)  # else it crosses between two of the places, or within rounding
     assert (root < 2.0) == crosses
     assert may_change_of(*step) or not crosses
     if np.sign(d0) == np.sign(d1):
@@ -92,7 +96,7 @@ def test_the_forms_that_ask_how_near_it_comes_look_into_nothing_else(step: tuple
     assert may_change_of(*step) or not refined
 
 
-@given(_SIZE, _SIZE, st.floats(0.05, 0.95))
+@given(st.floats(0.05, 5.0), _SIZE, st.floats(0.05, 0.95))
 def test_a_parabola_that_touches_is_never_ruled_out(curvature: float, height: float, place: float) -> None:
     """The straight lines of `may_turn` along a parabola's slopes at both ends lie above its top."""
     for sign in (-1.0, 1.0):
@@ -100,3 +104,19 @@ def test_a_parabola_that_touches_is_never_ruled_out(curvature: float, height: fl
         d1, s1 = height - curvature * (1.0 - place) ** 2, -2.0 * curvature * (1.0 - place)
         if d0 < 0.0 and d1 < 0.0:
             assert may_turn.py_func(sign * d0, sign * s0, sign * d1, sign * s1, sign)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_where_the_cubic_through_a_steps_ends_crosses_a_touch_is_looked_for(sign: float) -> None:
+    """A contact of the same sign at both ends of a step: open ones that may close, closed ones that may open."""
+    rng, crossed = np.random.default_rng(1), 0
+    x = np.linspace(0.0, 1.0, 401)
+    for _ in range(400):
+        d0, d1 = -(10.0 ** rng.uniform(-4.0, 0.0, 2))
+        s0, s1 = 10.0 ** rng.uniform(-3.0, 0.7), -(10.0 ** rng.uniform(-3.0, 0.7))
+        cubic = d0 + x * (s0 + x * (3.0 * (d1 - d0) - 2.0 * s0 - s1 + x * (2.0 * (d0 - d1) + s0 + s1)))
+        if cubic.max() > 0.0:
+            crossed += 1
+            assert may_turn.py_func(sign * d0, sign * s0, sign * d1, sign * s1, sign)
+        assert not may_turn.py_func(sign * d0, -sign * s0, sign * d1, sign * s1, sign)  # moves away at first
+    assert 100 < crossed < 300
