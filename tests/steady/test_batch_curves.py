@@ -134,11 +134,14 @@ def test_a_peak_right_after_a_closing_is_not_missed(f: float, knobs: dict[str, f
     assert abs(point.max_output_force / exact.max_output_force - 1.0) <= point.force_errors.output
 
 
-def test_an_orbit_that_is_stable_with_coarse_steps_only_is_not_called_periodic() -> None:
-    """Its largest |μ| is 4.6. The finer run left it, and its forces were given with an error of 10 %."""
+def test_what_a_finer_run_leaves_is_not_called_periodic() -> None:
+    """The orbit that coarse steps find has a largest |μ| of 4.6. The finer run left it, at a relative distance of 0.07.
+
+    Another orbit near by, at a grazing, may be found, as with vectors of four scenes.
+    """
     chain = scene("sec2").evolve(N=1, A0=7.255830239935612e-08, D=11.668237126124067, kappa=0.00027091924674425957)
     (point,) = resonance_curve(chain, [228.4540]).points
-    assert point.regime.name != "periodic"
+    assert point.regime.name != "periodic" or (point.regime.distance is not None and point.regime.distance < 1e-3)
 
 
 def test_an_orbit_that_has_doubled_with_coarse_steps_only_has_its_own_period() -> None:

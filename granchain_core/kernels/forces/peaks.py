@@ -111,8 +111,8 @@ def update_batch_peak(peaks, row, value, unresolved):
     b, a = load_batch(peaks, row + 3), load_batch(peaks, row + 4)
     largest = larger(load_batch(peaks, row), value)
     if positive_mask(HIGHEST * c - largest) & positive_mask(c - b) & ~positive_mask(d - c) != 0:
+        rough = gate(HIGHEST * c - largest, gate(c - b, choose_peak(a, b, c, d, value, blank(c))))
         largest = larger(largest, choose_peak(a, b, c, d, value, quartic_top(a, b, c, d, value)))
-        rough = gate(c - b, choose_peak(a, b, c, d, value, blank(c)))
         store(peaks, unresolved, larger(load_batch(peaks, unresolved), rough - gate(d - c, rough)))
     store(peaks, row, largest)
     store(peaks, row + 4, b)
