@@ -51,9 +51,9 @@ class FakeHost(Pending):
         """From any thread."""
         self.callbacks.append(lambda: action(*arguments))
 
-    def call_later(self, seconds: float, action: Callable[..., None], *arguments: Any) -> None:
+    def call_later(self, seconds: float, action: Callable[..., None], *args: Any) -> None:
         """The time passes when the callbacks are worked off."""
-        self.next_tick(action, *arguments)
+        self.next_tick(action, *args)
 
     def on_close(self, action: Callable[[], object]) -> None:
         """What is called when the visitor leaves."""
