@@ -47,9 +47,9 @@ class FakeHost(Pending):
         self.faults: list[tuple[Exception, str]] = []
         self.closing: list[Callable[[], object]] = []
 
-    def next_tick(self, action: Callable[..., None], *arguments: Any) -> None:
+    def next_tick(self, action: Callable[..., None], *args: Any) -> None:
         """From any thread."""
-        self.callbacks.append(lambda: action(*arguments))
+        self.callbacks.append(lambda: action(*args))
 
     def call_later(self, seconds: float, action: Callable[..., None], *args: Any) -> None:
         """The time passes when the callbacks are worked off."""
