@@ -52,6 +52,7 @@ class Controller:
         self._document = document
         self._calls = make_calls(document, self.report_failure)
         self._initial_state = initial_state
+        self._gallery_sent = False
         self.session = session
         self.views = views = Views(session, self.received, partial(self._calls.guarded, self._choose_frequency))
         self.sentences = Sentences(session, views.status_line, self._compute)
@@ -73,7 +74,7 @@ class Controller:
             "visible": self._visible,
             "painted": lambda m: self.pictures.painted(m.get("number")),
             **self._scenes.actions,
-            "gallery": lambda _: views.header.send(type="gallery", cards=cards()),
+            "gallery": self._send_gallery,
             **self.sentences.actions,
         }
         playback = Playback(session, views.header, self.pictures, self._compute, self.show_message)
@@ -113,6 +114,12 @@ class Controller:
         if looked_at is None or not isinstance(visible, bool):
             raise BadInput(f"There is no page {quoted(name)} to look at.")
         looked_at.visibility_changed(visible)
+
+    def _send_gallery(self, _: dict[str, Any]) -> None:
+        """Send the cards once: they are the largest answer to a short message, and the page keeps them."""
+        if not self._gallery_sent:
+            self._gallery_sent = True
+            self.views.header.send(type="gallery", cards=cards())
 
     # What the pages ask for
 

@@ -26,7 +26,9 @@ from .theme import Theme
 
 _PROGRAMS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome", "google-chrome-stable",
              "chrome")
-_OPTIONS = ["--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--no-first-run", "--disable-sync",
+#: Chromium's sandbox does not start for root, as whom containers often run; anybody else keeps it.
+_FOR_ROOT = ["--no-sandbox"] if os.geteuid() == 0 else []
+_OPTIONS = ["--headless", *_FOR_ROOT, "--disable-gpu", "--hide-scrollbars", "--no-first-run", "--disable-sync",
             "--disable-background-networking", "--virtual-time-budget=20000"]
 #: Size of the window minus that of the page [px]. The frame of the window takes some of it; the rest is cut off.
 _FRAME_ROOM = 200

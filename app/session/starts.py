@@ -34,6 +34,8 @@ def read_start(text: str, scene: Scene) -> State:
         values = np.frombuffer(content, dtype="<f8").astype(float)
     except (binascii.Error, ValueError):
         raise BadInput("The initial state in the link is damaged; the motion begins at rest.") from None
+    if len(values) % 2 == 0:  # a phase, and two numbers for each bead
+        raise BadInput("The initial state in the link is damaged; the motion begins at rest.")
     if len(values) != 2 * scene.N + 1:
         raise BadInput(f"The link begins the motion in a state of {(len(values) - 1) // 2} beads, but the chain has "
                        f"{scene.N}; it begins at rest.")

@@ -68,6 +68,11 @@ class Given:
     work: Callable[[Job], None]
     job: Job
 
+    @property
+    def title(self) -> str:
+        """The title of its task."""
+        return str(self.run.__self__._title)  # type: ignore[attr-defined]
+
 
 class Trial:
     """A page with its view, which no browser shows."""

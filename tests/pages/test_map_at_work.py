@@ -121,6 +121,30 @@ def test_attractors_are_listed_loaded_and_forgotten_with_their_scene(tab: Trial,
     assert tab.last("map-attractors")["attractors"] == [] and tab.last("map-attractors")["status"] == "none"
 
 
+def test_a_search_for_attractors_ends_when_a_knob_moves(tab: Trial, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its result would be shown as that of the new knobs. A tab that nobody looks at is no exception."""
+    monkeypatch.setattr(module, "attractors", lambda scene, starts, stop: [scene])
+    monkeypatch.setattr(module, "described_attractor", lambda one: {"words": f"at {one.f:g} Hz"})
+    for visible, f in ((True, 2100.0), (False, 2200.0)):
+        tab.look()
+        tab.given.clear()
+        tab.do("map-attractors")
+        (search,) = tab.given
+        tab.look(visible)
+        tab.turn(f=f)
+        assert search.job.stop and tab.last("map-attractors")["status"] == "none"
+        tab.compute()
+        assert all(one["attractors"] == [] for one in tab.messages("map-attractors"))
+
+
+def test_who_looks_again_during_a_search_is_not_told_that_there_is_none(tab: Trial) -> None:
+    tab.look()
+    tab.do("map-attractors")
+    tab.look(False)
+    tab.look()
+    assert tab.last("map-attractors")["status"] == "waiting"
+
+
 def test_a_click_turns_both_knobs(tab: Trial) -> None:
     tab.do("map-choose", x=1900.0, y=1e-7)
     ((scene, state, mode),) = tab.host.shown

@@ -32,7 +32,7 @@ def test_a_chain_that_is_too_long_begins_at_rest() -> None:
 
 
 @pytest.mark.parametrize(("text", "told"), [
-    ("!!", "damaged"), ("AAAA", "damaged"), ("ä", "damaged"), (start_text(State(np.zeros(3), np.zeros(3))), "of 3 beads"),
+    ("!!", "damaged"), ("AAAA", "damaged"), ("", "damaged"), ("ä", "damaged"), (start_text(State(np.zeros(3), np.zeros(3))), "of 3 beads"),
     (start_text(replace(START, displacement=np.full(11, np.nan))), "impossible for a chain"),
     (start_text(replace(START, velocity=np.full(11, 1e6))), "impossible for a chain"),
     (start_text(replace(START, phase=1.0)), "impossible for a chain")])

@@ -97,7 +97,7 @@ class MapTab {
     if (what === undefined || what === "map-attractors")
       this.found.replaceChildren(...attractorList((number) => this.send("map-load", { number })));
     if (what === "map-attractors" && this.following) {
-      this.following = MAP.search !== "done";
+      this.following = MAP.searching;
       this.found.scrollIntoView({ block: "nearest" }); // it is below the map, and often below the window
     }
     if (what !== "map-cells") this.dress();

@@ -14,6 +14,7 @@ export const MAP = {
   stale: false,
   attractors: [],
   search: "none",
+  searching: false,
   searched: "",
   shown: "force",
   // Redraws the tab. It is set when the tab is first opened, and does nothing while the tab is closed.
@@ -35,7 +36,12 @@ export function mapMessage(message) {
   else if (message.type === "map-status")
     Object.assign(MAP, { status: message.status, running: message.running, words: wordsOf(message) });
   else if (message.type === "map-attractors")
-    Object.assign(MAP, { attractors: message.attractors, search: message.status, searched: wordsOf(message) });
+    Object.assign(MAP, {
+      attractors: message.attractors,
+      search: message.status,
+      searching: message.running,
+      searched: wordsOf(message),
+    });
   else return;
   MAP.redraw(message.type);
 }

@@ -63,7 +63,7 @@ class MapPage(Page):
         self._view = view
         self._visible = False
         self._task = Task(host, LONG, self._show_status, "The map")
-        self._search = Task(host, LONG, self._say_search, "The search")
+        self._search = Task(host, LONG, self._show_attractors, "The search")
         self._grid: Grid | None = None
         self._cells: np.ndarray[Any, Any] = np.zeros(0)
         self._shown: list[dict[str, Any]] = []
@@ -71,7 +71,8 @@ class MapPage(Page):
         self._theme = THEMES["light"]
         self._scale: dict[str, Any] = {}
         self._found: list[Attractor] = []
-        self._found_at = ""
+        #: The scene of the attractors, found or searched for, as its digest.
+        self._searched = ""
         self.status: Status = "none"
         self.actions: Actions = {
             "map-stop": lambda _: self._stop(),
@@ -81,11 +82,10 @@ class MapPage(Page):
 
     def scene_changed(self) -> None:
         """A knob has moved: any but f and A0 changes the map, and any at all changes the attractors."""
+        self._forget_outdated_attractors()
         if not self._visible:
             return
         self._send_now()
-        if self._found and self._found_at != self._host.session.scene.digest:
-            self._forget_attractors()
         if self._stale():
             self._give_up()
             self._send(type="map-stale")
@@ -107,7 +107,8 @@ class MapPage(Page):
         else:
             self._begin()
         self._send_now()
-        self._show_attractors("done" if self._found else "none")
+        if not self._search.running:
+            self._show_attractors("done" if self._found else "none")
 
     def theme_changed(self, theme: Theme) -> None:
         """Send the figure again: its colours are set here."""
@@ -194,31 +195,31 @@ class MapPage(Page):
 
     def _find(self) -> None:
         self._search.cancel()
-        self._found = []
+        scene = self._host.session.scene
+        self._found, self._searched = [], scene.digest
         self._show_attractors("waiting")
-        self._search.start(partial(self._search_work, self._host.session.scene))
+        self._search.start(partial(self._search_work, scene))
 
     def _search_work(self, scene: Scene, job: Job) -> None:
         job.compile(scene, *PICTURE_PIECES, *(() if scene.cuts_tension else (ORBIT_KERNELS,)))
         job.report("searching")
         starts = _FEW_RANDOM_STATES if scene.cuts_tension else _RANDOM_STATES
         found = attractors(scene, starts, stop=job.stop)
-        job.next_tick(self._arrived, scene, found, [described_attractor(one) for one in found])
+        job.next_tick(self._arrived, found, [described_attractor(one) for one in found])
 
-    def _say_search(self, status: Status, sentence: str) -> None:
-        self._show_attractors(status, sentence)
-
-    def _arrived(self, scene: Scene, found: list[Attractor], shown: list[dict[str, Any]]) -> None:
-        self._found, self._found_at, self._shown = found, scene.digest, shown
+    def _arrived(self, found: list[Attractor], shown: list[dict[str, Any]]) -> None:
+        self._found, self._shown = found, shown
 
     def _show_attractors(self, status: Status, sentence: str = "") -> None:
         shown = self._shown if self._found else []
         self._send(type="map-attractors", **SEARCH_WORDS.of(status, sentence), attractors=shown)
 
-    def _forget_attractors(self) -> None:
-        self._search.cancel()
-        self._found = []
-        self._show_attractors("none")
+    def _forget_outdated_attractors(self) -> None:
+        """Forget attractors of another scene, and end a search for them."""
+        if (self._found or self._search.running) and self._searched != self._host.session.scene.digest:
+            self._search.cancel()
+            self._found = []
+            self._show_attractors("none")
 
     def _load(self, message: dict[str, Any]) -> None:
         """Put the chain on an attractor; from then on settled pictures start from the previous state."""

@@ -77,14 +77,15 @@ class WorkerPool:
             except BaseException as error:
                 future.set_exception(error)
             finally:
-                ended = owners.pop()
+                with self._lock:
+                    ended = owners.pop()
                 if limited:
                     self._ended(ended)
 
         def forget(ended: Future[Result]) -> None:
             if ended.cancelled():
                 piece.clear()
-                if self._let_go(owners[0], do):
+                if self._let_go(owners, do):
                     owners.clear()
 
         future.add_done_callback(forget)
@@ -107,18 +108,19 @@ class WorkerPool:
         else:
             self.queued += 1
 
-    def _let_go(self, owner: object, do: Callable[[], None]) -> bool:
+    def _let_go(self, owners: list[object], do: Callable[[], None]) -> bool:
         """Cancelled work that waits because of its owner's limit is dropped; returns whether this was.
 
-        Where it waits for a thread already, it stays and does nothing.
+        Where it waits for a thread already, it stays and does nothing. `owners` is empty if a thread has taken it since
+        it was cancelled.
         """
         with self._lock:
-            held = self._held.get(owner)
+            held = self._held.get(owners[0]) if owners else None
             if held is None or do not in held:
                 return False
             held.remove(do)
             if not held:
-                del self._held[owner]
+                del self._held[owners[0]]
             return True
 
     def _ended(self, owner: object) -> None:

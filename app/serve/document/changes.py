@@ -52,7 +52,7 @@ INTERNALS = internals(
     Internal("bokeh.core.serialization.Buffer", ("ref", "to_bytes"), _WITHOUT),
     Internal("bokeh.server.views.ws.WSHandler", ("write_lock",), _WITHOUT),
     Internal("tornado.websocket.WebSocketHandler", ("ws_connection",), _WITHOUT),
-    Internal("tornado.websocket.WebSocketProtocol", ("stream",), _WITHOUT),
+    Internal("tornado.websocket.WebSocketProtocol", ("stream", "is_closing"), _WITHOUT),
 )
 
 
@@ -186,12 +186,13 @@ class _Socket:
 
     def write(self, data: bytes) -> None:
         """Write whole messages, after any message that Bokeh is writing."""
-        stream, lock = self._stream, self._lock
-        assert isinstance(stream, IOStream) and isinstance(lock, Lock)
+        stream, lock, ws_connection = self._stream, self._lock, self._ws_connection
+        assert isinstance(stream, IOStream) and isinstance(lock, Lock) and ws_connection is not None
 
         def put(locked: Any) -> None:
             with locked.result():
-                if not stream.closed():
+                # after the closing frame nothing may be sent (RFC 6455, section 5.5.1)
+                if not (stream.closed() or ws_connection.is_closing()):
                     try:
                         stream.write(data)
                     except StreamClosedError:

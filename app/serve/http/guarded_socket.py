@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import logging
 import time
+from asyncio import Future
 from collections.abc import Awaitable
 from typing import Any
 from urllib.parse import urlsplit
@@ -26,6 +27,12 @@ from .message_rules import LARGEST_HEADER, RefusedMessage, checked_content
 
 log = logging.getLogger("granchain.requests")
 
+#: Status of a websocket that is closed because of what the client did (RFC 6455, section 7.4.1).
+_POLICY_VIOLATION = 1008
+#: Most that waits until the client reads it when another message is written [bytes]: two pictures of the longest chain,
+#: with the most rows, are in transit to a slow browser and are just below it. Other chains need a hundredth.
+MOST_UNREAD = 64_000_000
+
 
 class GuardedSocket(Guard):
     """The guard of a websocket: one connection for a session, not too many frames, only messages of pages."""
@@ -36,6 +43,8 @@ class GuardedSocket(Guard):
     _fragments: tuple[str, ...] = ()
     _refused = False
     _left = False
+    #: What was written and waits until the client reads it [bytes].
+    _unread = 0
     #: The session whose token came with the request, and the same once it has its connection.
     _offered = _session_id = ""
     _has_connection = False
@@ -83,9 +92,12 @@ class GuardedSocket(Guard):
         return self.rules.sessions.find(self._session_id) if self._session_id else None
 
     def detach(self) -> IOStream:
-        """The stream from which Tornado reads frames; they are counted, and too many close the connection."""
+        """The stream of the websocket. Too many frames from the client close it, and too much that it does not read.
+
+        Bytes count as unread until the system has taken them. Answers to pings count, too.
+        """
         stream: IOStream = super().detach()
-        read, bucket = stream.read_bytes, FrameBucket(time.monotonic())
+        read, write, bucket = stream.read_bytes, stream.write, FrameBucket(time.monotonic())
 
         async def read_and_count(*args: Any, **kwargs: Any) -> bytes:
             data = await read(*args, **kwargs)
@@ -95,8 +107,26 @@ class GuardedSocket(Guard):
                 raise StreamClosedError
             return data
 
+        def write_and_count(data: bytes | memoryview) -> Future[None]:
+            if self._unread > MOST_UNREAD:
+                self._refuse("too much that is not read")
+                stream.close()  # a closing frame would wait behind all that
+                unwritten: Future[None] = Future()
+                unwritten.set_exception(StreamClosedError())
+                unwritten.exception()  # retrieved: who writes need not wait for it
+                return unwritten
+            written = write(data)
+            if not written.done():
+                self._unread += len(data)
+                written.add_done_callback(lambda _: self._was_read(len(data)))
+            return written
+
         stream.read_bytes = read_and_count  # type: ignore[method-assign]
+        stream.write = write_and_count  # type: ignore[method-assign]
         return stream
+
+    def _was_read(self, length: int) -> None:
+        self._unread -= length
 
     def on_message(self, fragment: str | bytes) -> Awaitable[None] | None:
         """Pass whole messages on, unless one is not of a page; that closes the connection."""
@@ -131,7 +161,7 @@ class GuardedSocket(Guard):
         self._refused, self._fragments = True, ()
         METRICS.count("refused_messages")
         log.warning("refused: %s", reason, extra={"request": self.request_id, "remote": self.request.remote_ip})
-        self.close(1008, reason)  # type: ignore[attr-defined]
+        self.close(_POLICY_VIOLATION, reason)  # type: ignore[attr-defined]
 
     def on_close(self) -> None:
         """The visitor left: the page's computations end, and Bokeh drops the session at its next check.

@@ -36,7 +36,8 @@ COUNTERS = {
     "cancelled": "Computations of pictures that were cancelled.",
     "refused_sessions": "Sessions refused because there were as many as `--max-sessions`.",
     "refused_pictures": "Pictures refused because they would take too long.",
-    "refused_messages": "Messages that no page sends, and too many frames; each closed its connection.",
+    "refused_messages": "Messages that no page sends, too many frames, and too much that is not read; each closed its "
+                        "connection.",
     "errors": "Unexpected failures; each is in the log.",
 }
 

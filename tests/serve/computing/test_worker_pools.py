@@ -62,6 +62,24 @@ def test_cancelled_work_that_has_not_begun_is_not_done_and_not_kept(limit: int |
     assert not pool._taken and not pool._held and pool.queued == 0
 
 
+@pytest.mark.parametrize("limit", [None, 1])
+def test_work_that_is_cancelled_as_a_thread_takes_it_is_left_alone(limit: int | None, caplog: pytest.LogCaptureFixture) -> None:
+    """The thread comes between the two steps of a cancellation: the state of the future, and the call of those told."""
+    pool, go_on, taken = WorkerPool("tested", 1, per_owner_limit=limit), threading.Event(), threading.Event()
+    first, owner = pool.submit(go_on.wait, 120), object()
+    second = pool.submit(pytest.fail, "it was cancelled", owner=owner)
+    told = second._invoke_callbacks  # type: ignore[attr-defined]
+
+    def after_the_thread() -> None:
+        go_on.set()
+        assert pool.submit(taken.set).result(60) is None, "the only thread has passed the cancelled work"
+        told()
+
+    second._invoke_callbacks = after_the_thread  # type: ignore[attr-defined]
+    assert second.cancel() and first.result(60) and taken.is_set()
+    assert caplog.records == [] and not pool._taken and not pool._held
+
+
 def test_an_owner_beyond_its_limit_waits_behind_others() -> None:
     """Two pieces of work of one owner at a time: the third begins when one of them has ended, and not before."""
     pool, go_on, order = WorkerPool("tested", 4, per_owner_limit=2), [threading.Event() for _ in range(4)], list[str]()

@@ -6,7 +6,9 @@ from __future__ import annotations
 import base64
 import gzip
 import json
+import socket
 import struct
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -19,10 +21,12 @@ from bokeh.models import ColumnDataSource, Div, Range1d
 from bokeh.protocol import Protocol
 from bokeh.server.session import ServerSession
 from bokeh.server.views.ws import WSHandler
-from event_loop import in_a_thread
+from event_loop import in_a_thread, run_async
 from missing_attribute import hide, lose
 from panel.models.esm import ESMEvent
 from panel.models.vega import VegaPlot
+from tornado.iostream import IOStream
+from tornado.locks import Lock
 
 from app.library_internals import Internal
 from app.serve.document import changes
@@ -138,6 +142,24 @@ def test_a_property_called_data_is_one_of_columns_in_data_sources_alone() -> Non
     set_properties(plot, data={"values": [2]})
     set_properties(plot, data={"values": [2]})
     assert [type(one) for one in document.callbacks._held_events] == [ColumnDataChangedEvent, ModelChangedEvent]
+
+
+@pytest.mark.parametrize("closing", [False, True])
+def test_nothing_follows_a_closing_frame(closing: bool) -> None:
+    """RFC 6455, section 5.5.1: the stream is still open until the other side has answered."""
+    async def written() -> list[bytes]:
+        there, here = socket.socketpair()
+        stream, sent = IOStream(there), list[bytes]()
+        stream.write = sent.append  # type: ignore[assignment, method-assign]
+        ws_connection = SimpleNamespace(stream=stream, is_closing=lambda: closing)
+        page = changes._Socket(SimpleNamespace(_socket=SimpleNamespace(write_lock=Lock(), ws_connection=ws_connection)))
+        assert page.usable
+        page.write(b"a frame")
+        stream.close()
+        here.close()
+        return sent
+
+    assert run_async(written()) == ([] if closing else [b"a frame"])
 
 
 @pytest.mark.parametrize("row", changes.INTERNALS, ids=lambda row: row.owner)

@@ -56,6 +56,8 @@ def test_the_limits_of_the_document_are_those_of_the_code() -> None:
                                f"{LARGEST_PLAIN_CONTENT // 1000} kB without a file",
         "websocket frames": f"{FRAME_RATE:g} a second, {FRAME_BURST:g} at once, of any kind; one counts once more for every {FRAME_UNIT // 1000} kB "
                             "of it; beyond that the connection is closed (1008)",
+        "what a websocket has not read": f"{guarded_socket.MOST_UNREAD // 1_000_000} MB when another message is to be sent, as two pictures of the longest "
+                                         "chain; beyond that the connection is closed",
         "a page that is being loaded": f"{server.UNCONNECTED_MS // 1000} s; at most half of the sessions",
         "a link": f"{LONGEST} characters",
         "sessions at once": f"{Access().max_sessions}",
@@ -211,6 +213,24 @@ def test_as_many_frames_as_are_allowed_at_once_are_taken(kind: str, dashboard: L
         assert not closed_with(sending, 2.0), "it was closed too soon"
         sending.sendall(repeated)
         assert closed_with(sending, 30.0) == 1008
+
+
+def test_a_page_that_does_not_read_is_closed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It may answer pings meanwhile. Its frames are within all limits, and their answers would fill the memory."""
+    monkeypatch.setattr(guarded_socket, "MOST_UNREAD", 100_000)
+    monkeypatch.setattr(frames, "FRAME_RATE", 1e6)
+    monkeypatch.setattr(frames, "FRAME_BURST", 1e6)
+    one = Listening(Access(secret=SECRET))
+    try:
+        refused = METRICS.counted["refused_messages"]
+        with connected(one) as silent, contextlib.suppress(ConnectionError):
+            silent.settimeout(60)
+            silent.sendall((masked(PONG) + message()) * 500)  # what the system keeps is a few megabytes more
+            waiting.until(lambda: METRICS.counted["refused_messages"] > refused, 60)
+        waiting.until(lambda: METRICS.counted["refused_messages"] == refused + 1, 20)
+        waiting.until(lambda: not one.server._tornado.get_sessions("/"), 30)
+    finally:
+        one.stop()
 
 
 def received(sent: socket.socket, patience: float, until: bytes | None = None) -> bytes:
