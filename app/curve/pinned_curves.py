@@ -10,6 +10,7 @@ from bokeh.models import ColumnDataSource, GlyphRenderer, Line, Plot, Scatter, T
 from granchain_core import CurvePoint
 
 from ..parts.stage.pinned_trains import DASHES
+from ..plots.curve import curve_columns
 from ..plots.theme import GREY
 from ..plots.themed import themed
 
@@ -52,8 +53,8 @@ class PinnedCurves:
             if points and number not in self._lines:
                 self._lines[number] = self._line(dash)
             if number in self._lines:
-                self._lines[number].data = {"frequency": [p.frequency for p in points],
-                                           "force": [p.max_output_force / factor for p in points]}
+                columns = curve_columns(points, factor)
+                self._lines[number].data = {name: columns[name] for name in ("frequency", "force")}
 
     def _line(self, dash: list[int]) -> ColumnDataSource:
         source = ColumnDataSource({"frequency": [], "force": []})

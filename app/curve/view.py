@@ -262,8 +262,7 @@ class CurveFigure:
                 self.measured(self._measurement)
         # Room for the names of the peaks, and for those that the paper states above them.
         set_properties(self.figure.y_range, end=(1.3 if self._features.data["top"] else 1.15) * high / scale[0])
-        # The heading of the figure says that this is the largest force.
-        set_properties(self.figure.yaxis[0], axis_label=f"output force ({scale[1]}N)")
+        set_properties(self.figure.yaxis[0], axis_label=f"largest output force ({scale[1]}N)")
         top = [self.figure.y_range.end] * len(self._features.data["top"])
         if list(self._features.data["top"]) != top:
             self._features.data = {**self._features.data, "top": top}

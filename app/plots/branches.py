@@ -16,6 +16,7 @@ from granchain_core.results.regime import modulus_words
 
 from ..format import in_words, short_error
 from .axes import Scale, force_scale, knob_scale
+from .curve import line_pieces
 from .theme import AMBER, GREY, TEAL, VIOLET, Theme
 from .themed import apply_theme, empty_figure, themed
 
@@ -90,9 +91,9 @@ class BranchRows:
         self._curve_shown = True
         self._choose_scales("f", points[-1].frequency, max(point.max_output_force_elastic for point in points))
         places = [self._scaled(point.frequency, point.max_output_force_elastic) for point in points]
-        repeats = [point.regime.period is not None for point in points]
+        runs = [run for run in line_pieces(points) if len(run) > 1 and points[run[0]].regime.period is not None]
         pieces = [[_CURVE_LINE, number, *map(list, zip(*(places[i] for i in run), strict=True))]
-                  for number, run in enumerate(_runs(repeats))]
+                  for number, run in enumerate(runs)]
         return {"rows": {_CURVE: _columns(("x", "y"), places)}, "pieces": pieces,
                 "models": self._fresh({f"legend of {_CURVE}": {"visible": True}})}
 
@@ -132,17 +133,6 @@ class BranchRows:
                 column.append(value)
             last = [point]
         return pieces
-
-
-def _runs(wanted: Sequence[bool]) -> list[list[int]]:
-    """The runs of neighbouring places that are all wanted, each of two or more places."""
-    runs: list[list[int]] = [[]]
-    for index, one in enumerate(wanted):
-        if one:
-            runs[-1].append(index)
-        elif runs[-1]:
-            runs.append([])
-    return [run for run in runs if len(run) > 1]
 
 
 def branches(found: Sequence[Branch], theme: Theme, now: float | None = None, compact: bool = False) -> figure:

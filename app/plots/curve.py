@@ -78,16 +78,35 @@ def curve_marks(start: str) -> dict[str, Any]:
             "line_width": 1.5, "fill_color": FILLS[start]}
 
 
+def line_pieces(points: Sequence[CurvePoint]) -> list[list[int]]:
+    """Runs of neighbouring points, by their places, through which one line goes.
+
+    A line does not connect a periodic point with one that is not periodic: their maxima are not comparable.
+    """
+    pieces: list[list[int]] = []
+    for index, point in enumerate(points):
+        if index and (points[index - 1].regime.period is None) == (point.regime.period is None):
+            pieces[-1].append(index)
+        else:
+            pieces.append([index])
+    return pieces
+
+
 def curve_columns(points: Sequence[CurvePoint], factor: float, larger: int = 0,
                   drawn: str = "max_output_force") -> dict[str, list[Any]]:
     """Columns for a line, its marks and their tooltips.
 
-    The force `drawn` is drawn over `factor` [N], marks `larger` px larger.
+    The force `drawn` is drawn over `factor` [N], marks `larger` px larger. Between two `line_pieces` a row without a
+    force breaks the line.
     """
+    forces = [getattr(p, drawn) / factor for p in points]
+    for piece in reversed(line_pieces(points)[1:]):
+        forces.insert(piece[0], math.nan)
+        points = [*points[:piece[0]], points[piece[0]], *points[piece[0]:]]
     keys = [regime_key(p.regime.name, p.regime.period) for p in points]
     styles = [REGIME_MARKS[key] for key in keys]
     return {
-        "frequency": [p.frequency for p in points], "force": [getattr(p, drawn) / factor for p in points],
+        "frequency": [p.frequency for p in points], "force": forces,
         "marker": [style[0] for style in styles], "colour": [style[1] for style in styles],
         "size": [style[2] + larger for style in styles], "regime": keys,
         "sentence": [_sentence(p.regime) for p in points], **forces_in_words(points)}

@@ -86,7 +86,8 @@ class Decisions:
         and may be taken for one of twice the period: where a part of the period almost repeats it, Newton's method
         finds the orbit and its least period.
 
-        Where Newton's method finds no orbit, an unconfirmed claim is withdrawn and a clear decay from rest is accepted.
+        Where Newton's method finds no orbit near the motion, an unconfirmed claim is withdrawn, and a clear decay from
+        rest is accepted.
         """
         assert regime.period is not None
         unconfirmed = self._carried or not _decays_clearly(regime)
@@ -96,13 +97,12 @@ class Decisions:
         if seen <= _CLEAR_MULTIPLIER and not _may_repeat_sooner(strobes, regime.period):
             return Decision(replace(regime, multiplier=seen))
         orbit = orbit_of(self.scene, regime.period, _state_of(engine), engine.stop)
-        if orbit is None:
+        if orbit is None or orbit.distance_of_motion > NEAR_AN_ORBIT:
             return Decision(replace(regime, name="unsettled", period=None, distance=None) if unconfirmed else regime)
         if orbit.stable:
             return Decision(_on(orbit, regime), orbit.point.x if unconfirmed else None)
         return self._beside(orbit, regime) or Decision(
-            replace(regime, name="unsettled", period=None, distance=None, decay=None, approaches=orbit.period,
-                    multiplier=orbit.modulus))
+            replace(regime, name="unsettled", period=None, distance=None, decay=None))
 
     def _beside(self, orbit: NearbyOrbit, regime: Regime) -> Decision | None:
         """The decision by an orbit near the motion, if it allows one."""
@@ -160,7 +160,9 @@ def regime_without_continuing(engine: Engine, strobes: np.ndarray, regime: Regim
         if _decays_clearly(regime) or scene.N > MOST_BEADS_WITH_MULTIPLIERS:
             return regime
         orbit = orbit_of(scene, regime.period, _state_of(engine), engine.stop)
-        return Regime.unsettled(regime.periods_run) if orbit is None or not orbit.stable else _on(orbit, regime)
+        if orbit is None or not orbit.stable or orbit.distance_of_motion > NEAR_AN_ORBIT:
+            return Regime.unsettled(regime.periods_run)
+        return _on(orbit, regime)
     for orbit in _orbits_beside(engine, strobes):
         if orbit.approached():
             return replace(regime, approaches=orbit.period, multiplier=orbit.modulus)
