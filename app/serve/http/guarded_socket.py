@@ -172,7 +172,10 @@ class GuardedSocket(Guard):
             return
         self._left = True
         session = self.session
-        super().on_close()  # type: ignore[misc]
+        try:
+            super().on_close()  # type: ignore[misc]
+        except AssertionError:  # Bokeh expects a session, which may have been discarded meanwhile
+            self.application.client_lost(self.connection)  # type: ignore[attr-defined]
         if session is not None:
             leave(session)
 
