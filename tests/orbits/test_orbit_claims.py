@@ -7,8 +7,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from granchain_core import scene
 from granchain_core.orbits import orbit
-from granchain_core.orbits.stroboscopic_map import Flow
+from granchain_core.orbits.stroboscopic_map import Flow, StroboscopicMap
 from granchain_core.steady.returns import relative_change
 
 pytestmark = pytest.mark.quick
@@ -33,9 +34,13 @@ def test_liouvilles_formula_is_about_the_product_of_all_multipliers() -> None:
 def test_newtons_method_goes_on_to_the_maps_own_rounding() -> None:
     """For x → (x + 1)/2 a state 1e-8 from the fixed point is not yet accepted."""
 
-    def half(x: np.ndarray) -> Flow:
-        return Flow(0.5 * (x + 1.0), 0.5 * np.eye(len(x)), 0.0, np.zeros((0, 2)))
+    class Half(StroboscopicMap):
+        def __init__(self) -> None:
+            super().__init__(scene("sec2").evolve(N=2), 1)
 
-    x, _, history = orbit._newton(half, np.full(4, 1.0 + 1e-8))  # type: ignore[arg-type]
+        def __call__(self, x: np.ndarray, observer: bool = False, directions: np.ndarray | None = None) -> Flow:
+            return Flow(0.5 * (x + 1.0), 0.5 * np.eye(len(x)), 0.0, np.zeros((0, 2)))
+
+    x, _, history = orbit._newton(Half(), np.full(4, 1.0 + 1e-8))
     assert history[0] == pytest.approx(5e-9, rel=1e-6) and history[-1] <= 1e-11
     assert np.abs(x - 1.0).max() < 1e-14

@@ -25,8 +25,9 @@ _LEAST_CONTRACTION = 1e-3
 #: Columns of `last_check`: period in drive periods, decay per orbit, distance left to the orbit; and their number.
 CHECK_PERIOD, CHECK_DECAY, CHECK_DISTANCE, CHECK_COLUMNS = range(4)
 #: Columns of `fine_record`: the orbit's period and contraction, the coarse run's three largest forces (from FINE_FORCES
-#: on), orbits between two extrapolations, extrapolations so far, 1 if changes grew before one; and their number.
+#: on), orbits between two extrapolations, extrapolations so far, 1 if changes grew before one.
 FINE_PERIOD, FINE_CONTRACTION, FINE_FORCES, FINE_ORBITS_BETWEEN, FINE_EXTRAPOLATIONS, FINE_GREW = 0, 1, 2, 5, 6, 7
+#: [no threshold] Their number.
 FINE_COLUMNS = 8
 #: Columns of `coarse_orbit`: those of `last_check`, slowest decay before an extrapolation (0 without one), drive
 #: periods run; and their number.

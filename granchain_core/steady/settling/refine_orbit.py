@@ -12,20 +12,20 @@ from ..regime_criteria import changes
 from .advance import SettlingRun
 from .reduced_rank import reduced_rank, within_reach
 
-#: Fraction of the error asked for that the integration over an orbit may have, at the first try.
+#: [no threshold] Fraction of the error asked for that the integration over an orbit may have, at the first try.
 INTEGRATION_FRACTION = 0.1
-#: Fraction of the error asked for that the distance left to the orbit may have.
+#: [no threshold] Fraction of the error asked for that the distance left to the orbit may have.
 _DISTANCE_FRACTION = 0.3
-#: An orbit is computed to this relative accuracy at worst, even if the scene asks for less.
+#: [no threshold] An orbit is computed to this relative accuracy at worst, even if the scene asks for less.
 LEAST_ACCURATE = 1e-4
-#: Smallest error of one period that is asked of a method: below it is rounding.
+#: [no threshold] Smallest error of one period that is asked of a method: below it is rounding.
 _LEAST_ERROR = 1e-13
-#: The method is too coarse if a round leaves more than this fraction of the distance.
+#: [no threshold] The method is too coarse if a round leaves more than this fraction of the distance.
 _STALLED_FRACTION = 0.3
 #: [period n] A chain that a finer method leaves farther from its orbit than this is not called periodic: the orbit may
 #: be stable with coarse steps alone. A batch leaves such a chain to be settled alone.
 FARTHEST_FROM_ORBIT = 1e-3
-#: Most rounds; each has as many orbits as one extrapolation uses.
+#: [no threshold] Most rounds; each has as many orbits as one extrapolation uses.
 _MOST_ROUNDS = 12
 
 
