@@ -21,7 +21,7 @@ from ..kernels.flow.velocity_tangent import VelocityTangent, new_velocity_tangen
 from ..kernels.status import EVENTS_PER_CONTACT
 from ..scene import Scene
 from ..scene.refusals import refuse_undriven
-from ..steady.returns import NO_SIZE
+from ..steady.returns import relative_change
 
 #: Tolerance of one step, relative to the largest displacement and w. The map is then accurate enough for Newton's
 #: method to converge to `CONVERGED` (orbit.py), and a chain with its observer is followed to about 1e-11.
@@ -103,10 +103,8 @@ class StroboscopicMap:
         rate: beads that follow a slow drive pass their rest positions at phase 0, and their displacements there are
         rounding.
         """
-        n, sizes = len(x) // 2, np.abs(x).reshape(2, -1).max(axis=1)
-        displacement = max(sizes[0], _LEAST_DISPLACEMENT * sizes[1] / self.engine.scaled.beta)
-        change = np.abs(end - x)
-        return float(max(change[:n].max() / max(NO_SIZE, displacement), change[n:].max() / max(NO_SIZE, sizes[1])))
+        least = _LEAST_DISPLACEMENT * float(np.abs(x[len(x) // 2 :]).max()) / self.engine.scaled.beta
+        return relative_change(end - x, x, least)
 
     def __call__(self, x: np.ndarray, observer: bool = False, directions: np.ndarray | None = None) -> Flow:
         """The flow from x with the derivative, or its product with the columns of `directions` (2N, columns).

@@ -7,19 +7,22 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 #: [no threshold] Stands for a size of zero, by which nothing can be divided: far below any, and no subnormal number.
-NO_SIZE = 1e-300
+_NO_SIZE = 1e-300
 
 
-def sizes(x: np.ndarray) -> np.ndarray:
-    """The largest displacement and the largest w, each for its own half of a state (2N,)."""
+def sizes(x: np.ndarray, least_displacement: float = 0.0) -> np.ndarray:
+    """The sizes of displacements and of w, each for its own half of x (2N,): the largest, of displacements at least
+    `least_displacement`.
+    """
     half = len(x) // 2
-    largest = [max(NO_SIZE, float(np.abs(part).max())) for part in (x[:half], x[half:])]
+    largest = [max(_NO_SIZE, least, float(np.abs(part).max()))
+               for least, part in ((least_displacement, x[:half]), (0.0, x[half:]))]
     return np.repeat(largest, half)
 
 
-def relative_change(change: np.ndarray, x: np.ndarray) -> float:
-    """The larger of the changes of displacements and of w, each relative to its largest entry in x (2N,)."""
-    return float(np.abs(change / sizes(x)).max())
+def relative_change(change: np.ndarray, x: np.ndarray, least_displacement: float = 0.0) -> float:
+    """The larger of the changes of displacements and of w, each relative to its size in x (2N,) (`sizes`)."""
+    return float(np.abs(change / sizes(x, least_displacement)).max())
 
 
 def shorter_periods(after: Callable[[int], np.ndarray], x: np.ndarray, period: int, tolerance: float) -> Iterator[int]:

@@ -96,7 +96,7 @@ ORBITS = (
     Mutant("stable-by-real-part", _ORBIT, "return bool(np.abs(self.multipliers).max() < 1.0)",
            "return bool(self.multipliers.real.max() < 1.0)", "an orbit that alternates away is called stable",
            ("tests/orbits/test_modes.py", "-k", "doubling_left_unstable")),
-    Mutant("residual-of-displacements", "steady/returns.py", "float(np.abs(change / sizes(x)).max())",
+    Mutant("residual-of-displacements", "steady/returns.py", "float(np.abs(change / sizes(x, least_displacement)).max())",
            "float(np.abs(change / sizes(x))[: len(x) // 2].max())",
            "an orbit's velocities need not come back", k.ORBIT_CLAIMS),
     Mutant("liouville-of-leading", _ORBIT, "float(np.sum(np.log(np.abs(multipliers))))", "float(np.log(np.abs(multipliers[0])))",

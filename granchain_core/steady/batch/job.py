@@ -126,6 +126,9 @@ class BatchJob:
         maxima, jumps, unresolved = batch.maxima(member, regime.period)
         farther = max(distance, regime.distance)
         regime = _with_period(regime, int(batch.state.last_check[member, CHECK_PERIOD]))
+        if not distance <= FARTHEST_FROM_ORBIT:  # settled alone; a NaN is not near
+            return SteadyState(self.scene, maxima * self.scaled.scales.force, replace(regime, distance=distance), None,
+                               self.scaled.to_si(y), number=self.number, undecided=True)
         multiplier = self._multiplier(regime, y, batch.grew(member), batch.stop)
         regime = replace(regime, distance=distance, multiplier=multiplier)
         left = force_distances(farther, self.scaled, maxima, y)
@@ -136,9 +139,9 @@ class BatchJob:
             located, located_errors = self._located_maxima(y, regime, farther, batch.stop)
             maxima, errors = np.where(rough, located, maxima), np.where(rough, located_errors, errors)
         maxima = maxima * self.scaled.scales.force
-        unsure = multiplier is not None and multiplier >= _LARGEST_SURE_MULTIPLIER
+        undecided = multiplier is not None and multiplier >= _LARGEST_SURE_MULTIPLIER
         return SteadyState(self.scene, maxima, regime, errors, self.scaled.to_si(y), number=self.number,
-                           undecided=unsure or not distance <= FARTHEST_FROM_ORBIT)
+                           undecided=undecided)
 
     def _multiplier(self, regime: Regime, y: np.ndarray, grew: bool, stop: Stop) -> float | None:
         """Largest |μ| of an orbit through the scaled state y that decays slowly, or near which changes `grew`.

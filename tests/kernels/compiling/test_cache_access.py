@@ -23,6 +23,18 @@ def mode_with(umask: int, folder: Path) -> int:
     return files.path("one").stat().st_mode & 0o777
 
 
+def chosen_in(base: Path, monkeypatch: pytest.MonkeyPatch, writable: bool = True) -> Path | None:
+    """The folder of kernels where the user chose `base`; a path whose text is the reason, where it is not used."""
+    def denied(**_: Any) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setenv("GRANCHAIN_CACHE", str(base))
+    if not writable:
+        monkeypatch.setattr(tempfile, "TemporaryFile", denied)
+    monkeypatch.setattr(cache_folder, "_temporary_folder", lambda problem: Path(problem))
+    return cache_folder.cache_folder()
+
+
 def test_what_one_user_compiled_another_can_read(tmp_path: Path) -> None:
     """An image is warmed by root and run by somebody else: files have the rights that the user's umask leaves."""
     assert mode_with(0o022, tmp_path) == 0o644
@@ -104,20 +116,13 @@ def test_kernels_in_a_folder_are_run_if_nobody_else_can_have_written_them(
     if whose == "another user's" and os.getuid() != 0:
         pytest.skip("only root can give a folder away")
 
-    def denied(**_: Any) -> None:
-        raise PermissionError(13, "Permission denied")
-
     folder = tmp_path / f"kernels-{cache_folder.sources_hash()}"
     folder.mkdir()
     (folder / "one.nbc").write_bytes(b"")
     folder.chmod({"anybody may write": 0o757, "the group may write": 0o775}.get(whose, 0o755))
     if whose == "another user's":
         os.chown(folder, 12345, 12345)
-    monkeypatch.setenv("GRANCHAIN_CACHE", str(tmp_path))
-    if not writable:
-        monkeypatch.setattr(tempfile, "TemporaryFile", denied)
-    monkeypatch.setattr(cache_folder, "_temporary_folder", lambda problem: Path(problem))
-    chosen = cache_folder.cache_folder()
+    chosen = chosen_in(tmp_path, monkeypatch, writable)
     assert (chosen == folder) is (whose == "ours")
 
 
@@ -127,20 +132,13 @@ def test_kernels_in_a_folder_are_run_if_nobody_else_can_have_written_them(
 def test_kernels_are_run_if_nobody_else_can_put_another_folder_in_their_place(
         rights: int, safe: bool, writable: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Whoever may write to the folder around them could rename them after they were looked at."""
-    def denied(**_: Any) -> None:
-        raise PermissionError(13, "Permission denied")
-
     base = tmp_path / "base"
     folder = base / f"kernels-{cache_folder.sources_hash()}"
     folder.mkdir(parents=True)
     (folder / "one.nbc").write_bytes(b"")
     folder.chmod(0o755)
     base.chmod(rights)
-    monkeypatch.setenv("GRANCHAIN_CACHE", str(base))
-    if not writable:
-        monkeypatch.setattr(tempfile, "TemporaryFile", denied)
-    monkeypatch.setattr(cache_folder, "_temporary_folder", lambda problem: Path(problem))
-    chosen = cache_folder.cache_folder()
+    chosen = chosen_in(base, monkeypatch, writable)
     assert (chosen == folder) is safe
     assert safe or not writable or str(chosen) == f"others may write to {base}"
 
@@ -149,9 +147,6 @@ def test_kernels_are_run_if_nobody_else_can_put_another_folder_in_their_place(
 def test_a_link_in_place_of_a_folder_of_kernels_is_not_followed(
         writable: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """In a sticky folder another user may have made it, and let it point elsewhere after it was looked at."""
-    def denied(**_: Any) -> None:
-        raise PermissionError(13, "Permission denied")
-
     base, own = tmp_path / "base", tmp_path / "own"
     for folder in (base, own):
         folder.mkdir(mode=0o755)
@@ -161,11 +156,7 @@ def test_a_link_in_place_of_a_folder_of_kernels_is_not_followed(
     link = base / f"kernels-{cache_folder.sources_hash()}"
     link.symlink_to(own)
     (base / "kernels-000000000000").symlink_to(own)  # not found by the fingerprint either
-    monkeypatch.setenv("GRANCHAIN_CACHE", str(base))
-    if not writable:
-        monkeypatch.setattr(tempfile, "TemporaryFile", denied)
-    monkeypatch.setattr(cache_folder, "_temporary_folder", lambda problem: Path(problem))
-    chosen = str(cache_folder.cache_folder())
+    chosen = str(chosen_in(base, monkeypatch, writable))
     assert chosen == f"{link} is a link" if writable else "Permission denied" in chosen
 
 
@@ -189,9 +180,6 @@ def test_a_link_in_place_of_the_chosen_folder_is_followed_once(place: str, tmp_p
 def test_nobody_else_can_rename_a_folder_above_the_chosen_one(
         rights: int, safe: bool, writable: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Then another could be put in its place, with another cache in it."""
-    def denied(**_: Any) -> None:
-        raise PermissionError(13, "Permission denied")
-
     above = tmp_path / "above"
     base = above / "between" / "base"
     folder = base / f"kernels-{cache_folder.sources_hash()}"
@@ -200,11 +188,7 @@ def test_nobody_else_can_rename_a_folder_above_the_chosen_one(
     for one in (above / "between", base, folder):
         one.chmod(0o755)
     above.chmod(rights)
-    monkeypatch.setenv("GRANCHAIN_CACHE", str(base))
-    if not writable:
-        monkeypatch.setattr(tempfile, "TemporaryFile", denied)
-    monkeypatch.setattr(cache_folder, "_temporary_folder", lambda problem: Path(problem))
-    chosen = cache_folder.cache_folder()
+    chosen = chosen_in(base, monkeypatch, writable)
     assert (chosen == folder) is safe
     assert safe or not writable or str(chosen) == f"others may write to {above}"
 
@@ -214,9 +198,7 @@ def test_a_folder_above_the_chosen_one_is_not_another_users(tmp_path: Path, monk
     above = tmp_path / "above"
     (above / "base").mkdir(parents=True, mode=0o755)
     os.chown(above, 12345, 12345)
-    monkeypatch.setenv("GRANCHAIN_CACHE", str(above / "base"))
-    monkeypatch.setattr(cache_folder, "_temporary_folder", lambda problem: Path(problem))
-    assert str(cache_folder.cache_folder()) == f"others may write to {above}"
+    assert str(chosen_in(above / "base", monkeypatch)) == f"others may write to {above}"
 
 
 def test_the_users_own_cache_is_closed_to_others(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -237,6 +219,4 @@ def test_kernels_in_a_folder_of_another_owner_are_not_run(tmp_path: Path, monkey
     base.mkdir()
     os.chown(base, 12345, 12345)
     base.chmod(0o1755)
-    monkeypatch.setenv("GRANCHAIN_CACHE", str(base))
-    monkeypatch.setattr(cache_folder, "_temporary_folder", lambda problem: Path(problem))
-    assert str(cache_folder.cache_folder()) == f"others may write to {base}"
+    assert str(chosen_in(base, monkeypatch)) == f"others may write to {base}"

@@ -14,6 +14,7 @@ from missing_attribute import hide
 from panel.custom import JSComponent
 from panel.reactive import Reactive, Syncable
 
+from app import library_internals
 from app.parts.status.status_line import StatusLine
 from app.parts.toolkit.component import Component
 from app.serve.monkeypatches import panel_overrides
@@ -78,6 +79,7 @@ def test_an_event_of_a_part_is_handled_with_and_without_panels_private_method(mo
 def test_an_event_of_a_part_is_handled_by_panel_where_that_has_no_set_curdoc(monkeypatch: pytest.MonkeyPatch) -> None:
     """The module is imported without it, and leaves the event to Panel."""
     monkeypatch.delattr(sys.modules["panel.io.state"], "set_curdoc")
+    monkeypatch.setattr(library_internals, "_TABLES", dict(library_internals._TABLES))  # the copy enters its own table
     spec = importlib.util.spec_from_file_location("app.serve.monkeypatches.without_set_curdoc", panel_overrides.__file__)
     assert spec is not None and spec.loader is not None
     without = importlib.util.module_from_spec(spec)
