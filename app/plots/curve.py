@@ -99,17 +99,21 @@ def curve_columns(points: Sequence[CurvePoint], factor: float, larger: int = 0,
     The force `drawn` is drawn over `factor` [N], marks `larger` px larger. Between two `line_pieces` a row without a
     force breaks the line.
     """
-    forces = [getattr(p, drawn) / factor for p in points]
-    for piece in reversed(line_pieces(points)[1:]):
-        forces.insert(piece[0], math.nan)
-        points = [*points[:piece[0]], points[piece[0]], *points[piece[0]:]]
-    keys = [regime_key(p.regime.name, p.regime.period) for p in points]
+    shown: list[CurvePoint] = []
+    forces: list[float] = []
+    for piece in line_pieces(points):
+        if shown:
+            shown.append(points[piece[0]])
+            forces.append(math.nan)
+        shown += (points[i] for i in piece)
+        forces += (getattr(points[i], drawn) / factor for i in piece)
+    keys = [regime_key(p.regime.name, p.regime.period) for p in shown]
     styles = [REGIME_MARKS[key] for key in keys]
     return {
-        "frequency": [p.frequency for p in points], "force": forces,
+        "frequency": [p.frequency for p in shown], "force": forces,
         "marker": [style[0] for style in styles], "colour": [style[1] for style in styles],
         "size": [style[2] + larger for style in styles], "regime": keys,
-        "sentence": [_sentence(p.regime) for p in points], **forces_in_words(points)}
+        "sentence": [_sentence(p.regime) for p in shown], **forces_in_words(shown)}
 
 
 def curve_tooltips(start: str) -> list[tuple[str, str]]:
