@@ -67,7 +67,7 @@ def points(count: int, seed: int, base: str) -> Iterator[Point]:
     """Periodic points among `count` random scenes, judged."""
     rng = np.random.default_rng(seed)
     for r in batch_results((random_scene(rng, base) for _ in range(count)), Stop()):
-        if r.regime.name != "periodic" or r.failure:
+        if r.regime.name != "periodic" or r.failure or r.undecided:
             continue
         top = true_forces(r.scene, r.state, r.regime.period)
         if top is not None:

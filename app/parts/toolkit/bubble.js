@@ -28,8 +28,16 @@ function hideIfMoved() {
 // The explained element is gone. Explains the one of `others` that has its place; without one the bubble goes.
 export function explainSuccessor(others, meaningOf) {
   const successor = others.find(isThere);
-  if (successor) showMeaning(successor, meaningOf(successor));
-  else hideMeaning();
+  if (!successor) {
+    hideMeaning();
+    return;
+  }
+  showMeaning(successor, meaningOf(successor));
+  // A pointer that moves away before the browser has noticed the successor does not leave it.
+  const moved = (event) => {
+    if (explained === successor && !event.composedPath().includes(successor)) hideMeaning();
+  };
+  document.addEventListener("pointermove", moved, { capture: true, once: true });
 }
 
 // Shows `words` below `anchor`, or above it if there is more room, with `controls` under the words.
