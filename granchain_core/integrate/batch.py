@@ -28,7 +28,7 @@ from ..kernels.batch.unequal import Unequal
 from ..kernels.batch_size import BATCH_SIZE
 from ..kernels.compiling.by_address import address_of
 from ..kernels.compiling.entry import entry, type_guard
-from ..kernels.compiling.jit import unknown_slots
+from ..kernels.effects.registry import unknown_slots
 from ..kernels.equations.motion import Slots
 from ..kernels.forces.peaks import BATCH_PEAKS
 from ..kernels.simd.vector import aligned

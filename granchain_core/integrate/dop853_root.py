@@ -9,10 +9,10 @@ import numpy as np
 from ..errors import BadInput
 from ..execution.stop import Stop
 from ..kernels.compiling.entry import Entries, types_of
-from ..kernels.compiling.jit import unknown_slots
 from ..kernels.dop853.step import ALL_STAGES, Dop853, Dop853Workspace
 from ..kernels.dop853_root.chain import STATE_ROWS, Dop853RootWorkspace, Stages
 from ..kernels.dop853_root.run import run_dop853_root
+from ..kernels.effects.registry import unknown_slots
 from ..kernels.error_control.run import SampleRange
 from ..kernels.forces.largest import new_log
 from ..kernels.samples import KernelIO, Samples

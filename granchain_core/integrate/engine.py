@@ -63,6 +63,15 @@ class Engine:
         """Go on with other values or effects of the same chain; the step stays what it is."""
         self.stepper.use(scaled)
 
+    def move(self, scaled: ScaledChain, steps: int) -> None:
+        """Become the engine of another scene with the same effects, with a fixed step. Next comes a start.
+
+        `steps` is their number in a period. The arrays are used again: where many orbits are followed for a period
+        each, a new engine would take as long.
+        """
+        self.stepper.move(scaled.own(), steps)
+        self.grid = self.stepper.grid
+
     # --- state ---------------------------------------------------------------------------------------------
 
     def start(self, state: State) -> None:

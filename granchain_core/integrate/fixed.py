@@ -18,8 +18,8 @@ import numpy as np
 
 from ..execution.stop import Stop
 from ..kernels.compiling.entry import Entries, types_of
-from ..kernels.compiling.jit import unknown_slots
 from ..kernels.effects.driver import driver_displacement, driver_velocity
+from ..kernels.effects.registry import unknown_slots
 from ..kernels.equations.chain_in_vector import CHAIN_WIDTHS
 from ..kernels.equations.motion import Trajectory, evaluate_at_phase
 from ..kernels.forces.largest import new_log
@@ -106,13 +106,15 @@ class FixedStep:
         self.drive = self._driver_table(scaled)
         self.work = self.work._replace(forces=scaled.forces(), simd=self.new_simd_workspace())
 
-    def move(self, scaled: ScaledChain) -> None:
-        """Become the stepper of another scene with the same effects and as many steps a period."""
+    def move(self, scaled: ScaledChain, steps: int) -> None:
+        """Become the stepper of another scene with the same effects, with this number of steps a period."""
+        self.method = self.method._replace(steps_per_period=steps)
+        self._every = self._every * steps // self.grid
+        self.grid, self.h = steps, scaled.period / steps
         if scaled.slots.chain is self.scaled.slots.chain:  # it differs only by its frequency: `scale_like`
             self.scaled, self.drive = scaled, self._driver_table(scaled)
         else:
             self.use(scaled)
-        self.h = scaled.period / self.grid
 
     def prepare(self, y: np.ndarray) -> None:
         """Begin from a new state: nothing is remembered of the last."""

@@ -6,7 +6,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .compiling.jit import brief_kernel, by_slot, internal
+from .compiling.dispatch import by_slot
+from .compiling.jit import brief_kernel, internal
 from .effects.energy_account import EnergyAccount, account_ends
 from .equations.motion import contact_force, stored_energy
 from .forces.largest import ForceLog

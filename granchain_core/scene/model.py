@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from typing import Any
 
 from ..errors import BadInput
@@ -114,11 +114,19 @@ class Scene(Description):
             place = max(i for i, _ in special)
             raise BadInput(f"number of beads N = {checked['N']} leaves no bead {place}, which is special in scene "
                            f"{self.name!r}; the nearest valid value is {place}.")
-        new = replace(self, **checked)  # type: ignore[arg-type]  # checked above against the table
+        new = _with_values(self, checked)
         if kappa is not None:
             k = float(kappa) * new.K * new.A0 ** (EXPONENT - 1.0)
-            new = replace(new, k=QUANTITIES["k"].check(k))  # type: ignore[arg-type]
+            new = _with_values(new, {"k": QUANTITIES["k"].check(k)})
         return new
+
+
+def _with_values(scene: Scene, values: dict[str, Any]) -> Scene:
+    """`dataclasses.replace`, in a third of its time: a curve makes a scene for each point, a map for each cell."""
+    new = object.__new__(type(scene))
+    vars(new).update(vars(scene) | values)
+    new.__post_init__()
+    return new
 
 
 Scene.__doc__ = with_knobs(Scene.__doc__)

@@ -9,7 +9,7 @@ import pytest
 from documents import ROOT, blocks
 from edited_tree import copied, edited_copy, files_of, follow, import_with
 
-from granchain_core.kernels.compiling.jit import in_simd_kernels
+from granchain_core.kernels.effects.registry import in_simd_kernels
 
 PAGE = ROOT / "docs" / "add-an-effect.md"
 QUADRATIC = ROOT / "docs" / "add-a-quadratic-drag.md"

@@ -30,7 +30,7 @@ from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.batch import Batch
 from granchain_core.integrate.scaling import scale_chain
 from granchain_core.kernels.batch.run import batch_steps
-from granchain_core.kernels.compiling.jit import unknown_slots
+from granchain_core.kernels.effects.registry import unknown_slots
 from granchain_core.kernels.flow.attempt import FlowProblem
 from granchain_core.kernels.flow.run import run_flow
 from granchain_core.kernels.flow.tangent import new_tangent

@@ -17,8 +17,8 @@ from granchain_core.integrate.batch import NEVER, Batch, can_share_batch
 from granchain_core.integrate.dop853_root import Dop853RootStepper
 from granchain_core.integrate.methods import RK4_SPLIT
 from granchain_core.integrate.scaling import scale_chain
-from granchain_core.kernels.compiling.jit import unknown_slots
 from granchain_core.kernels.effects.driver import PrescribedMotion
+from granchain_core.kernels.effects.registry import unknown_slots
 from granchain_core.kernels.rk4.long_chain import LongChain
 from granchain_core.scene.effects import EFFECTS
 from granchain_core.scene.state import rest

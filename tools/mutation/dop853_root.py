@@ -44,7 +44,7 @@ DOP853_ROOT = (
     Mutant("dop853-root-no-jump", _RUN, "record_closing(slots.dissipation, at(begin.rates.rate, end.contact)",
            "record_closing(slots.dissipation, 0.0 * at(begin.rates.rate, end.contact)", "no force jumps when a contact closes",
            k.ROOT_FORCES),
-    Mutant("simd-mark-for-all", "kernels/compiling/jit.py", "known = _IN_SIMD_KERNELS[folder] | {type(None)}",
+    Mutant("simd-mark-for-all", "kernels/effects/registry.py", "known = _IN_SIMD_KERNELS[folder] | {type(None)}",
            "known = set().union(*_IN_SIMD_KERNELS.values()) | {type(None)}",
            "an effect that one SIMD kernel knows is silently left out by the others", k.MARKS),
 )

@@ -12,7 +12,8 @@ and subtracting them raises the order of RK4 in a batch from 2 to about 3 (docs/
 
 from __future__ import annotations
 
-from ..compiling.jit import by_slot, inline_llvm
+from ..compiling.dispatch import by_slot
+from ..compiling.jit import inline_llvm
 from ..effects.dissipation import LAWS, exponent, primitive_factor, primitive_power
 from ..effects.preload import batch_overlap
 from ..simd.functions import above_zero, clip, gate, larger, root_by_series

@@ -10,7 +10,8 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from ..batch_size import BATCH_SIZE
-from ..compiling.jit import by_slot, by_type_inlined, inline_llvm
+from ..compiling.dispatch import by_slot, by_type_inlined
+from ..compiling.jit import inline_llvm
 from ..effects.dissipation import JUMP_LAWS, LAWS, SMOOTH_LAWS, dashpot_force, unit_primitive
 from ..effects.preload import batch_overlap
 from ..equations.body_forces import force_on_bead

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiling.jit import by_slot
+from ..compiling.dispatch import by_slot
 from ..simd.vector import load_like
 
 

@@ -20,7 +20,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..compiling.jit import by_slot, inline_llvm
+from ..compiling.dispatch import by_slot
+from ..compiling.jit import inline_llvm
 from ..effects.contact import positive_part
 from ..effects.dissipation import LAWS, unit_primitive
 from ..effects.driver import driver_acceleration

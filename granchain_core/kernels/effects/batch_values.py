@@ -7,7 +7,7 @@ file).
 
 from __future__ import annotations
 
-from ..compiling.jit import by_slot
+from ..compiling.dispatch import by_slot
 
 
 @by_slot

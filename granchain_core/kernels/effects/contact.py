@@ -13,8 +13,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiling.jit import by_slot, in_simd_kernels, inline_llvm, internal
+from ..compiling.dispatch import by_slot
+from ..compiling.jit import inline_llvm, internal
 from ..simd.functions import clip, root
+from .registry import in_simd_kernels
 
 
 @in_simd_kernels("rk4", "batch", "dop853_root")

@@ -16,11 +16,13 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from ..compiling.jit import by_slot, by_slot_inlined, in_simd_kernels, inline_llvm, require_terms
+from ..compiling.dispatch import by_slot, by_slot_inlined, require_terms
+from ..compiling.jit import inline_llvm
 from ..simd.functions import clip, gate, root
 from ..simd.vector import load_batch
 from ..step_ends import TINY
 from .batch_values import batch_values
+from .registry import in_simd_kernels
 
 
 @by_slot_inlined

@@ -16,7 +16,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiling.jit import by_slot, in_simd_kernels
+from ..compiling.dispatch import by_slot
+from .registry import in_simd_kernels
 
 #: Where an absent driver or wall stands, in length units: too far to touch, near enough not to overflow.
 BODY_FAR_AWAY = 1e30

@@ -15,7 +15,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from ..compiling.jit import by_slot, internal
+from ..compiling.dispatch import by_slot
+from ..compiling.jit import internal
 from .contact import elastic_force, positive_part
 from .dissipation import times_primitive
 from .driver import driver_acceleration

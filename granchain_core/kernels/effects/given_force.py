@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiling.jit import by_slot
+from ..compiling.dispatch import by_slot
 from .dissipation import put_prescribed_primitive
 from .driver import (
     BODY_FAR_AWAY,

@@ -10,9 +10,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiling.jit import by_slot, in_simd_kernels
+from ..compiling.dispatch import by_slot
 from ..simd.vector import load_like
 from .batch_values import batch_values
+from .registry import in_simd_kernels
 
 
 @in_simd_kernels("rk4", "batch", "dop853_root")

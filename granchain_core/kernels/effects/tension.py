@@ -17,7 +17,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiling.jit import by_slot, internal
+from ..compiling.dispatch import by_slot
+from ..compiling.jit import internal
 from .contact import elastic_energy, positive_part
 from .dissipation import damping, dashpot_force, primitive, put_primitive
 from .preload import overlap

@@ -10,7 +10,8 @@ Each term is given the bead's number i, 1 to N, for values that differ from bead
 
 from __future__ import annotations
 
-from ..compiling.jit import by_slot, inline_llvm, internal
+from ..compiling.dispatch import by_slot
+from ..compiling.jit import inline_llvm, internal
 from ..effects.energy_account import EnergyAccount
 from ..effects.foundation import add_foundation_force, add_foundation_slope, foundation_energy
 

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from ..compiling.jit import by_slot, by_type, inline_llvm
+from ..compiling.dispatch import by_slot, by_type
+from ..compiling.jit import inline_llvm
 from ..effects.contact import positive_part
 from ..effects.dissipation import LAWS, unit_primitive
 from ..effects.preload import row_overlap, row_values

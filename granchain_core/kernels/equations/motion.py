@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..compiling.jit import brief_kernel, check_effects, inline_llvm, internal
+from ..compiling.jit import brief_kernel, inline_llvm, internal
 from ..effects.batch_values import batch_values
 from ..effects.contact import closed_overlap, elastic_energy, elastic_force, positive_part
 from ..effects.dissipation import dashpot_force, v_from_w, w_from_v, write_primitive
@@ -28,6 +28,7 @@ from ..effects.driver import driver_displacement, driver_velocity
 from ..effects.energy_account import account_rates
 from ..effects.given_force import prescribe_force, prescribe_primitive
 from ..effects.preload import overlap
+from ..effects.registry import check_effects
 from ..effects.tension import cut_tension, unless_force_free, write_force_free_primitive
 from .body_forces import account_for_bodies, force_on_bead, stored_on_bead
 

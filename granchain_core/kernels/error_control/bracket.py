@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from ..compiling.jit import by_type, inline_numba, internal
+from ..compiling.dispatch import by_type
+from ..compiling.jit import inline_numba, internal
 
 #: Factor by which a golden section shrinks the bracket.
 _RATIO = 0.6180339887498949

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiling.jit import by_slot
+from ..compiling.dispatch import by_slot
 from ..effects.contact import positive_part
 from ..effects.dissipation import LAWS, power
 from ..effects.energy_account import add_to_account, ends_of

@@ -7,7 +7,8 @@ on the dense output, the step is repeated so that it ends just past it, and the 
 
 from __future__ import annotations
 
-from ..compiling.jit import by_slot, inline_numba, internal
+from ..compiling.dispatch import by_slot
+from ..compiling.jit import inline_numba, internal
 from ..effects.preload import overlap
 from ..effects.tension import TensionCut
 from ..status import DONE, EVALUATIONS, EVENTS, STEPS

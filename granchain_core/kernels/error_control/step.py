@@ -17,7 +17,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..compiling.jit import by_type, inline_numba, internal, kernel
+from ..compiling.dispatch import by_type
+from ..compiling.jit import inline_numba, internal, kernel
 from ..effects.driver import driver_displacement, driver_velocity
 from ..effects.preload import overlap
 from ..equations.motion import motion

@@ -12,7 +12,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..compiling.jit import by_slot, inline_numba, internal
+from ..compiling.dispatch import by_slot
+from ..compiling.jit import inline_numba, internal
 from ..dop853.step import combine, dense_coefficients, error_norm
 from ..dop853.tableau import ALL_STAGES, DENSE_EVALUATIONS, STAGES, C
 from ..effects.preload import overlap

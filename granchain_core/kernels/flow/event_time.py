@@ -15,7 +15,8 @@ from __future__ import annotations
 from math import sqrt
 from typing import NamedTuple
 
-from ..compiling.jit import by_slot, internal
+from ..compiling.dispatch import by_slot
+from ..compiling.jit import internal
 from ..effects.dissipation import LAWS, exponent
 from ..error_control.step import evaluate
 

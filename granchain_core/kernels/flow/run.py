@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compiling.jit import by_slot, internal, kernel
+from ..compiling.dispatch import by_slot
+from ..compiling.jit import internal, kernel
 from ..effects.preload import overlap
 from ..equations.motion import copy
 from ..error_control.step import evaluate, new_scale

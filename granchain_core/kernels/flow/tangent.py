@@ -16,7 +16,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiling.jit import by_slot, by_slot_inlined, inline_llvm, inline_numba, internal
+from ..compiling.dispatch import by_slot, by_slot_inlined
+from ..compiling.jit import inline_llvm, inline_numba, internal
 from ..dop853.tableau import STAGES, A, C
 from ..effects.contact import elastic_slope, positive_part
 from ..effects.dissipation import LAWS, damping

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from ..compiling.jit import by_slot, inline_llvm, internal
+from ..compiling.dispatch import by_slot
+from ..compiling.jit import inline_llvm, internal
 from ..effects.dissipation import JUMP_LAWS, SMOOTH_LAWS
 from ..effects.preload import overlap
 from ..simd.functions import clip, root

@@ -14,7 +14,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiling.jit import by_slot, inline_numba, internal
+from ..compiling.dispatch import by_slot
+from ..compiling.jit import inline_numba, internal
 from ..contact_cubic import hermite_turn, hermite_value
 from ..effects.contact import elastic_force, elastic_slope, positive_part
 from ..effects.dissipation import JUMP_LAWS, SMOOTH_LAWS, closing_force, dashpot_force, dashpot_slope

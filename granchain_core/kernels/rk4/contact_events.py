@@ -10,7 +10,8 @@ from __future__ import annotations
 
 from math import copysign, sqrt
 
-from ..compiling.jit import by_slot, inline_llvm, inline_numba, internal
+from ..compiling.dispatch import by_slot
+from ..compiling.jit import inline_llvm, inline_numba, internal
 from ..contact_cubic import contact_root
 from ..effects.contact import three_halves
 from ..effects.dissipation import JUMP_LAWS, SMOOTH_LAWS, exponent, primitive_factor, primitive_power

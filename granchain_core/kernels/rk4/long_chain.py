@@ -11,7 +11,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..compiling.jit import by_slot, inline_numba, internal
+from ..compiling.dispatch import by_slot
+from ..compiling.jit import inline_numba, internal
 from ..effects.contact import elastic_force, positive_part
 from ..effects.dissipation import LAWS, dashpot_force, primitive
 from ..effects.preload import batch_overlap

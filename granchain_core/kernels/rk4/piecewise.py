@@ -10,7 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiling.jit import by_slot, kernel
+from ..compiling.dispatch import by_slot
+from ..compiling.jit import kernel
 from ..effects.driver import PrescribedMotion, driver_displacement, driver_velocity
 from ..effects.given_force import Sampled
 from ..equations.motion import Trajectory, motion

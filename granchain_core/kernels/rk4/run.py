@@ -6,7 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiling.jit import by_slot_inlined, internal, kernel
+from ..compiling.dispatch import by_slot_inlined
+from ..compiling.jit import internal, kernel
 from ..effects.contact import elastic_force, positive_part
 from ..effects.preload import overlap
 from ..equations.motion import contact_force, motion

@@ -11,7 +11,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..compiling.jit import by_slot, by_type_inlined, inline_numba, internal
+from ..compiling.dispatch import by_slot, by_type_inlined
+from ..compiling.jit import inline_numba, internal
 from ..contact_cubic import turns
 from ..effects.driver import driver_displacement, driver_velocity
 from ..effects.energy_account import EnergyAccount

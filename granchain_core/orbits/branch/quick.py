@@ -11,10 +11,8 @@ import numpy as np
 
 from ...execution.stop import Stop
 from ...integrate import Engine, fixed_step_setting
-from ...integrate.fixed import FixedStep
 from ...integrate.scaling import ScaledChain, scale_like
-from ...kernels.compiling.jit import unknown_slots
-from ...kernels.rk4.step import Rk4Split
+from ...kernels.effects.registry import unknown_slots
 from ...scene import Scene
 
 #: Steps in place of one default step.
@@ -40,12 +38,7 @@ class QuickMap:
         if self._engine is None:
             self._engine = Engine(scene, fixed_step_setting(), 1, stop=self.stop)
         engine, scaled = self._engine, scale_like(self._engine.scaled, scene)
-        if engine.grid == steps:
-            engine.stepper.move(scaled)
-        else:
-            engine.stepper = FixedStep(Rk4Split(steps), scaled, 1, simd=True)
-            engine.stepper.pause = engine.stop.pause
-            engine.grid = steps
+        engine.move(scaled, steps)
         engine.start_scaled(x)
         engine.periods(self.periods, watch=False)
         return engine.scaled.beads_of(engine.y)

@@ -117,7 +117,7 @@ class BatchJob:
         """Whether the budget of steps allows another measurement."""
         return self.periods_run + EXAMINED_AFTER < self.affordable_periods
 
-    def fine_result(self, batch: Batch, member: int) -> SteadyState:
+    def fine_result(self, batch: Batch, member: int, orbits: LocatedOrbits) -> SteadyState:
         """The result of the finer run. Raises `Cancelled`."""
         assert self.coarse is not None
         regime, before = self.coarse
@@ -136,7 +136,7 @@ class BatchJob:
         rough = (jumps > AT_A_JUMP * maxima[:2]) | (HIGHEST * unresolved > maxima[:2])
         if rough.any():
             rough = np.append(rough, rough[1])
-            located, located_errors = self._located_maxima(y, regime, farther, batch.stop)
+            located, located_errors = orbits.maxima(self.scaled, y, regime, farther)
             maxima, errors = np.where(rough, located, maxima), np.where(rough, located_errors, errors)
         maxima = maxima * self.scaled.scales.force
         undecided = multiplier is not None and multiplier >= _LARGEST_SURE_MULTIPLIER
@@ -154,20 +154,37 @@ class BatchJob:
             return None
         return seen_modulus(self.scene, regime.period, self.scaled.beads_of(y), stop, refine=FINE_STEPS_PER_COARSE)
 
-    def _located_maxima(self, y: np.ndarray, regime: Regime, distance: float,
-                        stop: Stop) -> tuple[np.ndarray, np.ndarray]:
-        """Largest forces (3,) on the orbit through the scaled state y with located events, and their relative errors.
 
-        A batch steps across events, so its jumps have an error of the order of the step. A second orbit with half the
-        step shows how much the forces still change between the batch's orbit and this method's orbit, and how much the
-        forces depend on the step at a jump, where the order is uneven.
+class LocatedOrbits:
+    """Largest forces on orbits that a batch found, computed with located events.
+
+    A batch steps across events, so its jumps have an error of the order of the step. A second orbit with half the step
+    shows how much the forces still change between the batch's orbit and this method's orbit, and how much the forces
+    depend on the step at a jump, where the order is uneven.
+    """
+
+    def __init__(self, scaled: ScaledChain, stop: Stop) -> None:
+        self._scaled, self._stop = scaled, stop
+
+    @functools.cached_property
+    def _engines(self) -> list[Engine]:
+        """One engine for each step."""
+        return [Engine(self._scaled.scene, setting, 1, stop=self._stop, scaled=self._scaled)
+                for setting in (_LOCATED_SETTING, _LOCATED_SETTING.finer())]
+
+    def maxima(self, scaled: ScaledChain, y: np.ndarray, regime: Regime,
+               distance: float) -> tuple[np.ndarray, np.ndarray]:
+        """Largest forces (3,) on the periodic orbit of a chain through its scaled state y, and their relative errors.
+
+        Raises `Cancelled`, `ComputationError`.
         """
         assert regime.period is not None
-        engine = Engine(self.scene, _LOCATED_SETTING, 1, stop=stop, scaled=self.scaled)
-        engine.start_scaled(self.scaled.beads_of(y))
-        first = engine.advance_and_find_largest(regime.period)
-        finer = Engine(self.scene, _LOCATED_SETTING.finer(), 1, stop=stop, scaled=self.scaled)
-        finer.start(engine.state)
+        for engine in self._engines:
+            engine.move(scaled, engine.setting.steps_per_period(scaled, 1))
+        coarse, finer = self._engines
+        coarse.start_scaled(scaled.beads_of(y))
+        first = coarse.advance_and_find_largest(regime.period)
+        finer.start_scaled(scaled.beads_of(coarse.y))
         maxima = finer.advance_and_find_largest(regime.period)
         return maxima, errors_between(finer, first, regime.assumed_contraction, distance)
 

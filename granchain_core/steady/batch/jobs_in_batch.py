@@ -39,6 +39,7 @@ from ..steady_state import SteadyState
 from .job import (
     FINE_STEPS_PER_COARSE,
     BatchJob,
+    LocatedOrbits,
     Stage,
     Start,
     draft_result,
@@ -64,6 +65,8 @@ class _JobsInBatch:
         The chain of the start taken last, from which the chain of the next start is scaled.
     rest_state : np.ndarray
         Scaled state of rest, the same for scenes that differ by their frequency alone.
+    orbits : LocatedOrbits
+        Largest forces with located events.
     starts : iterator of Start
         Starts that are not taken yet.
     jobs : dict of int to BatchJob
@@ -82,6 +85,7 @@ class _JobsInBatch:
         self.stop = stop
         self.example = self.batch.example
         self.rest_state = self.example.from_si(rest(first.scene))
+        self.orbits = LocatedOrbits(self.example, stop)
         self.starts = itertools.chain([first], starts)
         self.waiting: list[BatchJob] = []
         self.jobs: dict[int, BatchJob] = {}
@@ -163,7 +167,7 @@ class _JobsInBatch:
             self._free(member)
             return result
         outcome = (outcome_of_coarse_run(job, self.batch, member) if job.stage is Stage.COARSE else
-                   job.fine_result(self.batch, member))
+                   job.fine_result(self.batch, member, self.orbits))
         if outcome is None:
             return None
         self._free(member)

@@ -8,7 +8,8 @@ from typing import Any, NamedTuple
 import numba
 import numpy as np
 
-from granchain_core.kernels.compiling.jit import Internal, by_slot, inline_numba, internal
+from granchain_core.kernels.compiling.dispatch import by_slot
+from granchain_core.kernels.compiling.jit import Internal, inline_numba, internal
 
 
 class Spring(NamedTuple):

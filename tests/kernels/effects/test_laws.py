@@ -9,8 +9,9 @@ from typing import NamedTuple
 import numba
 import pytest
 
-from granchain_core.kernels.compiling.jit import by_slot, by_type, check_effects
+from granchain_core.kernels.compiling.dispatch import by_slot, by_type
 from granchain_core.kernels.effects import dissipation as loss
+from granchain_core.kernels.effects.registry import check_effects
 from granchain_core.scene.effects import Effect
 from granchain_core.scene.laws import LAWS, Law
 from tests.numerics import stated_errors

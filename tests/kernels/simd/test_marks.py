@@ -8,7 +8,7 @@ import pytest
 
 from granchain_core import scene
 from granchain_core.integrate.scaling import scale_chain
-from granchain_core.kernels.compiling import jit
+from granchain_core.kernels.effects import registry
 
 
 class Slot(NamedTuple):
@@ -18,21 +18,21 @@ class Slot(NamedTuple):
 
 
 def test_kernels_that_the_mark_leaves_out_do_not_know_the_slot(monkeypatch: pytest.MonkeyPatch) -> None:
-    for folder, known in jit._IN_SIMD_KERNELS.items():
-        monkeypatch.setitem(jit._IN_SIMD_KERNELS, folder, set(known))
+    for folder, known in registry._IN_SIMD_KERNELS.items():
+        monkeypatch.setitem(registry._IN_SIMD_KERNELS, folder, set(known))
     slots = scale_chain(scene("sec2")).slots._replace(foundation=Slot(1.0))
-    assert jit.in_simd_kernels("rk4", "batch")(Slot) is Slot
-    assert [jit.unknown_slots(slots, folder) for folder in ("rk4", "batch", "dop853_root")] == [[], [], ["foundation"]]
+    assert registry.in_simd_kernels("rk4", "batch")(Slot) is Slot
+    assert [registry.unknown_slots(slots, folder) for folder in ("rk4", "batch", "dop853_root")] == [[], [], ["foundation"]]
 
 
 @pytest.mark.parametrize("slots", [{"kappa": 0.01, "F0": 1.0}, {"dissipation": "none"}], ids=str)
 def test_absent_effects_are_known(slots: dict[str, object]) -> None:
     present = scale_chain(scene("sec2").evolve(**slots)).slots  # type: ignore[arg-type]
-    assert jit.unknown_slots(present, "dop853_root") == []
+    assert registry.unknown_slots(present, "dop853_root") == []
 
 
 @pytest.mark.parametrize("folders", [("rk5",), (Slot,)], ids=str)
 def test_a_mark_without_folders_of_kernels_is_refused(folders: tuple[object, ...]) -> None:
     """The second is the mark without brackets, which would say that all of them know the slot."""
     with pytest.raises(TypeError, match="is not a folder of SIMD kernels; name those with terms of the slot, of rk4, batch"):
-        jit.in_simd_kernels(*folders)
+        registry.in_simd_kernels(*folders)

@@ -13,7 +13,7 @@ from granchain_core.execution.stop import Stop
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.batch import Batch, can_share_batch
 from granchain_core.integrate.scaling import scale_chain
-from granchain_core.kernels.compiling.jit import unknown_slots
+from granchain_core.kernels.effects.registry import unknown_slots
 from granchain_core.kernels.equations.chain_in_vector import CHAIN_WIDTHS
 from granchain_core.scene.effects import EFFECTS
 from granchain_core.scene.state import rest
