@@ -1,11 +1,13 @@
 """Checks of a batch member's regime, between its periods: is its motion periodic, may its transient be extrapolated?
 
-A coarse member is extrapolated to at most three times the distance that its decay predicts (`FARTHEST_EXTRAPOLATION`).
-The extrapolation is undone, with the periods run since, if the change per orbit is not smaller after it than before:
-the record goes on as if it had not been made. A chain may approach an unstable orbit before it leaves it, and an
-extrapolation could end there. So an orbit found by extrapolation is disturbed, and accepted only if the disturbance
-decays; if it decays slowly, multipliers decide (steady/batch/job.py). A fine member starts on the coarse
-orbit and is extrapolated to its own, each extrapolation checked in the same way.
+Coarse run. An extrapolation reaches at most three times as far as the decay predicts (`FARTHEST_EXTRAPOLATION`). If the
+change per orbit is not smaller after it than before, the extrapolation is undone, and the record goes on from where it
+was. A chain may approach an unstable orbit before it leaves it, and an extrapolation could end on that orbit. So an
+orbit found by extrapolation is disturbed, and accepted only if the disturbance decays. If it decays slowly, multipliers
+decide (steady/batch/job.py).
+
+Finer run. It starts on the orbit of the coarse run and is extrapolated to its own orbit; each extrapolation is checked
+in the same way.
 
 `check_member` is the same for every structure. It takes longer to compile than the steps of a batch, so it is a kernel
 of its own, which `run_batch` calls by its address.
