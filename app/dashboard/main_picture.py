@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import threading
 import time
@@ -10,6 +11,7 @@ from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -57,6 +59,20 @@ def _computed(scene: Scene, initial_state: State | None, most: float, stop: Turn
             raise TooLong
 
 
+class _Asked(NamedTuple):
+    """When a picture was requested [s], and the number of the request."""
+
+    number: int
+    at: float
+
+
+class _Answer(NamedTuple):
+    """A picture from a worker, and the request that it answers; None for a live step that nobody waits for."""
+
+    picture: Settled | LiveStep
+    asked: _Asked | None
+
+
 @dataclass(frozen=True)
 class _Request:
     """A settled picture as it was asked for: with the document locked, since a worker reads nothing of the session."""
@@ -96,11 +112,15 @@ class MainPicture:
         self._pacer: PicturePacer[Settled | LiveStep] = PicturePacer(self._send, self.next_live_step)
         self._live: LiveRun | None = None
         self._lock = threading.Lock()
-        self._newest: Settled | LiveStep | None = None
+        self._newest: _Answer | None = None
         self._accepted: Settled | LiveStep | None = None
         #: The settled picture that was sent last; None while a live run is shown.
         self._sent: Settled | None = None
-        self._requested_at: float | None = None
+        #: The last request for a picture; None after a failure.
+        self._asked: _Asked | None = None
+        self._numbers = itertools.count(1)
+        #: The number of the last request whose picture has come.
+        self._answered = 0
         #: Frames of the last pictures. The cache of `prepared_frames` has only weak references, so without these the
         #: event loop would prepare again what a worker has prepared.
         self._frames: deque[Frames] = deque(maxlen=2)
@@ -139,7 +159,7 @@ class MainPicture:
 
     def compute(self, initial_state: State | None = None) -> None:
         """Compute a picture for the knobs as they are now, from `initial_state` or from where the visitor chose."""
-        self._requested_at = self._requested_at or time.monotonic()
+        self._asked = _Asked(next(self._numbers), time.monotonic())
         session, scene = self._session, self._session.scene
         if session.mode == "live":
             if self.live is not None:
@@ -149,13 +169,17 @@ class MainPicture:
             else:
                 self.advance(1)  # a paused chain shows the new knobs, too
         else:
-            self._jobs.submit(partial(self._settled_pictures, _Request(
+            self._submit(partial(self._settled_pictures, _Request(
                 scene, initial_state or session.previous_state(scene), scene == session.insisted,
                 session.energy_account)))
 
     def advance(self, samples: int | None = None) -> None:
         """Take the next step of the live run: `samples`, or as many as the viewing time asks for."""
-        self._jobs.submit(partial(self._live_step, samples, self._session.speed, self._session.insisted))
+        self._submit(partial(self._live_step, samples, self._session.speed, self._session.insisted))
+
+    def _submit(self, work: Callable[[TurnFlag], Iterator[Settled | LiveStep]]) -> None:
+        """Compute `work` next; its pictures answer the last request."""
+        self._jobs.submit(partial(self._answers, work, self._asked))
 
     def shown_run(self) -> Run | None:
         """The motion on the screen as a run."""
@@ -164,6 +188,13 @@ class MainPicture:
         return None if self._session.settled is None else self._session.settled.run
 
     # In a worker thread
+
+    @staticmethod
+    def _answers(work: Callable[[TurnFlag], Iterator[Settled | LiveStep]], asked: _Asked | None,
+                 stop: TurnFlag) -> Iterator[_Answer]:
+        """The pictures of `work`, each with the request that it answers."""
+        for picture in work(stop):
+            yield _Answer(picture, asked)
 
     def _settled_pictures(self, request: _Request, stop: TurnFlag) -> Iterator[Settled]:
         """Pictures on the way to the steady state, once the kernels are compiled."""
@@ -227,9 +258,9 @@ class MainPicture:
 
     def _keep_newest(self, result: object) -> None:
         """Keep a new picture for the event loop; it replaces an older picture that a busy loop has not fetched yet."""
-        assert isinstance(result, (Settled, LiveStep))
-        if isinstance(result, Settled):
-            self._frames.append(prepared_frames(result.run))
+        assert isinstance(result, _Answer)
+        if isinstance(result.picture, Settled):
+            self._frames.append(prepared_frames(result.picture.run))
         with self._lock:
             first, self._newest = self._newest is None, result
         if first:
@@ -240,16 +271,16 @@ class MainPicture:
     def _take_newest(self) -> None:
         """Take the newest picture that a worker has kept."""
         with self._lock:
-            result, self._newest = self._newest, None
-        if result is not None:
-            self._accept(result)
+            newest, self._newest = self._newest, None
+        if newest is not None:
+            self._accept(*newest)
 
-    def _accept(self, result: Settled | LiveStep) -> None:
+    def _accept(self, result: Settled | LiveStep, asked: _Asked | None = None) -> None:
         """Make a picture that still belongs to the mode and the scene the present one, and offer it to the browser."""
         live = isinstance(result, LiveStep)
         if live != (self._session.mode == "live") or result.run.scene.name != self._session.scene.name:
             return
-        self._count_answer()
+        self._count_answer(asked)
         if isinstance(result, Settled):
             self._session.settled = result
             self._picture_ready(result)
@@ -261,15 +292,15 @@ class MainPicture:
             self.next_live_step()  # two are in transit from the first step on, not only once a knob was moved
 
     def _failed(self, error: Exception) -> None:
-        """Pass a failure on; the next picture is timed from its own request."""
-        self._requested_at = None
+        """Pass a failure on; a live step after it answers no request."""
+        self._asked = None
         self._host.report_failure(error)
 
-    def _count_answer(self) -> None:
-        """Count how long the first picture took, and say so if the server is busy with many sessions."""
-        if self._requested_at is None:
+    def _count_answer(self, asked: _Asked | None) -> None:
+        """Count how long the first picture of a request took, and say so if the server is busy with many sessions."""
+        if asked is None or asked.number <= self._answered:
             return
-        seconds, self._requested_at = time.monotonic() - self._requested_at, None
+        self._answered, seconds = asked.number, time.monotonic() - asked.at
         METRICS.answered(seconds)
         words = f"The server is busy: pictures follow every {seconds:.1f} s." if METRICS.busy else ""
         self._views.status_line.update_state(busy=words)

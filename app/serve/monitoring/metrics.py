@@ -21,7 +21,7 @@ from tornado.web import HTTPError, RequestHandler
 BUCKETS = (0.025, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0)
 #: The name and the help text of this histogram.
 HISTOGRAM = "granchain_answer_seconds"
-HISTOGRAM_HELP = "From a moved knob to its first picture."
+HISTOGRAM_HELP = "From a change of scene, knob, start or mode to the first picture of it."
 #: Time between two measurements of the event loop's lag [s].
 _LAG_INTERVAL = 0.25
 #: Number of these measurements that are kept: those of ten seconds.
@@ -73,7 +73,7 @@ class Metric(NamedTuple):
 
 
 class Metrics:
-    """Counts since the start; answers are times from a moved knob to its first picture. Any thread may count."""
+    """Counts since the start; answers are times from a change to the first picture of it. Any thread may count."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
@@ -105,7 +105,7 @@ class Metrics:
             self.sessions -= 1
 
     def answered(self, seconds: float) -> None:
-        """Count a first picture that came `seconds` after the knob moved."""
+        """Count a first picture that came `seconds` after its request."""
         bucket = next((i for i, bound in enumerate(BUCKETS) if seconds <= bound), len(BUCKETS))
         with self._lock:
             self.answers[bucket] += 1
