@@ -23,12 +23,13 @@ from .serve.compiling.compiler import COMPILER
 from .serve.computing.shared import Shared
 from .serve.computing.turns import TURNS
 from .serve.computing.worker_pools import COMPUTING, POOLS, SESSION_WORK, WorkerPool
-from .serve.http.guard import Readiness, is_guarded
+from .serve.http.guard import is_guarded
+from .serve.http.health import Liveness, MetricsHandler, Readiness
 from .serve.http.limits import LARGEST_UPLOAD, USUAL_SESSIONS
 from .serve.http.rules import Rules
 from .serve.http.sessions import TOKEN_LIFETIME, Sessions
 from .serve.monitoring import logs
-from .serve.monitoring.metrics import METRICS, Liveness, Metric, MetricsHandler
+from .serve.monitoring.metrics import METRICS, Metric
 from .serve.monkeypatches.bokeh_defaults import install_defaults_cache
 from .serve.monkeypatches.panel_resources import install_resources_cache
 from .serve.monkeypatches.request_handlers import install_guards

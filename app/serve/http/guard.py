@@ -17,7 +17,9 @@ from tornado.web import HTTPError, RequestHandler, StaticFileHandler
 from tornado.websocket import WebSocketHandler
 
 from ...library_internals import Internal, internals
-from ..monitoring.metrics import METRICS, Liveness, MetricsHandler
+from ..monitoring.metrics import METRICS
+from .health import HANDLERS
+from .limits import RETRY_AFTER
 from .rules import Rules
 
 log = logging.getLogger("granchain.requests")
@@ -37,8 +39,6 @@ INTERNALS = internals(
 #: Addresses of Bokeh's that our page does not use; the first would make a session. The dot is any letter in Bokeh's
 #: pattern, too.
 _UNUSED_ADDRESSES = re.compile(r"/(autoload.js|metadata)/?")
-#: After how long a page that was refused because there are too many tries again, at least and at most [s].
-_TRY_AGAIN = (20, 60)
 #: Whether the request that is being answered has passed a guard. A page is made in the context of its request.
 _IS_GUARDED: ContextVar[bool] = ContextVar("is_guarded", default=False)
 
@@ -94,7 +94,7 @@ class Guard(RequestHandler):
                      500: "Something went wrong inside granchain."}
         sentence = f"{sentences.get(status_code, 'The request cannot be answered.')} (request {self.request_id})\n"
         if status_code == 503:
-            seconds = random.randint(*_TRY_AGAIN)  # pages that wait do not all come back at once
+            seconds = random.randint(*RETRY_AFTER)  # pages that wait do not all come back at once
             self.set_header("Retry-After", seconds)
             if self.request.path == "/":
                 self.set_header("Content-Type", "text/html; charset=UTF-8")
@@ -112,25 +112,11 @@ class Guard(RequestHandler):
             log.error("request failed", exc_info=(typ, value, tb), extra=words)
 
 
-class Readiness(RequestHandler):
-    """`/readiness`: whether one more page can be opened. A full server is no failure, and nothing is logged."""
-
-    rules: Rules
-
-    def get(self) -> None:
-        """Answer `{"/readiness": true}`, or false with status 503."""
-        full = self.rules.sessions.full
-        if full:
-            self.set_status(503)
-            self.set_header("Retry-After", random.randint(*_TRY_AGAIN))
-        self.write({"/readiness": not full})
-
-
 def _opens_page(handler: RequestHandler) -> bool:
     """Whether a request may open a page; without Bokeh's class of such handlers, of all that are not known not to."""
     if SessionHandler is not None:
         return isinstance(handler, SessionHandler)
-    return not isinstance(handler, (StaticFileHandler, WebSocketHandler, Liveness, MetricsHandler, Readiness))
+    return not isinstance(handler, (StaticFileHandler, WebSocketHandler, *HANDLERS))
 
 
 def is_guarded() -> bool:

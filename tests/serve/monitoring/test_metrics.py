@@ -40,7 +40,8 @@ def test_every_count_of_every_thread_is_kept() -> None:
 
 
 @pytest.mark.parametrize(("value", "written"), [
-    (0, "0"), (1_234_567, "1234567"), (2**53 + 1, str(2**53 + 1)), (123_456_789.0, "123456789"), (0.1, "0.1"), (1234.5678901, "1234.5678901")])
+    (0, "0"), (1_234_567, "1234567"), (2**53 + 1, str(2**53 + 1)), (123_456_789.0, "123456789"), (0.1, "0.1"), (1234.5678901, "1234.5678901"),
+    (float("inf"), "+Inf"), (float("nan"), "NaN")])
 def test_numbers_are_written_with_all_digits(value: float, written: str) -> None:
     """A counter rounded to six digits would stand still and then jump."""
     metrics = Metrics()
@@ -94,6 +95,17 @@ def test_the_wait_of_a_refinement_is_not_counted() -> None:
     turns = FairScheduler(1, lambda: now[0])
     waits_beside_another(turns, now, 1.5, is_new=False)
     assert turns.wait == 0.0
+
+
+def test_one_stall_is_seen_although_the_mean_hides_it() -> None:
+    metrics = Metrics()
+    for lag in (*(0.0 for _ in range(39)), 5.0):
+        metrics.lagged(lag)
+    assert metrics.event_loop_lag < 0.3 and metrics.busy
+    assert "\ngranchain_event_loop_lag_max_seconds 5\n" in metrics.text()
+    for _ in range(40):
+        metrics.lagged(0.2)
+    assert not metrics.busy
 
 
 def shown(name: str) -> float:
