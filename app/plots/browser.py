@@ -10,22 +10,19 @@ from __future__ import annotations
 import html
 import os
 import re
-import shutil
 import subprocess
 import tempfile
 from pathlib import Path
-from textwrap import wrap
 
 from bokeh.models import GridPlot, LayoutDOM, Plot
 from PIL import Image
 
 from granchain_core import BadInput
 
-from .file import caption_height, captioned_html, html_of
+from .chromium import installed_browser
+from .file import CAPTION_LINE, CAPTION_ROOM, CAPTION_SIZE, FONT, caption_height, caption_lines, captioned_html, html_of
 from .theme import Theme
 
-_PROGRAMS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome", "google-chrome-stable",
-             "chrome")
 #: Chromium's sandbox does not start for root, as whom containers often run; anybody else keeps it.
 _FOR_ROOT = ["--no-sandbox"] if os.geteuid() == 0 else []
 _OPTIONS = ["--headless", *_FOR_ROOT, "--disable-gpu", "--hide-scrollbars", "--no-first-run", "--disable-sync",
@@ -51,7 +48,7 @@ const wait = setInterval(() => {
 
 def browser() -> str:
     """The browser that draws; `BadInput` in one sentence where there is none."""
-    found = next((path for name in _PROGRAMS if (path := shutil.which(name))), None)
+    found = installed_browser()
     if found is None:
         raise BadInput("A PNG or SVG is drawn by Chromium or Chrome and none is on the PATH; install one (on Debian: "
                        "apt install chromium), or write an HTML file, whose own menu saves a picture.")
@@ -65,9 +62,8 @@ def png_of(figure: LayoutDOM, title: str, caption: str, theme: Theme, size: tupl
     width, height = size[0], size[1] + caption_height(title, caption, size[0])
     with tempfile.TemporaryDirectory(prefix="granchain-") as folder:
         image = Path(folder) / "picture.png"
-        # The page's body is as high as the image, whatever the window's own frame takes.
-        page = captioned_html(figure, title, caption, theme).replace(
-            "html, body { height: 100%;", f"html {{ height: 100%; }} body {{ width: {width}px; height: {height}px;")
+        # The page's body is as large as the image, whatever the window's own frame takes.
+        page = captioned_html(figure, title, caption, theme, body_size=(width, height))
         _run(folder, page, f"--screenshot={image}", f"--force-device-scale-factor={scale}",
              f"--window-size={width + _FRAME_ROOM},{height + _FRAME_ROOM}")
         if not image.exists():
@@ -110,14 +106,14 @@ def _with_caption(drawn: str, title: str, caption: str, theme: Theme) -> str:
     if sizes is None:
         raise BadInput("The browser's SVG has no size; write an HTML file instead.")
     width, height = float(sizes[1]), float(sizes[2])
-    lines = wrap(f"{title}. {caption}", int(width / 7.6))
-    text = "".join(f'<text x="16" y="{height + 22 + 20 * i:g}">{html.escape(line)}</text>'
+    lines = caption_lines(title, caption, width)
+    text = "".join(f'<text x="16" y="{height + CAPTION_ROOM + CAPTION_LINE * i:g}">{html.escape(line)}</text>'
                    for i, line in enumerate(lines))
-    whole = height + 30 + 20 * len(lines)
+    whole = height + CAPTION_ROOM + CAPTION_LINE * len(lines)
     return (f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:g}" height="{whole:g}" '
             f'viewBox="0 0 {width:g} {whole:g}">'
             f'<title>{html.escape(title)}</title><rect width="100%" height="100%" fill="{theme.card}"/>{drawn}'
-            f'<g font-family="system-ui, DejaVu Sans, sans-serif" font-size="14" fill="{theme.ink}">{text}</g></svg>\n')
+            f'<g font-family="{FONT}" font-size="{CAPTION_SIZE}" fill="{theme.ink}">{text}</g></svg>\n')
 
 
 def _run(folder: str, page: str, *options: str) -> str:
