@@ -36,11 +36,15 @@ def pin_texts(pins: Sequence[Pin]) -> dict[str, str]:
 
 
 def read_pin(text: str) -> Pin:
-    """Read the pin of a link's field. Raises `BadInput` for the first bad value: a pin is read whole or not at all."""
-    shown, fields, refused = decode(text)
+    """Read the pin of a link's field. Raises `BadInput` for any bad value: a pin is read whole or not at all."""
+    try:
+        shown, fields, refused = decode(text)
+        start = read_start(fields[START], shown) if START in fields else None
+    except BadInput:
+        refused = [text]
     if refused:
-        raise BadInput(f"A pin of the link was left out. {refused[0]}")
-    return Pin(shown, read_start(fields[START], shown) if START in fields else None)
+        raise BadInput("A pin of the link is damaged and was left out.")
+    return Pin(shown, start)
 
 
 def setting_words(pin: Scene, now: Scene) -> str:

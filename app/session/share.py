@@ -74,7 +74,8 @@ PINS = ("pin", "pin2", "pin3")
 QUESTION = "question"
 #: Most characters of a link.
 LONGEST = 4500
-#: Characters of these that are kept free for `BROWSER_FIELDS`.
+#: Characters of these that are kept free for `BROWSER_FIELDS`; tests/dashboard/test_table.py compares this number with
+#: the longest values.
 _ADDED_BY_BROWSER = 100
 
 
