@@ -9,8 +9,8 @@ from functools import partial
 from bokeh.document import Document
 
 from ..serve.document.changes import batched_changes
-from ..serve.document.channel import Channel
 from ..serve.document.document_lock import with_document_lock
+from ..serve.document.locked_callbacks import LockedCallbacks
 from ..serve.monitoring.metrics import METRICS
 
 log = logging.getLogger("granchain.page")
@@ -22,25 +22,25 @@ class Calls:
     def __init__(self, document: Document, failed: Callable[[Exception], None]) -> None:
         self._document = document
         self._failed = failed
-        self._channel = Channel(document)
+        self._callbacks = LockedCallbacks(document)
         self._closing: list[Callable[[], object]] = []
         self._closed = False
 
     def now(self, action: Callable[..., None], *args: object) -> None:
         """Call `action` as soon as the document may be changed; on the event loop."""
-        with_document_lock(self._document, partial(self.guarded, action, *args))
+        with_document_lock(self._document, partial(self.call_and_report, action, *args))
 
     def next_tick(self, action: Callable[..., None], *args: object) -> None:
         """Call `action` in the next iteration of the event loop; from any thread."""
         if not self._closed:
-            self._channel.next_tick(partial(self.guarded, action, *args))
+            self._callbacks.next_tick(partial(self.call_and_report, action, *args))
 
     def call_later(self, seconds: float, action: Callable[..., None], *args: object) -> None:
         """Call `action` after `seconds`; on the event loop."""
         if not self._closed:
-            self._channel.call_later(seconds, partial(self.guarded, action, *args))
+            self._callbacks.call_later(seconds, partial(self.call_and_report, action, *args))
 
-    def guarded(self, action: Callable[..., None], *args: object) -> None:
+    def call_and_report(self, action: Callable[..., None], *args: object) -> None:
         """Call `action` now, where the document is locked already; `failed` takes its error."""
         if self._closed:
             return
@@ -62,7 +62,7 @@ class Calls:
         if self._closed:
             return
         self._closed = True
-        self._channel.close()
+        self._callbacks.close()
         for action in self._closing:
             try:
                 action()

@@ -14,7 +14,7 @@ from granchain_core.experiment import Difference, Measured
 from ..curve.controller import CurveController
 from ..plots.theme import Theme
 from ..serve.compiling.compiler import COMPILER
-from ..serve.document.socket_tuning import disable_nagle
+from ..serve.connection.socket_tuning import disable_nagle
 from ..session.activities import Activity, account_activity, picture_activities
 from ..session.message_checks import quoted
 from ..session.page import Actions, Page, all_actions
@@ -54,7 +54,7 @@ class Controller:
         self._initial_state = initial_state
         self._gallery_sent = False
         self.session = session
-        self.views = views = Views(session, self.received, partial(self._calls.guarded, self._choose_frequency))
+        self.views = views = Views(session, self.received, partial(self._calls.call_and_report, self._choose_frequency))
         self.sentences = Sentences(session, views.status_line, self._compute)
         self.pictures = MainPicture(self, views, self.sentences.show_notice, self.picture_ready)
         self.curves = CurveController(self, views.curve, views.curve_bar, self._curve_placed)

@@ -10,7 +10,7 @@ import panel as pn
 from bokeh.core.properties import validate
 from bokeh.document import Document
 
-from ..serve.document.leaving import when_left
+from ..serve.connection.leaving import when_left
 from ..serve.monitoring.metrics import METRICS
 from ..session.session import Session
 from .addresses import apply_address

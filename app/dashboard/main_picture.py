@@ -24,7 +24,7 @@ from ..serve.computing.latest_wins import LatestWins
 from ..serve.computing.shared import Shared
 from ..serve.computing.turns import TurnFlag
 from ..serve.computing.worker_pools import PICTURES
-from ..serve.document.pacing import PicturePacer
+from ..serve.connection.pacing import PicturePacer
 from ..serve.monitoring.metrics import METRICS
 from ..session.budget import WHOLE_PICTURE, RefusedPicture, TooLong, check_first_picture
 from ..session.energy_account import with_account
@@ -289,7 +289,7 @@ class MainPicture:
         self._accepted = result
         self._pacer.offer(result)
         if live:
-            self.next_live_step()  # two are in transit from the first step on, not only once a knob was moved
+            self.next_live_step()  # two are in flight from the first step on, not only once a knob was moved
 
     def _failed(self, error: Exception) -> None:
         """Pass a failure on; a live step after it answers no request."""
@@ -336,6 +336,6 @@ class MainPicture:
         self._pacer.restart()
 
     def next_live_step(self) -> None:
-        """Take the next step of a run that goes on, unless as many of its pictures are in transit as may be."""
+        """Take the next step of a run that goes on, unless as many of its pictures are in flight as may be."""
         if self._session.mode == "live" and self._session.playing and not self._pacer.is_full:
             self.advance()

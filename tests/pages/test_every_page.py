@@ -186,7 +186,7 @@ def test_a_moved_knob_ends_the_work_or_the_page_calls_it_out_of_date(trial: Tria
         nothing_arrives(trial)
 
 
-def test_work_ends_with_the_visit(trial: Trial) -> None:
+def test_work_ends_with_the_session(trial: Trial) -> None:
     asked(trial)
     trial.host.leave()
     assert trial.under_way == []

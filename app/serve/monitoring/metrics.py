@@ -20,14 +20,14 @@ HISTOGRAM = "granchain_answer_seconds"
 HISTOGRAM_HELP = "From a change of scene, knob, start or mode to the first picture of it."
 #: Time between two measurements of the event loop's lag [s].
 _LAG_INTERVAL = 0.25
-#: Number of these measurements that are kept: those of ten seconds.
+#: Number of measurements that are kept, of ten seconds.
 _LAGS_KEPT = 40
 #: A single lag above this makes the server busy, too [s]: the mean of ten seconds hides one stall of five.
 _BUSY_STALL = 1.0
-#: The server is called busy when a knob's message, or the computation for it, waits longer than this [s].
+#: Mean wait of a message, or of a computation, above which the server is busy [s].
 _BUSY_WAIT = 0.3
 
-#: What `Metrics.count` counts: the name of each counter, without `_total`, and its help text.
+#: The counters of `Metrics.count`: name without `_total`, and help text.
 COUNTERS = {
     "pictures": "Pictures sent, steps of live runs included. Pictures that were replaced before they were sent are not "
                 "counted.",
@@ -40,7 +40,7 @@ COUNTERS = {
 }
 
 
-#: Names that metrics had before: those who ask for them still get them.
+#: Former names of metrics, which `/metrics` still has.
 FORMER_NAMES = {
     "granchain_sessions": "granchain_visitors",
     "granchain_sessions_opened_total": "granchain_visits_total",
@@ -50,10 +50,10 @@ FORMER_NAMES = {
 
 
 class Metric(NamedTuple):
-    """A metric as Prometheus has it; the name of a counter ends with `_total`.
+    """A metric of Prometheus; the name of a counter ends with `_total`.
 
-    `read` is called when somebody asks. With a `label` it gives a number for each of the label's values. The prefix is
-    `process` where clients of Prometheus for any program give the same.
+    `read` is called at each request of `/metrics`. With a `label` it gives a number for each value of the label. The
+    prefix is `process` for metrics that clients of Prometheus give for any program.
     """
 
     name: str
@@ -80,9 +80,9 @@ class Metrics:
         self.answers = [0] * (len(BUCKETS) + 1)
         self.answers_total = 0.0
         self._lags: deque[float] = deque(maxlen=_LAGS_KEPT)
-        #: Metrics of other modules, which the server adds.
+        #: Metrics of other modules; the server sets them.
         self.added: tuple[Metric, ...] = ()
-        #: How long computations wait before they can begin [s]; the server puts it there.
+        #: The mean wait of computations before they begin [s]; the server sets it.
         self.turn_wait: Callable[[], float] = lambda: 0.0
 
     def count(self, name: str) -> None:
@@ -109,12 +109,12 @@ class Metrics:
             self.answers_total += seconds
 
     def lagged(self, seconds: float) -> None:
-        """Record that an iteration of the event loop came `seconds` late."""
+        """Record that an iteration of the event loop was `seconds` late."""
         self._lags.append(seconds)
 
     @property
     def event_loop_lag(self) -> float:
-        """How late the event loop was on average in the last ten seconds [s]."""
+        """The mean lag of the event loop in the last ten seconds [s]."""
         return sum(self._lags) / len(self._lags) if self._lags else 0.0
 
     @property
@@ -124,11 +124,11 @@ class Metrics:
 
     @property
     def busy(self) -> bool:
-        """Whether visitors notice that there are many: by the event loop, or by the wait for a turn to compute."""
+        """Whether visitors notice the load: by a lag of the event loop, or by the wait for a turn to compute."""
         return max(self.event_loop_lag, self.turn_wait()) > _BUSY_WAIT or self.largest_lag > _BUSY_STALL
 
     async def watch(self) -> None:
-        """Measure the event loop's lag, for as long as it runs."""
+        """Measure the lag of the event loop again and again."""
         while True:
             due = time.monotonic() + _LAG_INTERVAL
             await asyncio.sleep(_LAG_INTERVAL)
@@ -166,7 +166,7 @@ class Metrics:
         ]
 
     def text(self) -> str:
-        """The counts in the text format of Prometheus, version 0.0.4."""
+        """All metrics in the text format of Prometheus, version 0.0.4."""
         lines: list[str] = []
         for metric in self.table():
             value = metric.read()
@@ -187,7 +187,7 @@ class Metrics:
 
 
 def _written(value: float) -> str:
-    """All digits of a number: a counter rounded to six would stand still and then jump."""
+    """A number with all its digits: a counter rounded to six digits would stand still and then jump."""
     if not math.isfinite(value):
         return "NaN" if math.isnan(value) else "+Inf" if value > 0.0 else "-Inf"
     return str(int(value)) if value == int(value) else repr(float(value))

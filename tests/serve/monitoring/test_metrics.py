@@ -11,7 +11,7 @@ import waiting
 
 from app import server
 from app.serve.computing.cpu_time import CpuTime
-from app.serve.computing.turns import FairScheduler
+from app.serve.computing.turns import Turns
 from app.serve.computing.worker_pools import (
     COMPILATIONS,
     COMPUTING,
@@ -66,7 +66,7 @@ def test_names_and_kinds_are_those_of_prometheus() -> None:
         assert isinstance(metric.read(), dict) == bool(metric.label), metric
 
 
-def waits_beside_another(turns: FairScheduler, now: list[float], seconds: float, is_new: bool = True) -> None:
+def waits_beside_another(turns: Turns, now: list[float], seconds: float, is_new: bool = True) -> None:
     """A computation has a turn at once, and another one after it has waited so long."""
     first = turns.begin(CpuTime(), Stop())
     thread = threading.Thread(target=turns.begin, args=(CpuTime(), Stop(), is_new))
@@ -80,7 +80,7 @@ def waits_beside_another(turns: FairScheduler, now: list[float], seconds: float,
 
 def test_the_wait_before_computations_begin_is_averaged_over_ten_seconds() -> None:
     now = [0.0]
-    turns = FairScheduler(1, lambda: now[0])
+    turns = Turns(1, lambda: now[0])
     assert turns.wait == 0.0
     waits_beside_another(turns, now, 1.5)
     assert turns.wait == 0.75  # the other did not wait
@@ -92,7 +92,7 @@ def test_the_wait_before_computations_begin_is_averaged_over_ten_seconds() -> No
 
 def test_the_wait_of_a_refinement_is_not_counted() -> None:
     now = [0.0]
-    turns = FairScheduler(1, lambda: now[0])
+    turns = Turns(1, lambda: now[0])
     waits_beside_another(turns, now, 1.5, is_new=False)
     assert turns.wait == 0.0
 
@@ -142,7 +142,7 @@ def test_pools_whose_threads_wait_for_others_do_not_count_as_computing() -> None
 
 def test_long_work_is_computing_and_what_its_owner_has_beyond_its_limit_waits(monkeypatch: pytest.MonkeyPatch) -> None:
     pool, go_on, owner = WorkerPool("long", 8, per_owner_limit=2), threading.Event(), object()
-    for name, value in (("POOLS", (pool,)), ("COMPUTING", (pool,)), ("TURNS", FairScheduler(2))):
+    for name, value in (("POOLS", (pool,)), ("COMPUTING", (pool,)), ("TURNS", Turns(2))):
         monkeypatch.setattr(server, name, value)
     ended = [pool.submit(go_on.wait, 120, owner=owner) for _ in range(3)]
     assert (shown("computing"), shown("queue")) == (2, 1)
@@ -153,7 +153,7 @@ def test_long_work_is_computing_and_what_its_owner_has_beyond_its_limit_waits(mo
 
 
 def test_a_picture_that_waits_for_a_turn_waits_and_is_not_computing(monkeypatch: pytest.MonkeyPatch) -> None:
-    turns, pool, stop = FairScheduler(2, lambda: 0.0), WorkerPool("pictures", 8), Stop()
+    turns, pool, stop = Turns(2, lambda: 0.0), WorkerPool("pictures", 8), Stop()
     for name, value in (("POOLS", (pool,)), ("COMPUTING", ()), ("TURNS", turns)):
         monkeypatch.setattr(server, name, value)
     for _ in range(2):
