@@ -17,7 +17,7 @@ log = logging.getLogger("granchain.page")
 
 
 class Calls:
-    """Calls actions with the document locked. Their changes leave as one message; `failed` takes their errors."""
+    """Calls actions with the document locked. The changes of an action leave as one message; `failed` takes errors."""
 
     def __init__(self, document: Document, failed: Callable[[Exception], None]) -> None:
         self._document = document
@@ -41,10 +41,10 @@ class Calls:
             self._callbacks.call_later(seconds, partial(self.call_and_report, action, *args))
 
     def call_and_report(self, action: Callable[..., None], *args: object) -> None:
-        """Call `action` now, where the document is locked already; `failed` takes its error."""
+        """Call `action` now, with the document locked by the caller, and pass its error to `failed`."""
         if self._closed:
             return
-        with batched_changes(self._document):  # does nothing inside `run_locked`, where changes are gathered already
+        with batched_changes(self._document):  # does nothing inside `run_locked`, which gathers changes already
             try:
                 action(*args)
             except Exception as error:
@@ -55,9 +55,9 @@ class Calls:
         self._closing.append(action)
 
     def close(self) -> None:
-        """The session has ended: call what was given to `on_close`, and nothing from then on.
+        """The session has ended: call the actions of `on_close`, and no action after that.
 
-        An action that fails keeps none of the others from being called.
+        A failing action does not prevent the next from being called.
         """
         if self._closed:
             return

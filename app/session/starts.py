@@ -1,8 +1,7 @@
 """The state in which a motion began, as text in a link.
 
-Where several motions are possible, the start decides which is reached, so a picture cannot be repeated without it.
-
-Little-endian doubles, in base64 for addresses: drive phase, N displacements [m], N velocities [m/s].
+If several motions are possible, the start decides which motion is reached. A picture cannot be repeated without its
+start. The text has little-endian doubles in base64 for addresses: drive phase, N displacements [m], N velocities [m/s].
 """
 
 from __future__ import annotations
@@ -20,7 +19,7 @@ MOST_BEADS = 40
 
 
 def start_text(start: State | None) -> str:
-    """The state as a text; empty for rest, and for a chain that is too long for a link."""
+    """The state as text; empty for rest, and for a chain that is too long for a link."""
     if start is None or len(start.displacement) > MOST_BEADS:
         return ""
     values = np.concatenate([[start.phase], start.displacement, start.velocity]).astype("<f8")
@@ -28,7 +27,7 @@ def start_text(start: State | None) -> str:
 
 
 def read_start(text: str, scene: Scene) -> State:
-    """The state that a text has for a scene. Raises `BadInput`."""
+    """Read the state of a scene's chain from its text. Raises `BadInput`."""
     try:
         content = base64.b64decode(text + "=" * (-len(text) % 4), altchars=b"-_", validate=True)
         values = np.frombuffer(content, dtype="<f8").astype(float)

@@ -35,7 +35,7 @@ expect.set_options(timeout=60_000)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """A test of `POINTER_TESTS` that fails is run once more; the summary says so, and `.ci/run` allows few repetitions."""
+    """A test of `POINTER_TESTS` that fails is run once more; `.ci/run` allows few repetitions."""
     for item in items:
         if item.path.is_relative_to(HERE) and getattr(item, "originalname", "") in POINTER_TESTS.get(item.path.stem, ()):
             item.add_marker(pytest.mark.flaky(reruns=1))
