@@ -20,7 +20,7 @@ from ..frames import Extremes, Frames
 from ..session.session import Session
 
 FILE = ASSETS / "scales.toml"
-#: Key of the digest of a table's scene; a test compares the digest with that of the preset.
+#: Key of the digest of a table's scene; a test compares it with the digest of the preset.
 DIGEST = "scene_digest"
 
 

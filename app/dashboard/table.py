@@ -37,7 +37,7 @@ Height = Literal["usual", "taller", "tallest"]
 
 @dataclass(frozen=True)
 class TabSpec:
-    """A tab without a page. The fields are those of a `PageSpec`; `height` is "usual" by default."""
+    """A tab without a page. The fields have the meaning that they have in `PageSpec`."""
 
     name: str
     group: str

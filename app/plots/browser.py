@@ -1,8 +1,8 @@
 """A figure as PNG or SVG, drawn by BokehJS in headless Chromium.
 
 Bokeh's `export_png` and `export_svg` need Selenium and a driver beside the browser. Chromium alone is enough: it takes
-a picture of a page (`--screenshot`) and prints the final DOM of a page (`--dump-dom`), here with what BokehJS's
-`export("svg")` has put into it.
+a picture of a page (`--screenshot`), and prints the final DOM of a page (`--dump-dom`), into which a script puts the
+result of BokehJS's `export("svg")`.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ from .chromium import installed_browser
 from .file import CAPTION_LINE, CAPTION_ROOM, CAPTION_SIZE, FONT, caption_height, caption_lines, captioned_html, html_of
 from .theme import Theme
 
-#: Chromium's sandbox does not start for root, as whom containers often run; anybody else keeps it.
+#: Chromium's sandbox does not start for root, the user of many containers; any other user keeps the sandbox.
 _FOR_ROOT = ["--no-sandbox"] if os.geteuid() == 0 else []
 _OPTIONS = ["--headless", *_FOR_ROOT, "--disable-gpu", "--hide-scrollbars", "--no-first-run", "--disable-sync",
             "--disable-background-networking", "--virtual-time-budget=20000"]
-#: Size of the window minus that of the page [px]. The frame of the window takes some of it; the rest is cut off.
+#: Room around the page in the window [px]. The frame of the window takes a part of it; the rest is cut off.
 _FRAME_ROOM = 200
 #: Longest time for one figure [s].
 _LONGEST_TIME = 120
@@ -47,7 +47,7 @@ const wait = setInterval(() => {
 
 
 def browser() -> str:
-    """The browser that draws; `BadInput` in one sentence where there is none."""
+    """The path of the browser that draws. Raises `BadInput` if none is installed."""
     found = installed_browser()
     if found is None:
         raise BadInput("A PNG or SVG is drawn by Chromium or Chrome and none is on the PATH; install one (on Debian: "
@@ -57,7 +57,7 @@ def browser() -> str:
 
 def png_of(figure: LayoutDOM, title: str, caption: str, theme: Theme, size: tuple[int, int],
            scale: float = 1.5) -> bytes:
-    """The figure in `size` [px] with its caption, `scale` times as many pixels as that."""
+    """The figure in `size` [px] with its caption as PNG, with `scale` image pixels for each of these pixels."""
     _without_tools(figure)
     width, height = size[0], size[1] + caption_height(title, caption, size[0])
     with tempfile.TemporaryDirectory(prefix="granchain-") as folder:
@@ -93,7 +93,7 @@ def _plots(figure: LayoutDOM) -> list[Plot]:
 
 
 def _without_tools(figure: LayoutDOM) -> None:
-    """An image has no buttons."""
+    """Remove the toolbars: an image has no buttons."""
     for plot in _plots(figure):
         plot.toolbar_location = None
     for panels in [*figure.select({"type": GridPlot}), *([figure] if isinstance(figure, GridPlot) else [])]:
@@ -101,7 +101,7 @@ def _without_tools(figure: LayoutDOM) -> None:
 
 
 def _with_caption(drawn: str, title: str, caption: str, theme: Theme) -> str:
-    """An SVG around the drawn one, with the caption's lines below."""
+    """The drawn SVG inside another SVG, with the lines of the caption below."""
     sizes = re.search(r'<svg[^>]* width="([\d.]+)" height="([\d.]+)"', drawn)
     if sizes is None:
         raise BadInput("The browser's SVG has no size; write an HTML file instead.")
@@ -117,7 +117,7 @@ def _with_caption(drawn: str, title: str, caption: str, theme: Theme) -> str:
 
 
 def _run(folder: str, page: str, *options: str) -> str:
-    """Open a page in the browser; returns what it prints."""
+    """Open a page in the browser; return its output."""
     file = Path(folder) / "page.html"
     file.write_text(page, encoding="utf-8")
     try:

@@ -34,13 +34,13 @@ _PAGE = """{%% block contents %%}
 
 
 def html_of(figure: LayoutDOM, title: str) -> str:
-    """A whole page with a figure of this package, which fills the window; Bokeh's own scripts are in it."""
+    """A whole page with a figure that fills the window; BokehJS is part of the page."""
     return _page(figure, title)
 
 
 def captioned_html(figure: LayoutDOM, title: str, caption: str, theme: Theme,
                    body_size: tuple[int, int] | None = None) -> str:
-    """A whole page with a figure, its title in bold and a caption under it, of `body_size` [px] or as the window."""
+    """A whole page with a figure, its title in bold and its caption, as large as `body_size` [px] or the window."""
     body = "" if body_size is None else f"width: {body_size[0]}px; height: {body_size[1]}px;"
     words = f"<b>{html.escape(title)}.</b> {html.escape(caption)}".replace("{", "&#123;")
     template = _PAGE % {"card": theme.card, "ink": theme.ink, "body": body, "size": CAPTION_SIZE,
@@ -54,7 +54,7 @@ def _page(figure: LayoutDOM, title: str, **options: Any) -> str:
 
 
 def caption_height(title: str, caption: str, width: int) -> int:
-    """Room that `captioned_html` needs for its caption in a window of this width [px]."""
+    """Height of a caption in a window of this width [px]."""
     return CAPTION_ROOM + CAPTION_LINE * len(caption_lines(title, caption, width))
 
 

@@ -1,6 +1,6 @@
 """Themes: colours by role, line widths and text sizes, for the page and for its figures (themed.py).
 
-Colours that are the same in every theme are here as well: those of marks, of palettes, and of marks on a palette.
+Colours of marks and palettes, which are the same in every theme, are here as well.
 """
 
 from __future__ import annotations
@@ -91,7 +91,7 @@ class Theme:
     largest_small_text_size: int = 20
     #: A line of wrong numbers beside the right ones.
     naive: str = "#d97706"
-    #: The second line of a figure, such as that of an observer beside its chain.
+    #: The second line of a figure, such as the observer beside its chain.
     second: str = VIOLET
 
     @property
@@ -141,8 +141,9 @@ def _text_sizes(theme: Theme) -> dict[str, str]:
 
 
 def style_sheet() -> str:
-    """The themes as CSS: a custom property for every role. A theme's rule has only what differs from the first one's.
-    No property may be called `--font-size`: Bokeh's style sheet sets that one in every figure.
+    """The themes as CSS: a custom property for every role. The rule of a theme has what differs from the first theme.
+
+    No property may be called `--font-size`, which Bokeh's style sheet sets in every figure.
     """
     first: dict[str, str] = {}
     # Registered, the sizes are known to canvases in pixels.

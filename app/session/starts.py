@@ -39,7 +39,7 @@ def read_start(text: str, scene: Scene) -> State:
         raise BadInput(f"The link begins the motion in a state of {(len(values) - 1) // 2} beads, but the chain has "
                        f"{scene.N}; it begins at rest.")
     phase, displacement, velocity = values[0], values[1:scene.N + 1], values[scene.N + 1:]
-    # No contact law holds for displacements beyond a bead's size or speeds beyond that of sound in steel.
+    # No contact law holds for displacements beyond a bead's size or speeds beyond the speed of sound in steel.
     sane = np.isfinite(values).all() and 0.0 <= phase < 1.0 and np.abs(displacement).max() < 1.0
     if not sane or not nearest_fraction(float(phase))[1] or np.abs(velocity).max() > 6000.0:
         raise BadInput("The initial state in the link is impossible for a chain; the motion begins at rest.")

@@ -1,6 +1,6 @@
 """Guided stories, read from assets/stories/*.toml: scenes to look at, a question, and an answer.
 
-The numbers of a story are those of its file; tests/session/test_story_files.py computes them again. docs/stories.md
+The numbers of a story stand in its file; tests/session/test_story_files.py computes them again. docs/stories.md
 has the format. Nothing in a file is trusted: a mistake becomes a sentence that says where it is.
 """
 

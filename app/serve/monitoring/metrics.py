@@ -152,7 +152,7 @@ class Metrics:
                    f"{_BUSY_WAIT:g} the page says that the server is busy.", self.turn_wait),
             Metric("resident_memory_bytes", "gauge", "Resident memory.", resident_memory, prefix="process"),
             Metric("threads", "gauge", "Threads of the operating system.", os_threads, prefix="process"),
-            Metric("threads", "gauge", "Threads that Python knows: without those of numerical libraries.",
+            Metric("threads", "gauge", "Threads that Python knows; threads of numerical libraries are missing.",
                    threading.active_count),
             Metric("cpu_seconds_total", "counter", "Processor time of all threads, user and system.", cpu_seconds,
                    prefix="process"),
