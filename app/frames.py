@@ -1,4 +1,4 @@
-"""The time samples that a picture shows: whole periods of a settled motion, or the last periods of a live one."""
+"""The time samples of a picture: whole periods of a settled motion, or the last periods of a live run."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ import numpy as np
 from granchain_core import Run, Scene
 from granchain_core.integrate.scaling import scales_of
 
-#: Rows per drive period: at least.
+#: Smallest number of rows per drive period.
 _FEWEST_ROWS = 96
-#: Rows per drive period: at most.
+#: Largest number of rows per drive period.
 _MOST_ROWS = 384
-#: Rows per drive period are a multiple of this.
+#: The number of rows per drive period is a multiple of this.
 _ROW_STEP = 48
-#: Rows per contact time 1/φ; a pulse takes about three such times to pass a bead.
+#: Rows per contact time 1/φ; a pulse passes a bead in about three contact times.
 _ROWS_PER_CONTACT_TIME = 1.5
-#: Most values of one quantity in a picture; beyond that, rows are left out that nobody would see.
+#: Most values of one quantity in a picture; beyond that, rows are left out, which nobody would see.
 _MOST_VALUES = 60_000
 
-#: Drive periods in a live picture, and in a settled one at least; a longer orbit is shown once.
+#: Drive periods in a live picture, and at least in a settled picture; a longer orbit is shown once.
 PERIODS = 4
 
 
@@ -39,9 +39,10 @@ def round_up(value: float) -> float:
 
 @dataclass(frozen=True)
 class Frames:
-    """Rows in time, equally spaced; `time` in seconds or, when live, in drive periods before now.
+    """Equally spaced rows in time; `time` is in seconds, or in drive periods before now for a live run.
 
-    `input_jumps` and `output_jumps` (J, 2) are times and forces [N] at which the force jumps up from 0, between rows.
+    `input_jumps` and `output_jumps` (J, 2) are the times at which a force jumps from 0 between rows, and the forces
+    that it reaches [N].
     """
 
     samples: int
@@ -77,17 +78,17 @@ class Frames:
 
     @cached_property
     def chain(self) -> np.ndarray:
-        """What the browser draws the chain from, in single precision: see `chain_series`."""
+        """The values from which the browser draws the chain, in single precision: see `chain_series`."""
         return drawn_values(chain_series(self.displacement, self.force, self.kinetic_energy, self.drive_displacement))
 
     @property
     def rows(self) -> int:
-        """How many instants there are."""
+        """The number of instants."""
         return len(self.time)
 
     @property
     def beads(self) -> int:
-        """How many beads there are."""
+        """The number of beads."""
         return self.displacement.shape[1]
 
 
@@ -95,7 +96,7 @@ class Frames:
 class Extremes:
     """The largest values of one picture or of many [N, N, J, m, m, N, N].
 
-    An overlap is that of two bodies that touch; a pull is how far a force is below zero.
+    The overlap is the largest of two bodies that touch. A pull is the largest amount by which a force is below zero.
     """
 
     input_force: float = 0.0
@@ -107,11 +108,11 @@ class Extremes:
     output_pull: float = 0.0
 
     def widened(self, other: Extremes) -> Extremes:
-        """The larger of both, value by value."""
+        """The larger of both values of each quantity."""
         return Extremes(**{name: max(value, getattr(other, name)) for name, value in self.items()})
 
     def items(self) -> Iterator[tuple[str, float]]:
-        """Name and value of each."""
+        """Names and values."""
         return ((field.name, getattr(self, field.name)) for field in fields(self))
 
 
@@ -158,9 +159,9 @@ def samples_for(scene: Scene) -> int:
 
 
 def settled_frames(run: Run) -> Frames:
-    """Whole periods from time 0, with the orbit repeated often enough to show that it repeats.
+    """Whole periods from time 0; a periodic orbit is repeated so often that one sees its repetition.
 
-    A motion that is not periodic is shown once, as it was recorded.
+    A motion that is not periodic is shown once, as recorded.
     """
     rows = len(run.time)
     periods = max(1, round((rows - 1) / run.samples))
@@ -183,9 +184,9 @@ _LOCK = threading.Lock()
 
 
 def prepared_frames(run: Run) -> Frames:
-    """The frames of a settled run with all that every session's drawing needs, the same for all who show the run.
+    """The frames of a settled run with everything that a drawing needs, shared by all sessions that show the run.
 
-    The frames are cached for as long as anything refers to them. Call this in a thread, before the event loop draws.
+    The frames are cached as long as anything refers to them. A thread calls this before the event loop draws.
     """
     with _LOCK:
         known = _PREPARED.get(run)
@@ -199,7 +200,7 @@ def prepared_frames(run: Run) -> Frames:
 
 
 class LiveWindow:
-    """The last few periods of a live run; the time of a row is in drive periods before now."""
+    """The last few periods of a live run; the time of a row is given in drive periods before now."""
 
     def __init__(self, samples: int, periods: int = PERIODS) -> None:
         self._samples = samples
@@ -209,7 +210,7 @@ class LiveWindow:
         self._jumps = {name: np.zeros((0, 2)) for name in ("input_jumps", "output_jumps")}
 
     def add(self, run: Run) -> Frames:
-        """The window after `run`, whose first row is the last one already shown."""
+        """The window after `run`; the first row of the run is the last row that is shown already."""
         for name in _SERIES:
             new = np.asarray(getattr(run, name))
             old = self._series.get(name)

@@ -23,42 +23,43 @@ from .serve.compiling.compiler import COMPILER
 from .serve.computing.shared import Shared
 from .serve.computing.turns import TURNS
 from .serve.computing.worker_pools import COMPUTING, POOLS, SESSION_WORK, WorkerPool
-from .serve.http.guard import Readiness, is_guarded
+from .serve.http.guard import is_guarded
+from .serve.http.health import Liveness, MetricsHandler, Readiness
 from .serve.http.limits import LARGEST_UPLOAD, USUAL_SESSIONS
 from .serve.http.rules import Rules
 from .serve.http.sessions import TOKEN_LIFETIME, Sessions
 from .serve.monitoring import logs
-from .serve.monitoring.metrics import METRICS, Liveness, Metric, MetricsHandler
+from .serve.monitoring.metrics import METRICS, Metric
 from .serve.monkeypatches.bokeh_defaults import install_defaults_cache
 from .serve.monkeypatches.panel_resources import install_resources_cache
 from .serve.monkeypatches.request_handlers import install_guards
 from .session.session import Session
 
-#: The largest message a page sends is an uploaded file in base64 [bytes].
+#: The largest message of a page, an uploaded file in base64 [bytes].
 LARGEST_MESSAGE = 4 * LARGEST_UPLOAD // 3 + 100_000
-#: How long a thread may keep the GIL from the event loop [s]. The answer to a moved knob takes it some ten times, so
-#: with Python's default, 5 ms, it could wait 50 ms for a busy thread. Measurements are in docs/reliability.md, "Many
-#: visitors".
+#: Time for which a thread may keep the GIL from the event loop [s]. Answering one knob move acquires the GIL about ten
+#: times, so with Python's default, 5 ms, the answer could wait 50 ms for a busy thread. Measurements are in
+#: docs/reliability.md, "Many visitors".
 SWITCH_INTERVAL = 5e-4
-#: Time until a connection that sends nothing is closed [s]; a request's head must have come by then.
+#: Time until a silent connection is closed [s]; the head of a request must come within it.
 IDLE_TIME = 60
-#: Time in which a request's body must come [s].
+#: Time within which the body of a request must come [s].
 BODY_TIME = 30
 #: Largest body of a request [bytes]: only forms for signing in have one.
 LARGEST_BODY = 100_000
-#: Between two pings of a websocket, and until the answer must have come [s].
+#: Time between two pings of a websocket, and until the answer must come [s].
 PING_INTERVAL = 20
-#: Time in which a loaded page must open its websocket [ms].
+#: Time within which a loaded page must open its websocket [ms].
 UNCONNECTED_MS = 30_000
-#: Between two checks for sessions that have ended [ms].
+#: Time between two checks for sessions that have ended [ms].
 SESSION_CHECK_MS = 1000
 
 
 @dataclass(frozen=True)
 class Access:
-    """Who may use the server; docs/security.md has the meaning of each. By default a visitor on this machine.
+    """Who may use the server; docs/security.md has the meaning of each field. By default only this machine may.
 
-    `secret` signs sessions; without one a server makes a random one. `origins` are the names under which browsers reach
+    `secret` signs sessions; without it a server makes a random one. `origins` are the names under which browsers reach
     the server (`HOST` or `HOST:PORT`), `sign_in` the keyword arguments of Panel's `serve` for basic authentication or
     OAuth. Behind a `proxy` the visitor's address is in a header.
     """
@@ -72,7 +73,7 @@ class Access:
 
 
 def is_loopback(address: str) -> bool:
-    """Whether only this machine reaches what listens at the address."""
+    """Whether a server at this address can be reached from this machine alone."""
     if address == "localhost":
         return True
     try:
@@ -85,8 +86,8 @@ def serve(port: int = 5006, address: str = "127.0.0.1", access: Access | None = 
           on_ready_to_listen: Callable[[], None] = lambda: None) -> None:
     """Serve the page until interrupted; `/liveness` answers health checks.
 
-    Raises `OSError` for a taken port and `MissingPart` for a library whose release lacks what is needed.
-    `on_ready_to_listen` is called when everything is imported, just before the server takes the port.
+    Raises `OSError` if the port is taken, and `MissingPart` if the release of a library lacks a necessary part.
+    `on_ready_to_listen` is called after all imports, just before the server takes the port.
     """
     logs.configure(log_level)
     check_releases()
@@ -95,21 +96,22 @@ def serve(port: int = 5006, address: str = "127.0.0.1", access: Access | None = 
     shown = "localhost" if address in ("0.0.0.0", "127.0.0.1", "") else _in_url(address)
     print(f"granchain is at http://{shown}:{port}/ (stop it with Ctrl+C)", flush=True)
     COMPILER.prepare(Session().scene)
-    settings.perform_document_validation.set_value(False)  # takes 40 ms of every opening, and tests find what it would
-    if hasattr(settings, "perform_error_diagnostics"):  # since 3.9: Panel asks for a missing name at every change
+    settings.perform_document_validation.set_value(False)  # 40 ms of every opening; the tests find such errors
+    if hasattr(settings, "perform_error_diagnostics"):  # since 3.9; at every change Panel asks for a missing name
         settings.perform_error_diagnostics.set_value(False)
     install_defaults_cache()
     install_resources_cache()
     sys.setswitchinterval(SWITCH_INTERVAL)
-    gc.freeze()  # what every page shares is not searched for garbage again and again: 120 ms at a time
-    gc.enable()
+    gc.freeze()  # a search for garbage skips what all pages share, and no longer takes 120 ms
+    gc.enable()  # app/cli/serve.py has disabled it before its imports
     server.start()
     server.io_loop.spawn_callback(METRICS.watch)
-    server.io_loop.start()  # until a signal ends the process (app/cli/ending.py); Bokeh's own waits for its threads
+    # Until a signal ends the process (app/cli/ending.py). Bokeh's `run_until_shutdown` would wait for its threads.
+    server.io_loop.start()
 
 
 def server_at(port: int, address: str, access: Access | None = None) -> Server:
-    """The server, which listens and does not run yet."""
+    """The server: it listens, but does not run yet."""
     access = access or Access()
     names = [*access.origins, *(f"{host}:{port}" for host in ("localhost", "127.0.0.1", _in_url(address)) if host)]
     hosts = frozenset(_name_of(origin) for origin in names)
@@ -131,14 +133,14 @@ def server_at(port: int, address: str, access: Access | None = None) -> Server:
 
 
 def _guarded_page() -> None:
-    """Make the page; fail where its request had no guard, because docs/security.md would promise too much then."""
+    """Make the page. Fail if its request had no guard, because then the promises of docs/security.md do not hold."""
     if not is_guarded():
         raise RuntimeError("a request came to the page without a check")
     page()
 
 
 def add_shared_metrics() -> None:
-    """The worker pools and caches of all sessions, for `/metrics`."""
+    """Add the turns, worker pools and caches of all sessions to `/metrics`."""
     METRICS.turn_wait = lambda: TURNS.wait
     shared: dict[str, Shared[Any]] = {"picture": PICTURES_SHARED, "curve": CURVES_SHARED}
 
@@ -178,7 +180,7 @@ def _pool_name(pool: WorkerPool, former: bool) -> str:
 
 
 def _in_url(address: str) -> str:
-    """The address as a URL has it: IPv6 in brackets."""
+    """The address as in a URL: IPv6 in brackets."""
     return f"[{address}]" if ":" in address else address
 
 

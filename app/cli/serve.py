@@ -24,7 +24,7 @@ log = logging.getLogger("granchain")
 LEVELS = ("debug", "info", "warning", "error")
 #: Shortest secret [bytes].
 _SHORTEST = 16
-#: What Panel reads from the environment when a provider is named.
+#: Variables of the environment that Panel reads if a provider is named, by the keyword of `serve`.
 _OAUTH = {"oauth_key": "PANEL_OAUTH_KEY", "oauth_secret": "PANEL_OAUTH_SECRET",
           "oauth_redirect_uri": "PANEL_OAUTH_REDIRECT_URI", "oauth_encryption_key": "PANEL_OAUTH_ENCRYPTION"}
 
@@ -66,8 +66,8 @@ def do(arguments: argparse.Namespace) -> None:
 
 
 def _serve(arguments: argparse.Namespace, on_ready_to_listen: Callable[[], None]) -> None:
-    """Import the dashboard and serve it; `on_ready_to_listen` is called just before it takes the port."""
-    gc.disable()  # an import makes nothing but what stays, and a tenth of its time was the search for garbage
+    """Import the dashboard and serve it; `on_ready_to_listen` is called just before the server takes the port."""
+    gc.disable()  # what an import makes stays: the search for garbage took a tenth of its time (`serve` enables it)
     from ..library_internals import MissingPart, missing_in_import
 
     try:
@@ -107,7 +107,7 @@ def _serve(arguments: argparse.Namespace, on_ready_to_listen: Callable[[], None]
 
 
 def _secret(arguments: argparse.Namespace) -> bytes | None:
-    """What signs sessions, if anything."""
+    """The secret that signs sessions, if one is given."""
     if arguments.secret_file is not None:
         return _long_enough(_content(arguments.secret_file).strip(), f"the file {arguments.secret_file}")
     if given := os.environ.get("BOKEH_SECRET_KEY"):
@@ -131,10 +131,10 @@ def _content(name: str) -> bytes:
 
 
 def _sign_in(arguments: argparse.Namespace, secret: bytes | None) -> dict[str, str]:
-    """What Panel's `serve` is told of signing in.
+    """The keyword arguments of Panel's `serve` for signing in.
 
-    Its cookies are signed with a secret of their own. If none is given, it follows from that of the sessions, so that
-    all processes with one secret accept each other's cookies, also after a restart.
+    Panel signs its cookies with a secret of their own. By default this secret is derived from the secret of the
+    sessions, so that all processes with one secret accept each other's cookies, also after a restart.
     """
     if arguments.basic_auth is None and arguments.oauth_provider is None:
         return {}

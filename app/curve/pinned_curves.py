@@ -67,6 +67,7 @@ class PinnedCurves:
         circles = self._plot.add_glyph(self._source, Scatter(
             **at, marker="circle", size=17, fill_color=None, line_width=1.5, line_dash=[3, 2]), level="overlay")
         names = self._plot.add_glyph(self._source, Text(
-            **at, text="name", text_align="center", text_baseline="top", y_offset=10, text_font_size="13px",
+            **at, text="name", text_align="center", text_baseline="top", y_offset=10,
             text_font_style="bold"), level="overlay")
-        return [themed(circles, self._plot, line_color="ink"), themed(names, self._plot, text_color="ink")]
+        return [themed(circles, self._plot, line_color="ink"),
+                themed(names, self._plot, text_color="ink", text_font_size="small_figure_text")]

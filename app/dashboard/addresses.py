@@ -1,4 +1,4 @@
-"""Setting a session from an address: at a visit, and at every step back or forward."""
+"""Setting a session from an address: when its page is opened, and at every step back or forward."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ from .table import overlay_names, tab_names
 
 T = TypeVar("T")
 
-#: Fields that do not determine the motion. A link that has a story and no other fields than these, as one writes it by
-#: hand, shows the motion of the story's step.
+#: Fields that do not determine the motion. A link with a story and no fields besides these, as people write it by hand,
+#: shows the motion of the story's step.
 _NOT_A_MOTION = {"v", "story", *BROWSER_FIELDS}
 
 
 def apply_address(session: Session, query: str) -> tuple[State | None, list[str]]:
-    """Make the session what an address says; fields that it leaves out get their defaults.
+    """Set a session from an address; fields that the address leaves out get their defaults.
 
-    Returns the state in which the motion begins, None for rest, and a sentence for every field that was refused.
+    Returns the state in which the motion begins (None is rest), and a sentence for every refused field.
     """
     places = {"tab": tab_names(), "page": tab_names(), "embed": ("1",)}
     scene, fields, sentences = decode(query, {**places, "story": story_places(overlay_names())})
@@ -39,7 +39,7 @@ def apply_address(session: Session, query: str) -> tuple[State | None, list[str]
         fields = {**({"curves": step.curves} if step.curves else {}), **fields}
     session.apply_view(fields)
     session.place = {name: fields[name] for name in places if name in fields}
-    if session.place.get("page", "") not in ("", *overlay_names()):  # a page without an overlay has only its tab
+    if session.place.get("page", "") not in ("", *overlay_names()):  # a page without an overlay has a tab alone
         session.place["tab"] = session.place.pop("page")
     session.story = fields.get("story", "")
     session.pins = tuple(_pins([fields[name] for name in PINS if name in fields], sentences))
@@ -56,7 +56,7 @@ def _pins(texts: list[str], sentences: list[str]) -> list[Pin]:
 
 
 def _read(read: Callable[[], T], sentences: list[str]) -> T | None:
-    """What `read` returns; if it refuses, None, with its sentence appended to the others."""
+    """The result of `read`; None if it raises `BadInput`, whose sentence is appended to `sentences`."""
     try:
         return read()
     except BadInput as problem:

@@ -9,42 +9,42 @@ from functools import partial
 from bokeh.document import Document
 
 from ..serve.document.changes import batched_changes
-from ..serve.document.channel import Channel
 from ..serve.document.document_lock import with_document_lock
+from ..serve.document.locked_callbacks import LockedCallbacks
 from ..serve.monitoring.metrics import METRICS
 
 log = logging.getLogger("granchain.page")
 
 
 class Calls:
-    """Calls actions with the document locked. Their changes leave as one message; `failed` takes their errors."""
+    """Calls actions with the document locked. The changes of an action leave as one message; `failed` takes errors."""
 
     def __init__(self, document: Document, failed: Callable[[Exception], None]) -> None:
         self._document = document
         self._failed = failed
-        self._channel = Channel(document)
+        self._callbacks = LockedCallbacks(document)
         self._closing: list[Callable[[], object]] = []
         self._closed = False
 
     def now(self, action: Callable[..., None], *args: object) -> None:
         """Call `action` as soon as the document may be changed; on the event loop."""
-        with_document_lock(self._document, partial(self.guarded, action, *args))
+        with_document_lock(self._document, partial(self.call_and_report, action, *args))
 
     def next_tick(self, action: Callable[..., None], *args: object) -> None:
         """Call `action` in the next iteration of the event loop; from any thread."""
         if not self._closed:
-            self._channel.next_tick(partial(self.guarded, action, *args))
+            self._callbacks.next_tick(partial(self.call_and_report, action, *args))
 
     def call_later(self, seconds: float, action: Callable[..., None], *args: object) -> None:
         """Call `action` after `seconds`; on the event loop."""
         if not self._closed:
-            self._channel.call_later(seconds, partial(self.guarded, action, *args))
+            self._callbacks.call_later(seconds, partial(self.call_and_report, action, *args))
 
-    def guarded(self, action: Callable[..., None], *args: object) -> None:
-        """Call `action` now, where the document is locked already; `failed` takes its error."""
+    def call_and_report(self, action: Callable[..., None], *args: object) -> None:
+        """Call `action` now, with the document locked by the caller, and pass its error to `failed`."""
         if self._closed:
             return
-        with batched_changes(self._document):  # does nothing inside `run_locked`, where changes are gathered already
+        with batched_changes(self._document):  # does nothing inside `run_locked`, which gathers changes already
             try:
                 action(*args)
             except Exception as error:
@@ -55,14 +55,14 @@ class Calls:
         self._closing.append(action)
 
     def close(self) -> None:
-        """The session has ended: call what was given to `on_close`, and nothing from then on.
+        """The session has ended: call the actions of `on_close`, and no action after that.
 
-        An action that fails keeps none of the others from being called.
+        A failing action does not prevent the next from being called.
         """
         if self._closed:
             return
         self._closed = True
-        self._channel.close()
+        self._callbacks.close()
         for action in self._closing:
             try:
                 action()

@@ -1,4 +1,7 @@
-"""The controller of one dashboard: makes its parts, passes browser messages to their actions, is the host of pages."""
+"""The controller of one dashboard, which is also the host of its pages.
+
+It makes the parts of the dashboard and passes browser messages to their actions.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +17,7 @@ from granchain_core.experiment import Difference, Measured
 from ..curve.controller import CurveController
 from ..plots.theme import Theme
 from ..serve.compiling.compiler import COMPILER
-from ..serve.document.socket_tuning import disable_nagle
+from ..serve.connection.socket_tuning import disable_nagle
 from ..session.activities import Activity, account_activity, picture_activities
 from ..session.message_checks import quoted
 from ..session.page import Actions, Page, all_actions
@@ -44,17 +47,17 @@ class Controller:
 
     def __init__(self, document: Document, session: Session, initial_state: State | None = None,
                  make_calls: Callable[[Document, Callable[[Exception], None]], Calls] = Calls) -> None:
-        """Make views, parts and pages, each with what it calls, and collect their actions.
+        """Make views, parts and pages, connect them, and collect their actions.
 
-        The motion of the first picture begins in `initial_state`, if that is given. `make_calls` makes the calls with
-        the document locked; tests have their own.
+        The motion of the first picture begins in `initial_state`, if that is given. `make_calls` makes the `Calls`;
+        tests pass another class.
         """
         self._document = document
         self._calls = make_calls(document, self.report_failure)
         self._initial_state = initial_state
         self._gallery_sent = False
         self.session = session
-        self.views = views = Views(session, self.received, partial(self._calls.guarded, self._choose_frequency))
+        self.views = views = Views(session, self.received, partial(self._calls.call_and_report, self._choose_frequency))
         self.sentences = Sentences(session, views.status_line, self._compute)
         self.pictures = MainPicture(self, views, self.sentences.show_notice, self.picture_ready)
         self.curves = CurveController(self, views.curve, views.curve_bar, self._curve_placed)
@@ -89,7 +92,7 @@ class Controller:
     # Messages
 
     def received(self, message: dict[str, Any]) -> None:
-        """Take a message from the browser; nothing in it is trusted."""
+        """Pass a message of the browser to its action; the action trusts no value in it."""
         name = message.get("do")
         action = self._actions.get(name) if isinstance(name, str) else None
         if action is None:
@@ -116,7 +119,7 @@ class Controller:
         looked_at.visibility_changed(visible)
 
     def _send_gallery(self, _: dict[str, Any]) -> None:
-        """Send the cards once: they are the largest answer to a short message, and the page keeps them."""
+        """Send the cards once: the page keeps them, and no other short message has such a large answer."""
         if not self._gallery_sent:
             self._gallery_sent = True
             self.views.header.send(type="gallery", cards=cards())
@@ -136,7 +139,7 @@ class Controller:
         self._calls.on_close(action)
 
     def show_message(self, sentence: str) -> None:
-        """Show the visitor one sentence until the next valid action; an empty one removes it."""
+        """Show the visitor one sentence until the next valid action; an empty text removes the sentence."""
         self.sentences.show_message(sentence)
 
     def report_failure(self, error: Exception) -> None:
@@ -152,7 +155,7 @@ class Controller:
         self.leave()
 
     def leave(self) -> None:
-        """The session has ended: everything that is computed for this page ends, and nothing is called any more."""
+        """The session has ended: end all computations of this page, and call no further action."""
         self._calls.close()
 
     @property
@@ -209,7 +212,7 @@ class Controller:
     # What happens here
 
     def picture_ready(self, settled: Settled) -> None:
-        """A settled picture is ready: notify all that show something of it, the pages once it is offered."""
+        """A settled picture is ready: notify header and pins now, and the pages once the picture is offered."""
         self.views.header.show_picture_start(settled.start, self.session)
         self.pinned.picture_ready(settled)
         self._scenes.picture_ready(settled)

@@ -13,7 +13,7 @@ from .layout import Views
 
 
 class DisplayChoices:
-    """Actions that change how things are shown; only choosing a curve starts a computation."""
+    """Actions that change the display; only the choice of a curve starts a computation."""
 
     def __init__(self, session: Session, views: Views, curves: CurveController,
                  theme_changed: Callable[[Theme], None], redraw: Callable[[], None]) -> None:

@@ -1,4 +1,4 @@
-"""The entry point of a visit: builds the document and its session."""
+"""The entry point of a session: makes the document and its session."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import panel as pn
 from bokeh.core.properties import validate
 from bokeh.document import Document
 
-from ..serve.document.leaving import when_left
+from ..serve.connection.leaving import when_left
 from ..serve.monitoring.metrics import METRICS
 from ..session.session import Session
 from .addresses import apply_address
@@ -18,7 +18,7 @@ from .controller import Controller
 
 
 def page() -> None:
-    """Make the document of the present request a new page; the address may carry a shared scene."""
+    """Make a new page in the document of the present request; the address may be a share link."""
     pn.extension("katex", browser_info=False)  # Panel would add a root for it with every part
     document = pn.state.curdoc
     if document is None:
@@ -26,7 +26,7 @@ def page() -> None:
     session = Session()
     query = _query(document)
     initial_state, sentences = apply_address(session, query) if query.strip("?") else (None, [])
-    with validate(False):  # validation takes a sixth of an opening, and tests find what it would
+    with validate(False):  # validation takes a sixth of an opening, and the tests find such errors
         controller = Controller(document, session, initial_state)
         controller.views.put_into(document)
     pn.config.exception_handler = _handler(controller)
@@ -34,15 +34,15 @@ def page() -> None:
         controller.show_message(" ".join(sentences))
     when_left(document, controller.leave)
     pn.state.on_session_destroyed(controller.close)
-    METRICS.session_opened()  # counted when the page is sure to be told that it was left
+    METRICS.session_opened()  # counted after `when_left`, so that its end is counted, too
     controller.on_close(METRICS.session_closed)
 
 
 def _handler(controller: Controller) -> Callable[[Exception], None]:
-    """A handler that tells the controller of a failure without keeping it alive.
+    """A handler that reports a failure to the controller and does not keep the controller alive.
 
-    Panel keeps the handler as long as the document lives, and the controller has the document: with a strong reference
-    no page would ever be forgotten.
+    Panel keeps the handler as long as the document lives, and the controller has the document. With a strong reference
+    no page would ever be freed.
     """
     there = weakref.WeakMethod(controller.report_failure)
 
@@ -55,10 +55,10 @@ def _handler(controller: Controller) -> Callable[[Exception], None]:
 
 
 def _query(document: Document) -> str:
-    """The query of the address.
+    """The query of the address, read from the request.
 
-    Panel's `Location` would read it with Python's `int`, and digits that `int` refuses would be an error of the server.
-    So the page is served without `Location`, and the link is read from the request.
+    Panel's `Location` would read numbers in the query with Python's `int`, and digits that `int` refuses would be an
+    error of the server. So the page is served without `Location`.
     """
     context = document.session_context
     return urlsplit(context.request.uri or "").query if context is not None and context.request is not None else ""

@@ -1,4 +1,4 @@
-"""The share link, and files with what is on the screen."""
+"""The share link, and files of the picture on the screen."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Exports:
         self.actions: Actions = {"share": self._share, "export": self._export}
 
     def _share(self, _: dict[str, Any]) -> None:
-        """Send the link, and say which pins have no room in it."""
+        """Send the link, and name the pins for which the link has no room."""
         self._views.header.send(type="link", query=self._host.session.link)
         if sentence := self._host.session.pins_left_out:
             raise BadInput(sentence)
@@ -76,7 +76,7 @@ class Exports:
         name = f"{scene.name}-{scene.f:g}Hz{end}"
 
         def work(job: Job) -> None:
-            """In a worker thread."""
+            """Write the file in a worker thread."""
             job.next_tick(self._views.header.send, type="file", name=name, content=content())
 
         self._saving.start(work)

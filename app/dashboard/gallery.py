@@ -1,7 +1,7 @@
-"""The gallery of scenes: a card for each with a small picture, its title, a sentence and a question.
+"""The gallery of scenes: for each scene a card with a small picture, a title, a sentence and a question.
 
-The pictures are computed beforehand (`python -m tools.gallery`), and a page gets all cards in one message when its
-visitor opens the gallery: nothing of it is part of the page's opening.
+The pictures are computed beforehand (`python -m tools.gallery`). A page gets all cards in one message when its visitor
+opens the gallery, so that the gallery does not slow down the opening of the page.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ FOLDER = ASSETS / "gallery"
 
 @cache
 def cards() -> list[dict[str, str]]:
-    """Name, title, sentence, question and picture of every scene; the picture is an address that holds it."""
+    """Name, title, sentence, question and picture (a data URL) of every scene."""
     return [{"name": name, "title": scene(name).title, "sentence": first_sentence(scene(name).look_at),
              "ask": question_of(name), "picture": thumbnail_of(name)} for name in scene_names()]
 
@@ -29,5 +29,5 @@ def first_sentence(text: str) -> str:
 
 
 def thumbnail_of(name: str) -> str:
-    """The picture of a scene as an address that holds it."""
+    """The picture of a scene as a data URL."""
     return "data:image/svg+xml," + quote((FOLDER / f"{name}.svg").read_text(encoding="utf-8"), safe=" =:/;,'()+")

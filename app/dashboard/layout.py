@@ -40,7 +40,7 @@ _HERE = Path(__file__).resolve().parent
 
 
 class Views:
-    """Every part of the page; all their messages go to `received`."""
+    """All parts of the page; their messages go to `received`."""
 
     def __init__(self, session: Session, received: Callable[[dict[str, Any]], None],
                  choose: Callable[[object], None]) -> None:
@@ -63,15 +63,15 @@ class Views:
         self.status_line = StatusLine(received)
 
     def set_compact(self, compact: bool) -> None:
-        """Shorten titles and leave out numbers on the axes over time if there is little room for them."""
+        """Shorten titles and leave out numbers on the axes over time, if there is little room."""
         self.trains.set_compact(compact)
         self.energy.set_compact(compact)
         self.curve.set_compact(compact)
 
     def apply_theme(self, theme: Theme) -> None:
-        """Draw in another theme what does not follow it by the style sheet: the figures of the page and of all pages.
+        """Draw the figures of the main page and of all pages in another theme; the style sheet does the rest.
 
-        The energy map has no colour or line of the theme of its own; its surroundings are styled by dashboard.css.
+        The energy map has the same colours in every theme; dashboard.css styles its surroundings.
         """
         for plot in self._plots:
             follow_theme(plot, theme)
@@ -79,7 +79,7 @@ class Views:
             overlay.apply_theme(theme)
 
     def put_into(self, document: Document) -> None:
-        """Make all parts roots of a session's document; their layout is a CSS grid in dashboard.css."""
+        """Make all parts roots of a session's document; dashboard.css lays them out in a grid."""
         parts = {
             "header": self.header, "knobs": self.knobs, "equation": self.equation, "chain": self.chain,
             "curvebar": self.curve_bar, "tabs": self.tabs, "status_line": self.status_line, **self.overlays,
@@ -93,7 +93,7 @@ class Views:
 
 @cache
 def _page() -> tuple[str, dict[str, Any]]:
-    """The page's template and what stands in it, the same for every session."""
+    """The template of the page and its variables, the same for every session."""
     return (_HERE / "dashboard.html").read_text(encoding="utf-8"), {
         "dashboard_css": style_sheet() + text("dashboard.css") + text("skeleton.css"),
         "inline_scripts": "".join(map(text, INLINE_SCRIPTS)),

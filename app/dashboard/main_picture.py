@@ -1,7 +1,8 @@
-"""The main picture: computed for the present knobs, sent at the pace of the browser."""
+"""The main picture, which is computed for the present knobs and sent at the pace of the browser."""
 
 from __future__ import annotations
 
+import itertools
 import math
 import threading
 import time
@@ -10,6 +11,7 @@ from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,7 +24,7 @@ from ..serve.computing.latest_wins import LatestWins
 from ..serve.computing.shared import Shared
 from ..serve.computing.turns import TurnFlag
 from ..serve.computing.worker_pools import PICTURES
-from ..serve.document.pacing import PicturePacer
+from ..serve.connection.pacing import PicturePacer
 from ..serve.monitoring.metrics import METRICS
 from ..session.budget import WHOLE_PICTURE, RefusedPicture, TooLong, check_first_picture
 from ..session.energy_account import with_account
@@ -33,7 +35,7 @@ from .show import show_live, show_regime, show_settled
 
 
 def size_of(settled: Settled) -> int:
-    """Memory of a picture [bytes], which is that of its arrays and a little."""
+    """Memory of a picture [bytes]: its arrays, and a little more."""
     arrays = [*vars(settled.run).values(), settled.state.displacement, settled.state.velocity]
     return 4096 + sum(array.nbytes for array in arrays if isinstance(array, np.ndarray))
 
@@ -57,22 +59,36 @@ def _computed(scene: Scene, initial_state: State | None, most: float, stop: Turn
             raise TooLong
 
 
+class _Asked(NamedTuple):
+    """When a picture was requested [s], and the number of the request."""
+
+    number: int
+    at: float
+
+
+class _Answer(NamedTuple):
+    """A picture from a worker, and the request that it answers; None for a live step that nobody waits for."""
+
+    picture: Settled | LiveStep
+    asked: _Asked | None
+
+
 @dataclass(frozen=True)
 class _Request:
-    """A settled picture as it was asked for: with the document locked, since a worker reads nothing of the session."""
+    """The values of a request for a settled picture. Workers do not read the session, so they are kept here."""
 
     scene: Scene
     #: Where the motion begins; None is rest.
     initial_state: State | None
-    #: Whether it is computed however long it takes.
+    #: Whether the picture is computed however long it takes.
     insisted: bool
-    #: Whether its energy residual is computed, too.
+    #: Whether the energy residual is computed, too.
     account: bool
 
 
 @contextmanager
 def _refusing(scene: Scene) -> Iterator[None]:
-    """Turn a picture that takes too long into a refusal of this scene, even if the knobs have moved since."""
+    """Turn the failure of a picture that takes too long into a refusal of its scene."""
     try:
         yield
     except (OverBudget, TooLong) as problem:
@@ -80,9 +96,10 @@ def _refusing(scene: Scene) -> Iterator[None]:
 
 
 class MainPicture:
-    """Settled pictures and the live run. `show_notice` shows a message that the next picture clears.
+    """Settled pictures and the live run.
 
-    `picture_ready` is called with every settled picture, before it waits for the browser.
+    `show_notice` shows a message that the next picture clears. `picture_ready` is called with every settled picture
+    before the picture waits for the browser.
     """
 
     def __init__(self, host: Host, views: Views, show_notice: Callable[[str], None],
@@ -96,24 +113,28 @@ class MainPicture:
         self._pacer: PicturePacer[Settled | LiveStep] = PicturePacer(self._send, self.next_live_step)
         self._live: LiveRun | None = None
         self._lock = threading.Lock()
-        self._newest: Settled | LiveStep | None = None
+        self._newest: _Answer | None = None
         self._accepted: Settled | LiveStep | None = None
         #: The settled picture that was sent last; None while a live run is shown.
         self._sent: Settled | None = None
-        self._requested_at: float | None = None
-        #: Frames of the last pictures. The cache of `prepared_frames` has only weak references, so without these the
-        #: event loop would prepare again what a worker has prepared.
+        #: The last request for a picture; None after a failure.
+        self._asked: _Asked | None = None
+        self._numbers = itertools.count(1)
+        #: The number of the last request whose picture has come.
+        self._answered = 0
+        #: Frames of the last pictures. The cache of `prepared_frames` has weak references alone, and the event loop
+        #: would otherwise prepare these frames again.
         self._frames: deque[Frames] = deque(maxlen=2)
         host.on_close(self._close)
 
     @property
     def busy(self) -> bool:
-        """Whether a picture is being computed; work that can wait then waits."""
+        """Whether a picture is being computed; other work that can wait does so."""
         return self._jobs.busy
 
     @property
     def awaiting_picture(self) -> bool:
-        """See `Host.awaiting_picture`; a live run is at work all the time."""
+        """See `Host.awaiting_picture`; a live run computes all the time and does not count."""
         return self._jobs.busy and self.live is None
 
     @property
@@ -122,15 +143,15 @@ class MainPicture:
         return self._live
 
     def begin_live(self, initial_state: State | None = None) -> None:
-        """Begin a live run of the session's scene, from `initial_state` or from rest, in place of the one before."""
+        """Begin a new live run of the session's scene, from `initial_state` or from rest."""
         self._live = LiveRun(self._session.scene, self._session.cpu_time, initial_state)
 
     def end_live(self) -> None:
-        """From now on settled motions are shown."""
+        """End the live run: settled motions are shown from now on."""
         self._live = None
 
     def _close(self) -> None:
-        """The session has ended."""
+        """The session has ended: end all computations."""
         self._jobs.close()
         if self.live is not None:
             self.live.close()
@@ -138,8 +159,8 @@ class MainPicture:
     # Computing
 
     def compute(self, initial_state: State | None = None) -> None:
-        """Compute a picture for the knobs as they are now, from `initial_state` or from where the visitor chose."""
-        self._requested_at = self._requested_at or time.monotonic()
+        """Compute a picture for the present knobs, from `initial_state` or from the start that the visitor chose."""
+        self._asked = _Asked(next(self._numbers), time.monotonic())
         session, scene = self._session, self._session.scene
         if session.mode == "live":
             if self.live is not None:
@@ -147,33 +168,44 @@ class MainPicture:
             if session.playing:
                 self.next_live_step()
             else:
-                self.advance(1)  # a paused chain shows the new knobs, too
+                self.advance(1)  # a paused chain also shows the new knobs
         else:
-            self._jobs.submit(partial(self._settled_pictures, _Request(
+            self._submit(partial(self._settled_pictures, _Request(
                 scene, initial_state or session.previous_state(scene), scene == session.insisted,
                 session.energy_account)))
 
     def advance(self, samples: int | None = None) -> None:
-        """Take the next step of the live run: `samples`, or as many as the viewing time asks for."""
-        self._jobs.submit(partial(self._live_step, samples, self._session.speed, self._session.insisted))
+        """Take the next step of the live run: `samples`, or as many as belong to the viewing time."""
+        self._submit(partial(self._live_step, samples, self._session.speed, self._session.insisted))
+
+    def _submit(self, work: Callable[[TurnFlag], Iterator[Settled | LiveStep]]) -> None:
+        """Compute `work` next; its pictures answer the last request."""
+        self._jobs.submit(partial(self._answers, work, self._asked))
 
     def shown_run(self) -> Run | None:
-        """The motion on the screen as a run."""
+        """The motion on the screen as a run, if there is one."""
         if self.live is not None:
             return self.live.window_run()
         return None if self._session.settled is None else self._session.settled.run
 
     # In a worker thread
 
+    @staticmethod
+    def _answers(work: Callable[[TurnFlag], Iterator[Settled | LiveStep]], asked: _Asked | None,
+                 stop: TurnFlag) -> Iterator[_Answer]:
+        """The pictures of `work`, each with the request that it answers."""
+        for picture in work(stop):
+            yield _Answer(picture, asked)
+
     def _settled_pictures(self, request: _Request, stop: TurnFlag) -> Iterator[Settled]:
-        """Pictures on the way to the steady state, once the kernels are compiled."""
+        """The pictures of a request; one that takes too long is refused."""
         with _refusing(request.scene):
             yield from self._pictures_of(request, stop)
 
     def _pictures_of(self, request: _Request, stop: TurnFlag) -> Iterator[Settled]:
-        """The pictures of a request, each better than the one before, the last maybe with its energy account.
+        """The pictures of a request, each better than the one before. The last may have an energy account.
 
-        Only those from rest, and not insisted on, are shared with other sessions.
+        Pictures from rest are shared with other sessions, unless the visitor has insisted on them.
         """
         scene, initial_state, insisted = request.scene, request.initial_state, request.insisted
         if not insisted:
@@ -192,15 +224,15 @@ class MainPicture:
             yield settled
 
     def _begun_from(self, initial_state: State | None) -> None:
-        """Remember where the motion begins; called with the document locked, before the first picture arrives."""
+        """Note the state in which the motion begins, with the document locked, before the first picture arrives."""
         if initial_state is not self._session.initial_state:
             self._session.initial_state = initial_state
             self._host.address_changed()
 
     def _await_first_kernels(self, scene: Scene, stop: TurnFlag) -> None:
-        """Wait for the kernels that the first picture needs. Raises `Cancelled`.
+        """Wait for the kernels of the first picture. Raises `Cancelled`.
 
-        Another process compiles them, and the other kernels of the picture and its curve.
+        Another process compiles these kernels, and the other kernels of the picture and its curve.
         """
         needed = MOTION_KERNELS if scene.cuts_tension else (FIXED_STEP_KERNELS,)  # dop853 settles it then
         if not COMPILER.has(scene, *needed):
@@ -213,7 +245,7 @@ class MainPicture:
 
     def _live_step(self, samples: int | None, speed: float, insisted: Scene | None,
                    stop: TurnFlag) -> Iterator[LiveStep]:
-        live = self.live  # the newest run, should another have begun while this step waited
+        live = self.live  # the newest run: another may have begun while this step waited
         if live is None:
             return
         scene = live.scene
@@ -226,10 +258,10 @@ class MainPicture:
         yield result
 
     def _keep_newest(self, result: object) -> None:
-        """Keep a new picture for the event loop; it replaces an older picture that a busy loop has not fetched yet."""
-        assert isinstance(result, (Settled, LiveStep))
-        if isinstance(result, Settled):
-            self._frames.append(prepared_frames(result.run))
+        """Keep a new picture for the event loop, in place of an older picture that the loop has not fetched."""
+        assert isinstance(result, _Answer)
+        if isinstance(result.picture, Settled):
+            self._frames.append(prepared_frames(result.picture.run))
         with self._lock:
             first, self._newest = self._newest is None, result
         if first:
@@ -238,18 +270,18 @@ class MainPicture:
     # To the browser
 
     def _take_newest(self) -> None:
-        """Take the newest picture that a worker has kept."""
+        """Fetch and accept the newest picture of a worker."""
         with self._lock:
-            result, self._newest = self._newest, None
-        if result is not None:
-            self._accept(result)
+            newest, self._newest = self._newest, None
+        if newest is not None:
+            self._accept(*newest)
 
-    def _accept(self, result: Settled | LiveStep) -> None:
-        """Make a picture that still belongs to the mode and the scene the present one, and offer it to the browser."""
+    def _accept(self, result: Settled | LiveStep, asked: _Asked | None = None) -> None:
+        """Offer a picture to the browser, if it belongs to the present mode and scene."""
         live = isinstance(result, LiveStep)
         if live != (self._session.mode == "live") or result.run.scene.name != self._session.scene.name:
             return
-        self._count_answer()
+        self._count_answer(asked)
         if isinstance(result, Settled):
             self._session.settled = result
             self._picture_ready(result)
@@ -258,18 +290,18 @@ class MainPicture:
         self._accepted = result
         self._pacer.offer(result)
         if live:
-            self.next_live_step()  # two are in transit from the first step on, not only once a knob was moved
+            self.next_live_step()  # two are in flight from the first step on, not only once a knob was moved
 
     def _failed(self, error: Exception) -> None:
-        """Pass a failure on; the next picture is timed from its own request."""
-        self._requested_at = None
+        """Report a failure; later live steps answer no request."""
+        self._asked = None
         self._host.report_failure(error)
 
-    def _count_answer(self) -> None:
-        """Count how long the first picture took, and say so if the server is busy with many sessions."""
-        if self._requested_at is None:
+    def _count_answer(self, asked: _Asked | None) -> None:
+        """Count how long the first picture of a request took, and say so if the server is busy with many sessions."""
+        if asked is None or asked.number <= self._answered:
             return
-        seconds, self._requested_at = time.monotonic() - self._requested_at, None
+        self._answered, seconds = asked.number, time.monotonic() - asked.at
         METRICS.answered(seconds)
         words = f"The server is busy: pictures follow every {seconds:.1f} s." if METRICS.busy else ""
         self._views.status_line.update_state(busy=words)
@@ -284,7 +316,7 @@ class MainPicture:
             show_live(self._views, number, result, self._session.playing)
 
     def show_regime(self) -> None:
-        """Write the status line anew: the curve may tell now on which of its peaks or valleys the motion lies."""
+        """Write the status line again: the curve may now tell on which peak or valley the motion lies."""
         if self._sent is not None:
             show_regime(self._views, self._sent)
 
@@ -293,7 +325,7 @@ class MainPicture:
         self._pacer.painted(number)
 
     def redraw(self) -> None:
-        """Send the picture on the screen again, to be drawn in another way; a running chain sends pictures anyway."""
+        """Send the picture on the screen again, to be drawn in another way; a running chain sends the next anyway."""
         shown, live = self._accepted, self.live is not None
         if shown is None or isinstance(shown, LiveStep) != live or (live and self._session.playing):
             return
@@ -301,10 +333,10 @@ class MainPicture:
             self._pacer.offer(shown)
 
     def restart(self) -> None:
-        """The page is visible again: forget outstanding acknowledgements, which will never come."""
+        """The page is visible again: expect no acknowledgements of pictures in flight."""
         self._pacer.restart()
 
     def next_live_step(self) -> None:
-        """Take the next step of a run that goes on, unless as many of its pictures are in transit as may be."""
+        """Take the next step of a running chain, unless the window of pictures in flight is full."""
         if self._session.mode == "live" and self._session.playing and not self._pacer.is_full:
             self.advance()

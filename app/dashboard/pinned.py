@@ -42,7 +42,7 @@ class Pinned:
         self.actions: Actions = {"pin": lambda _: self._add(), "unpin": self._remove, "pin-open": self._open}
 
     def show(self) -> None:
-        """Draw the session's pins, and compute what is missing of them."""
+        """Draw the session's pins, and compute the motions that are missing."""
         pins = self._session.pins
         self._runs = {name: run for name, run in self._runs.items() if name in map(_key, pins)}
         missing = [pin for pin in pins if _key(pin) not in self._runs]
@@ -54,7 +54,7 @@ class Pinned:
         self.scene_changed()
 
     def scene_changed(self) -> None:
-        """Knobs have moved: draw the curve of each pin unless it is the present one."""
+        """Knobs have moved: draw the curve of each pin that differs from the present curve."""
         others = self._other_curves()
         missing = [key for key in others if key and key not in self._curves and curve_affordable(key)]
         if missing:
@@ -77,7 +77,7 @@ class Pinned:
         if len(session.pins) == len(NAMES):
             raise BadInput(f"{len(NAMES)} pictures are pinned already; remove one of them in the tab “numbers” first.")
         settled = session.settled
-        if settled.run.scene != session.scene:  # where it begins is not known yet
+        if settled.run.scene != session.scene:  # the start of the motion is not known yet
             raise BadInput("The picture of these knobs is still being computed; pin it when it is shown.")
         pin = Pin(session.scene, session.initial_state)
         if settled.final:
@@ -132,7 +132,7 @@ class Pinned:
         self.scene_changed()
 
     def _other_curves(self) -> list[Scene | None]:
-        """The scene of each pin's curve; None where that is the present one."""
+        """The scene of each pin's curve; None if it is the present curve."""
         self._curves = {key: points for key, points in self._curves.items()
                         if key in [without_frequency(pin.scene) for pin in self._session.pins]}
         now = without_frequency(self._session.scene)
@@ -162,6 +162,6 @@ class Pinned:
 
 
 def _key(pin: Pin) -> str:
-    """What identifies a pin: its link, and the initial state itself if that is too long for a link."""
+    """The key of a pin: its link, and the identity of an initial state that is too long for a link."""
     short = pin.initial_state is None or len(pin.initial_state.displacement) <= MOST_BEADS
     return pin.text if short else f"{pin.text} {id(pin.initial_state)}"

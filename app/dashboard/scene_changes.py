@@ -1,4 +1,4 @@
-"""Another scene or other knobs, as the visitor, a page or an address asks, and what follows from them."""
+"""Changes of the scene and its knobs, by the visitor, a page or an address, and their consequences."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from .pinned import Pinned
 
 
 class SceneChanges:
-    """Turns the knobs of one session, opens scenes, and notifies the pages and the other parts of the dashboard."""
+    """Turns the knobs of one session, opens scenes, and notifies pages and parts of the dashboard."""
 
     def __init__(self, session: Session, views: Views, pictures: MainPicture, curves: CurveController, pinned: Pinned,
                  pages: Sequence[Page], show_message: Callable[[str], None],
@@ -32,7 +32,7 @@ class SceneChanges:
         self._pages = pages
         self._show_message = show_message
         self._next_tick = next_tick
-        #: The settled picture of which the pages have not been notified yet.
+        #: A settled picture that the pages have not been notified of yet.
         self._picture_for_pages: Settled | None = None
         self.actions: Actions = {"set": self._set, "restore": self._restore, "scene": self._scene, "go": self._go}
 
@@ -58,9 +58,9 @@ class SceneChanges:
         self._show_turned_knobs(state)
 
     def show_preset(self, initial_state: State | None, curves: str) -> None:
-        """Another preset is the session's scene: the whole dashboard shows it, its motion from `initial_state`.
+        """Show the session's scene, another preset, in the whole dashboard; its motion begins in `initial_state`.
 
-        `curves` are those of a link; an empty text leaves them as they are.
+        `curves` is the field of a link; an empty text leaves the selected curves as they are.
         """
         scene = self._session.scene
         self._views.scales.forget()
@@ -74,20 +74,20 @@ class SceneChanges:
         self.request_picture(initial_state)
 
     def choose_frequency(self, frequency: object) -> None:
-        """Turn the knob f to a place on the curve."""
+        """Turn the knob f to a frequency that was clicked on the curve."""
         self._session.change("f", clicked_frequency(self._session.scene, frequency))
         self._send_knob_values()
         self._follow_knobs()
 
     def request_picture(self, initial_state: State | None = None) -> None:
-        """Request a picture of the knobs as they are."""
+        """Request a picture of the present knobs."""
         self._picture_for_pages = None
         for page in self._pages:
             page.picture_requested()
         self._pictures.compute(initial_state)
 
     def picture_ready(self, settled: Settled) -> None:
-        """Notify the pages once a picture is offered to the browser, unless another is requested or ready by then."""
+        """Notify the pages after a picture is offered to the browser, unless another was requested by then."""
         self._picture_for_pages = settled
         self._next_tick(self._notify_of_picture)
 
@@ -117,10 +117,10 @@ class SceneChanges:
         self.show_preset(None, "")
 
     def _go(self, message: dict[str, Any]) -> None:
-        """A step back or forward: the session becomes what the address says, its picture to the last digit.
+        """A step back or forward: set the session from the address, and its picture to the last digit.
 
-        The browser is notified in any case: until then it takes every change for a part of the step (`Steps.returning`
-        of address.js), and no change could be undone any more.
+        The browser is notified in any case. Until then it takes every change for a part of the step (`Steps.returning`
+        of address.js), and the visitor could undo no further change.
         """
         try:
             self._apply(str(message.get("query", "")))
@@ -128,7 +128,7 @@ class SceneChanges:
             self._views.header.send(type="address-applied", query=self._session.link)
 
     def _apply(self, query: str) -> None:
-        """Show what an address says."""
+        """Set the session from an address, and show it."""
         session, name, curves = self._session, self._session.scene.name, self._session.curves
         initial_state, refused = apply_address(session, query)
         self._follow_mode()
@@ -146,14 +146,14 @@ class SceneChanges:
     # What follows
 
     def _follow_mode(self, state: State | None = None) -> None:
-        """In live mode there is a live run, a new one if it is to begin from `state`; otherwise there is none."""
+        """Begin a live run in live mode, if there is none or if it has to begin in `state`; end it in settled mode."""
         if self._session.mode == "settled":
             self._pictures.end_live()
         elif state is not None or self._pictures.live is None:
             self._pictures.begin_live(state)
 
     def _show_turned_knobs(self, initial_state: State | None) -> None:
-        """The knobs were turned, but not by the visitor: the bar and the knobs show it, too."""
+        """The knobs were turned, but not by the visitor: bar and knobs have to show the new values."""
         self._views.header.show_session(self._session)
         self._send_knob_values()
         self._follow_knobs(initial_state)

@@ -28,24 +28,24 @@ class Sentences:
         self.actions: Actions = {"dismiss-sentence": self._dismiss, "insist": self._insist}
 
     def show_message(self, sentence: str, refused: Scene | None = None) -> None:
-        """Show one sentence until the next valid action; an empty one removes it.
+        """Show one sentence until the next valid action; an empty text removes the sentence.
 
-        A scene that was `refused` because it takes long can be computed anyway by the button beside the sentence.
+        A button beside the sentence computes the scene that was `refused` because it takes long.
         """
         self._session.sentence = sentence
         self._refused = refused
         self._show()
 
     def show_notice(self, notice: str) -> None:
-        """Show one sentence that the next picture removes."""
+        """Show one sentence until the next picture."""
         self._session.notice = notice
         self._show()
 
     def report_failure(self, error: Exception) -> None:
-        """Say in one sentence what happened; the last good picture stays."""
+        """Show a failure as one sentence; the last good picture stays."""
         if isinstance(error, RefusedPicture):
             METRICS.count("refused_pictures")
-            if error.scene == self._session.scene:  # otherwise a knob has moved since and requested another picture
+            if error.scene == self._session.scene:  # otherwise a knob has moved since
                 self.show_message(str(error), error.scene)
         elif isinstance(error, BadInput):
             self.show_message(str(error))
@@ -56,7 +56,7 @@ class Sentences:
                                      "picture stays. Move the knob back or reset, and please report it.")
 
     def report_fault(self, error: Exception, sentence: str) -> None:
-        """Log and count an error of granchain itself, and show `sentence`, unless it is empty."""
+        """Log and count an error of granchain itself, and show `sentence` unless it is empty."""
         METRICS.count("errors")
         log.error("unexpected failure", exc_info=error)
         if sentence:
@@ -67,7 +67,7 @@ class Sentences:
                                 insist=self._refused is not None)
 
     def _insist(self, _: dict[str, Any]) -> None:
-        """Compute what was refused because it takes long; the other sessions still have their turns."""
+        """Compute the refused scene although it takes long; other sessions still get their turns."""
         if self._refused is not None and self._refused == self._session.scene:
             self._session.insisted = self._refused
             self.show_message("")

@@ -18,7 +18,7 @@ from .layout import Views
 
 
 def show_settled(views: Views, number: int, settled: Settled) -> None:
-    """Show a settled picture: whole periods, which the browser replays."""
+    """Show a settled picture; the browser replays its whole periods."""
     frames = prepared_frames(settled.run)
     factor, letter = prefixed(float(frames.time[-1]))
     views.trains.name_time(f"time ({letter}s){_periods_shown(frames, settled.run.scene)}")
@@ -29,7 +29,7 @@ def show_settled(views: Views, number: int, settled: Settled) -> None:
 
 
 def show_regime(views: Views, settled: Settled) -> None:
-    """Write the status line: a complete curve shows on which of its peaks or valleys the motion lies."""
+    """Write the status line; a complete curve tells on which peak or valley the motion lies."""
     run = settled.run
     force = views.trains.output_words(run.max_output_force, run.force_errors.output)
     views.status_line.update_state(**settled_entries(settled, views.curve.place(run), force))

@@ -37,7 +37,7 @@ Height = Literal["usual", "taller", "tallest"]
 
 @dataclass(frozen=True)
 class TabSpec:
-    """A tab that belongs to no page; the fields are those of a `PageSpec`, but its `height` is "usual" by default."""
+    """A tab without a page. The fields have the meaning that they have in `PageSpec`."""
 
     name: str
     group: str
@@ -47,14 +47,14 @@ class TabSpec:
 
 @dataclass(frozen=True)
 class PageSpec:
-    """One page: its name in messages, in links and on its tab, what is computed and how it is drawn.
+    """One page: its name in messages, in links and on its tab, its class and its view.
 
-    `page` is made with the host and the view. `view` is an overlay; a page without one is drawn in its tab by
-    tabs.js. `placeholder` stands in the tab until the page has something to say. A tab whose `height` is "taller" gets
-    more room than usual, and one that is "tallest" also takes the place of the curve, except on a phone. `group` is one
-    of `GROUPS`. A page that `works_hidden` goes on while its window is hidden or its tab is scrolled off the screen;
-    the others count as not looked at then (`Page.visibility_changed`). While an overlay that `needs_curve` is
-    open, the resonance curve is computed as if it were on the screen.
+    `page` is made with the host and the view. `view` is an overlay; tabs.js draws a page without an overlay in its tab.
+    `placeholder` is the text of the tab until the page has results. A tab with the `height` "taller" gets more room
+    than usual, and a "tallest" tab also takes the place of the curve, except on a phone. `group` is one of `GROUPS`. A
+    page with `works_hidden` goes on while its window is hidden or its tab is scrolled off the screen; any other page is
+    then hidden (`Page.visibility_changed`). While an overlay with `needs_curve` is open, the resonance curve is
+    computed as if it were on the screen.
     """
 
     name: str
@@ -67,10 +67,10 @@ class PageSpec:
     needs_curve: bool = False
 
 
-#: The groups of tabs; a tab of none of them stands apart at the end.
+#: The groups of tabs; a tab without a group stands apart at the end.
 GROUPS = ("learn", "try", "check")
 
-#: The pages and the tabs without one, in the order of the tabs; the first is open when nothing else is said.
+#: The pages, and the tabs without a page, in the order of the tabs; the first tab is open by default.
 TABS: tuple[PageSpec | TabSpec, ...] = (
     PageSpec("stories", StoriesPage, None, group="learn"),
     TabSpec("look at", "learn"),
@@ -94,12 +94,12 @@ TABS: tuple[PageSpec | TabSpec, ...] = (
     PageSpec("data", DataPage, None, group=""),
 )
 PAGES = tuple(row for row in TABS if isinstance(row, PageSpec))
-#: What the resonance curve, which is not a page, is called in the message `visible`.
+#: The name of the resonance curve, which is not a page, in the message `visible`.
 CURVE_NAME = "curve"
 
 
 def check_names(rows: Sequence[PageSpec | TabSpec]) -> None:
-    """Raise `ValueError` for two tabs of one name, or a page that is called like the curve."""
+    """Raise `ValueError` if two tabs have one name, or a tab has the name of the curve."""
     names = [CURVE_NAME, *(row.name for row in rows)]
     for name in names:
         if names.count(name) > 1:
@@ -110,23 +110,23 @@ check_names(TABS)
 
 
 def described_tabs() -> list[dict[str, Any]]:
-    """What the browser needs of the table, in the order of the groups."""
+    """The tabs for the browser, in the order of the groups."""
     order = (*GROUPS, "")
     return [{"name": row.name, "placeholder": row.placeholder, "height": row.height, "group": row.group}
             for row in sorted(TABS, key=lambda row: order.index(row.group))]
 
 
 def watched_pages() -> dict[str, dict[str, bool]]:
-    """What the browser needs to tell which pages are looked at."""
+    """The pages for the browser, which finds out which of them are looked at."""
     return {row.name: {"overlay": row.view is not None, "works_hidden": row.works_hidden,
                        "needs_curve": row.needs_curve} for row in PAGES}
 
 
 def tab_names() -> tuple[str, ...]:
-    """The tabs by the names they have in a link."""
+    """The names of the tabs in a link."""
     return tuple(row.name for row in TABS)
 
 
 def overlay_names() -> tuple[str, ...]:
-    """The overlays."""
+    """The names of the overlays."""
     return tuple(row.name for row in PAGES if row.view)

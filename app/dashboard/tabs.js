@@ -1,4 +1,4 @@
-// The tabs below the curve: what to look at, what the marks mean, one for every page, and the visitor's own data.
+// The tabs below the curve: what to look at, what the marks mean, a tab for every page, and the visitor's data.
 
 import { accuracyTab } from "../pages/accuracy/accuracy_tab.js";
 import { branchesTab } from "../pages/branches/branches_tab.js";
@@ -17,7 +17,7 @@ import { lookAtTab, regimesTab } from "./scene_tabs.js";
 import { explainTerms } from "./terms.js";
 import { watchVisibility } from "./visibility.js";
 
-// Functions that make the tabs. If a function returns `show`, that draws the tab again when its page publishes something.
+// Functions that make the tabs. If a function returns `show`, it draws the tab again when its page publishes something.
 // A tab that `updatesItself` is not made anew when the state changes, so what is under the pointer stays. A tab without
 // an overlay needs its function here (tests/dashboard/test_table.py).
 const TABS = {

@@ -1,4 +1,4 @@
-"""The tabs below the curve: what to look at, a tab for every page, the visitor's own data."""
+"""The tabs below the curve: what to look at, a tab for every page, and the visitor's data."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from ..scripts import module
 
 
 class Tabs(Component):
-    """All tabs and what stands in the one that is chosen; the data tab sends the text of a CSV file."""
+    """All tabs, and the content of the chosen tab; the tab *data* sends the text of a CSV file."""
 
     _esm = module("tabs.js")
     _stylesheets = [text(f"{name}.css")  # noqa: RUF012

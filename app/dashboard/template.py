@@ -1,4 +1,4 @@
-"""The HTML document of the dashboard, assembled at a third of the cost of Panel's templates."""
+"""The HTML document of the dashboard, made at a third of the cost of Panel's templates."""
 
 from __future__ import annotations
 
@@ -17,10 +17,11 @@ from ..serve.document.part_messages import register
 
 def put_into(document: Document, parts: Mapping[str, Component], plots: Iterable[Plot], template: str,
              variables: Mapping[str, Any]) -> None:
-    """Make each part a root by its name here, and each plot by its own, for `embed(roots.NAME)` in the template.
+    """Make each part and each plot a root, for `embed(roots.NAME)` in the template.
 
-    Each part of ours goes by Panel's `server_doc`; a plot needs nothing of Panel. `pn.Template` adds what this page
-    does not use: a second layout around all roots, a design, and a configuration set and restored for each part.
+    The name of a part is its key in `parts`; a plot has its own name. A part is added by Panel's `server_doc`; a plot
+    needs no Panel. `pn.Template` would add parts that this page does not use: a second layout around all roots, a
+    design, and a configuration that is set and restored for each part.
     """
     with models_collected_once(document):
         for name, part in parts.items():
@@ -35,5 +36,5 @@ def put_into(document: Document, parts: Mapping[str, Component], plots: Iterable
 
 @cache
 def _compiled(text: str) -> Template:
-    """The template; Panel gives it the one that it extends as the variable `base`."""
+    """The compiled template; it extends the template that Panel passes as the variable `base`."""
     return Environment(trim_blocks=True, lstrip_blocks=True).from_string(text)

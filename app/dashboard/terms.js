@@ -1,5 +1,5 @@
-// Terms that explain themselves: hover, focus or touch shows a term's definition from docs/glossary.md. In each text
-// only the first use of a term does so.
+// Definitions of terms: hover, focus or touch shows the definition from docs/glossary.md. In each text only the first
+// use of a term has its definition.
 
 import { explainSuccessor, hideMeaning, nowExplained, showMeaning } from "../parts/toolkit/bubble.js";
 import { element } from "../parts/toolkit/dom.js";
@@ -43,7 +43,7 @@ function inText(node, seen) {
   inText(rest, seen);
 }
 
-// Marks the terms of a text. Where it was made anew under a pointer that rests on a term, its meaning stays.
+// Marks the terms of a text. If the text was made anew under a pointer that rests on a term, the definition stays.
 export function explainTerms(root) {
   const seen = new Set();
   for (const text of root.querySelectorAll(TEXTS))

@@ -2,10 +2,10 @@
 
 import { onScreen, PHONE } from "../parts/toolkit/dom.js";
 
-const CURVE_NAME = "curve"; // stands for the curve among the names of the pages
+const CURVE_NAME = "curve"; // the name of the curve among the names of the pages
 
-// Calls `tell(name, value)` when somebody begins or ceases to look at a page or at the curve. One looks at a page in
-// its tab, or as an overlay, where it hides tabs and curve. A page that works hidden counts as looked at while it is
+// Calls `tell(name, value)` when a visitor begins or ceases to look at a page or at the curve. A page is looked at in
+// its tab, or as an overlay, which hides tabs and curve. A page that works hidden counts as looked at while it is
 // open, even if its window is hidden or its tab is scrolled off the screen. The curve counts as looked at on a phone and
 // in a story, because the status line takes names from it. Scripts find the same names in `granchain.visible`; the event
 // "visible" announces a change.
@@ -14,7 +14,7 @@ export function watchVisibility(pages, tell) {
   const shown = { tabs: true, curve: true }; // which of these elements are on the screen
   let tab = "";
   let inStory = false; // whether a story is shown
-  granchain.visible = new Set([CURVE_NAME]); // what the server starts with
+  granchain.visible = new Set([CURVE_NAME]); // the state with which the server starts
 
   const isOpen = (name) => (granchain.overlay ?? tab) === name;
   const isSeen = (name) => !document.hidden && (granchain.overlay === name || shown.tabs);

@@ -13,10 +13,9 @@ from bokeh.plotting import figure
 from granchain_core.accuracy import Row, compared_methods
 
 from ..format import duration, short_error
-from .theme import AMBER, GREY, TEAL, VIOLET, Theme
+from .theme import GREY, LINE_COLOURS, Theme
 from .themed import apply_theme, empty_figure, themed
 
-_PALETTE = (AMBER, VIOLET, TEAL, "#d6489a", "#a97142", "#86a316", "#6d7fd8", "#c26a52")
 _MARKS = ("circle", "square", "diamond", "triangle", "hex", "star", "inverted_triangle", "square_pin")
 _NAIVE_MARKS = ("x", "cross", "asterisk")
 _NAIVE_COLOUR = GREY
@@ -51,7 +50,7 @@ def styles() -> dict[str, dict[str, Any]]:
         marks = _NAIVE_MARKS if kind == "naive" else _MARKS
         found[way.name] = {
             "marker": marks[number % len(marks)], "dash": _DASHES[way.family], "filled": way.family == "granchain",
-            "colour": _NAIVE_COLOUR if kind == "naive" else _PALETTE[number % len(_PALETTE)]}
+            "colour": _NAIVE_COLOUR if kind == "naive" else LINE_COLOURS[number % len(LINE_COLOURS)]}
     return found
 
 
@@ -151,8 +150,8 @@ def _rings(plot: figure, state: Mapping[str, dict[str, Any]], compact: bool) -> 
         ("now", {"value": "this page now"}, "ink", {"x_offset": 13, "y_offset": -8}),
     ]
     texts = [themed(plot.text("ms", "error", text=text, source=sources[name], text_font_style="bold",
-                              text_alpha=0.0 if compact else 1.0, text_font_size="14px",
+                              text_alpha=0.0 if compact else 1.0,
                               background_fill_alpha=0.0 if compact else 0.8, padding=1, **place),
-                    text_color=role, background_fill_color="card")
+                    text_color=role, background_fill_color="card", text_font_size="figure_text")
              for name, text, role, place in words]
     return [ring, now, *texts[:2]]

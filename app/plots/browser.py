@@ -1,8 +1,8 @@
 """A figure as PNG or SVG, drawn by BokehJS in headless Chromium.
 
 Bokeh's `export_png` and `export_svg` need Selenium and a driver beside the browser. Chromium alone is enough: it takes
-a picture of a page (`--screenshot`) and prints the final DOM of a page (`--dump-dom`), here with what BokehJS's
-`export("svg")` has put into it.
+a picture of a page (`--screenshot`), and prints the final DOM of a page (`--dump-dom`), into which a script puts the
+result of BokehJS's `export("svg")`.
 """
 
 from __future__ import annotations
@@ -10,27 +10,24 @@ from __future__ import annotations
 import html
 import os
 import re
-import shutil
 import subprocess
 import tempfile
 from pathlib import Path
-from textwrap import wrap
 
 from bokeh.models import GridPlot, LayoutDOM, Plot
 from PIL import Image
 
 from granchain_core import BadInput
 
-from .file import caption_height, captioned_html, html_of
+from .chromium import installed_browser
+from .file import CAPTION_LINE, CAPTION_ROOM, CAPTION_SIZE, FONT, caption_height, caption_lines, captioned_html, html_of
 from .theme import Theme
 
-_PROGRAMS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome", "google-chrome-stable",
-             "chrome")
-#: Chromium's sandbox does not start for root, as whom containers often run; anybody else keeps it.
+#: Chromium's sandbox does not start for root, the user of many containers; any other user keeps the sandbox.
 _FOR_ROOT = ["--no-sandbox"] if os.geteuid() == 0 else []
 _OPTIONS = ["--headless", *_FOR_ROOT, "--disable-gpu", "--hide-scrollbars", "--no-first-run", "--disable-sync",
             "--disable-background-networking", "--virtual-time-budget=20000"]
-#: Size of the window minus that of the page [px]. The frame of the window takes some of it; the rest is cut off.
+#: Room around the page in the window [px]. The frame of the window takes a part of it; the rest is cut off.
 _FRAME_ROOM = 200
 #: Longest time for one figure [s].
 _LONGEST_TIME = 120
@@ -50,8 +47,8 @@ const wait = setInterval(() => {
 
 
 def browser() -> str:
-    """The browser that draws; `BadInput` in one sentence where there is none."""
-    found = next((path for name in _PROGRAMS if (path := shutil.which(name))), None)
+    """The path of the browser that draws. Raises `BadInput` if none is installed."""
+    found = installed_browser()
     if found is None:
         raise BadInput("A PNG or SVG is drawn by Chromium or Chrome and none is on the PATH; install one (on Debian: "
                        "apt install chromium), or write an HTML file, whose own menu saves a picture.")
@@ -60,14 +57,13 @@ def browser() -> str:
 
 def png_of(figure: LayoutDOM, title: str, caption: str, theme: Theme, size: tuple[int, int],
            scale: float = 1.5) -> bytes:
-    """The figure in `size` [px] with its caption, `scale` times as many pixels as that."""
+    """The figure in `size` [px] with its caption as PNG, with `scale` image pixels for each of these pixels."""
     _without_tools(figure)
     width, height = size[0], size[1] + caption_height(title, caption, size[0])
     with tempfile.TemporaryDirectory(prefix="granchain-") as folder:
         image = Path(folder) / "picture.png"
-        # The page's body is as high as the image, whatever the window's own frame takes.
-        page = captioned_html(figure, title, caption, theme).replace(
-            "html, body { height: 100%;", f"html {{ height: 100%; }} body {{ width: {width}px; height: {height}px;")
+        # The page's body is as large as the image, whatever the window's own frame takes.
+        page = captioned_html(figure, title, caption, theme, body_size=(width, height))
         _run(folder, page, f"--screenshot={image}", f"--force-device-scale-factor={scale}",
              f"--window-size={width + _FRAME_ROOM},{height + _FRAME_ROOM}")
         if not image.exists():
@@ -97,7 +93,7 @@ def _plots(figure: LayoutDOM) -> list[Plot]:
 
 
 def _without_tools(figure: LayoutDOM) -> None:
-    """An image has no buttons."""
+    """Remove the toolbars: an image has no buttons."""
     for plot in _plots(figure):
         plot.toolbar_location = None
     for panels in [*figure.select({"type": GridPlot}), *([figure] if isinstance(figure, GridPlot) else [])]:
@@ -105,23 +101,23 @@ def _without_tools(figure: LayoutDOM) -> None:
 
 
 def _with_caption(drawn: str, title: str, caption: str, theme: Theme) -> str:
-    """An SVG around the drawn one, with the caption's lines below."""
+    """The drawn SVG inside another SVG, with the lines of the caption below."""
     sizes = re.search(r'<svg[^>]* width="([\d.]+)" height="([\d.]+)"', drawn)
     if sizes is None:
         raise BadInput("The browser's SVG has no size; write an HTML file instead.")
     width, height = float(sizes[1]), float(sizes[2])
-    lines = wrap(f"{title}. {caption}", int(width / 7.6))
-    text = "".join(f'<text x="16" y="{height + 22 + 20 * i:g}">{html.escape(line)}</text>'
+    lines = caption_lines(title, caption, width)
+    text = "".join(f'<text x="16" y="{height + CAPTION_ROOM + CAPTION_LINE * i:g}">{html.escape(line)}</text>'
                    for i, line in enumerate(lines))
-    whole = height + 30 + 20 * len(lines)
+    whole = height + CAPTION_ROOM + CAPTION_LINE * len(lines)
     return (f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:g}" height="{whole:g}" '
             f'viewBox="0 0 {width:g} {whole:g}">'
             f'<title>{html.escape(title)}</title><rect width="100%" height="100%" fill="{theme.card}"/>{drawn}'
-            f'<g font-family="system-ui, DejaVu Sans, sans-serif" font-size="14" fill="{theme.ink}">{text}</g></svg>\n')
+            f'<g font-family="{FONT}" font-size="{CAPTION_SIZE}" fill="{theme.ink}">{text}</g></svg>\n')
 
 
 def _run(folder: str, page: str, *options: str) -> str:
-    """Open a page in the browser; returns what it prints."""
+    """Open a page in the browser; return its output."""
     file = Path(folder) / "page.html"
     file.write_text(page, encoding="utf-8")
     try:

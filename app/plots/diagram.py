@@ -33,7 +33,7 @@ from granchain_core.results.regime import exponent_words
 from ..format import figures_of, in_words, short_error
 from .axes import Scale, knob_scale
 from .regimes import REGIME_MARKS, regime_key
-from .theme import BROWN, Theme
+from .theme import BROWN, GREY, MARK_COLOUR, MARK_EDGE, Theme
 from .themed import apply_theme, empty_figure, themed
 
 #: What a cell may be, in the curve's colours, each with a hatch of its own.
@@ -62,7 +62,7 @@ def diagram(found: ParameterMap, theme: Theme, shown: str = "force", now: tuple[
                         y_range=_range(grid.y, up), **{f"{side}_axis_type": "log" if _by_ratio(axis) else "linear"
                                                        for side, axis in (("x", grid.x), ("y", grid.y))})
     source = ColumnDataSource(cell_rows(grid, computed), name="cells")
-    mapper = LogColorMapper(name="force colours", palette=Inferno256[::4], low=1.0, high=10.0, nan_color="#888888")
+    mapper = LogColorMapper(name="force colours", palette=Inferno256[::4], low=1.0, high=10.0, nan_color=GREY)
     edges: dict[str, Any] = {"left": "left", "right": "right", "bottom": "bottom", "top": "top", "source": source,
                              "line_color": None}
     force = plot.quad(**edges, fill_color=transform("force", mapper), name="force")
@@ -86,8 +86,8 @@ def diagram(found: ParameterMap, theme: Theme, shown: str = "force", now: tuple[
     for name, properties in {**shown_models(shown), **scale_models(computed)}.items():
         plot.select_one({"name": name}).update(**properties)
     bar.update(title_text_color=theme.soft, major_label_text_color=theme.ink, background_fill_color=theme.card,
-               title_text_font_style="normal", major_label_text_font_size=f"{theme.small_text_size}px",
-               title_text_font_size=f"{theme.small_text_size}px", title_standoff=2)
+               title_text_font_style="normal", major_label_text_font_size=theme.figure_text,
+               title_text_font_size=theme.figure_text, title_standoff=2)
     plot.xaxis.axis_label, plot.yaxis.axis_label = across.label, up.label
     plot.grid.visible = False
     return apply_theme(plot, theme)
@@ -123,16 +123,16 @@ def _draw_curves(plot: figure, grid: Grid, curves: Sequence[BifurcationCurve]) -
             "x": [point.x / across.factor for point in curve.points],
             "y": [point.y / up.factor for point in curve.points],
             "tooltip": [curve.sentence(grid.x.knob, grid.y.knob)] * len(curve.points)}, name="bifurcation curve")
-        plot.line("x", "y", source=source, line_color="#ffffff", line_width=5)
-        line = plot.line("x", "y", source=source, line_color="#000000", line_width=2, line_dash=_DASHES[curve.kind])
-        ends = plot.scatter("x", "y", source=source, size=5, fill_color="#000000", line_color="#ffffff")
+        plot.line("x", "y", source=source, line_color=MARK_EDGE, line_width=5)
+        line = plot.line("x", "y", source=source, line_color=MARK_COLOUR, line_width=2, line_dash=_DASHES[curve.kind])
+        ends = plot.scatter("x", "y", source=source, size=5, fill_color=MARK_COLOUR, line_color=MARK_EDGE)
         plot.add_tools(HoverTool(renderers=[line, ends], tooltips=[("", "@tooltip")], line_policy="nearest"))
 
 
 def _marks(plot: figure, now: dict[str, Any]) -> None:
     """Where the page is now, black on white, so that it is seen on every colour; and a cell chosen by the keyboard."""
     here = ColumnDataSource(now, name="now")
-    for colour, width in (("#ffffff", 5), ("#000000", 2)):
+    for colour, width in ((MARK_EDGE, 5), (MARK_COLOUR, 2)):
         plot.scatter("x", "y", source=here, marker="circle_cross", size=20, fill_color=None, line_color=colour,
                      line_width=width)
     cursor = ColumnDataSource({name: [] for name in ("left", "right", "bottom", "top")}, name="cursor")

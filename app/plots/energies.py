@@ -40,4 +40,4 @@ def energy_bar(mapper: LinearColorMapper, theme: Theme) -> ColorBar:
     """The colour bar, with the energies on its axis."""
     return ColorBar(color_mapper=mapper, width=12, padding=6, ticker=BasicTicker(desired_num_ticks=5),
                     background_fill_color=theme.card, major_label_text_color=theme.ink,
-                    major_label_text_font_size=f"{theme.small_text_size - 2}px", bar_line_color=None, name="energies")
+                    major_label_text_font_size=theme.smallest_figure_text, bar_line_color=None, name="energies")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+from textwrap import wrap
 from typing import Any
 
 from bokeh.embed import file_html
@@ -12,18 +13,20 @@ from bokeh.resources import INLINE
 from .item import with_own_document
 from .theme import Theme
 
-#: Height of a line of a caption [px].
-_CAPTION_LINE = 20
+#: Fonts of a caption.
+FONT = "system-ui, DejaVu Sans, sans-serif"
+#: Size of the text of a caption, and the height of a line [px].
+CAPTION_SIZE, CAPTION_LINE = 15, 20
 #: Room around a caption [px].
-_CAPTION_ROOM = 22
-#: Characters in a pixel of its width.
-_CHARACTERS_PER_PIXEL = 1 / 7.6
+CAPTION_ROOM = 22
+#: Width of a character of a caption, on average [px].
+_CHARACTER_WIDTH = 7.6
 _PAGE = """{%% block contents %%}
 <style>
   html, body { height: 100%%; margin: 0; background: %(card)s; color: %(ink)s; }
-  body { display: flex; flex-direction: column; }
+  body { display: flex; flex-direction: column; %(body)s }
   main { flex: 1; min-height: 0; }
-  p { flex: none; margin: 6px 16px 14px; font: 15px/%(line)dpx system-ui, "DejaVu Sans", sans-serif; }
+  p { flex: none; margin: 6px 16px 14px; font: %(size)dpx/%(line)dpx %(font)s; }
 </style>
 <main>{{ super() }}</main>
 <p>%(caption)s</p>
@@ -31,14 +34,17 @@ _PAGE = """{%% block contents %%}
 
 
 def html_of(figure: LayoutDOM, title: str) -> str:
-    """A whole page with a figure of this package, which fills the window; Bokeh's own scripts are in it."""
+    """A whole page with a figure that fills the window; BokehJS is part of the page."""
     return _page(figure, title)
 
 
-def captioned_html(figure: LayoutDOM, title: str, caption: str, theme: Theme) -> str:
-    """A whole page with a figure, its title in bold and a caption under it."""
+def captioned_html(figure: LayoutDOM, title: str, caption: str, theme: Theme,
+                   body_size: tuple[int, int] | None = None) -> str:
+    """A whole page with a figure, its title in bold and its caption, as large as `body_size` [px] or the window."""
+    body = "" if body_size is None else f"width: {body_size[0]}px; height: {body_size[1]}px;"
     words = f"<b>{html.escape(title)}.</b> {html.escape(caption)}".replace("{", "&#123;")
-    template = _PAGE % {"card": theme.card, "ink": theme.ink, "line": _CAPTION_LINE, "caption": words}
+    template = _PAGE % {"card": theme.card, "ink": theme.ink, "body": body, "size": CAPTION_SIZE,
+                        "line": CAPTION_LINE, "font": FONT, "caption": words}
     return _page(figure, title, template=template)
 
 
@@ -48,5 +54,10 @@ def _page(figure: LayoutDOM, title: str, **options: Any) -> str:
 
 
 def caption_height(title: str, caption: str, width: int) -> int:
-    """Room that `captioned_html` needs for its caption in a window of this width [px]."""
-    return _CAPTION_ROOM + _CAPTION_LINE * -(-(len(title) + len(caption) + 2) // int(width * _CHARACTERS_PER_PIXEL))
+    """Height of a caption in a window of this width [px]."""
+    return CAPTION_ROOM + CAPTION_LINE * len(caption_lines(title, caption, width))
+
+
+def caption_lines(title: str, caption: str, width: float) -> list[str]:
+    """Title and caption, divided into lines of this width [px]."""
+    return wrap(f"{title}. {caption}", int(width / _CHARACTER_WIDTH))

@@ -61,8 +61,9 @@ def plane(state: dict[str, dict[str, Any]], theme: Theme, compact: bool = False)
     items = _marks(plot, sources, compact)
     for item in items:
         item.update(**state[item.name])
-    themed(plot.text("x", "y", "words", source=sources["far"], text_font_size="13px", text_align="align",
-                     y_offset="down", text_font_style="bold", text_baseline="middle"), text_color="ink")
+    themed(plot.text("x", "y", "words", source=sources["far"], text_align="align",
+                     y_offset="down", text_font_style="bold", text_baseline="middle"), text_color="ink",
+           text_font_size="small_figure_text")
     if not compact:
         plot.xaxis.axis_label, plot.yaxis.axis_label = "real part of μ", "imaginary part of μ"
         plot.add_layout(Legend(items=items, orientation="horizontal", padding=0, margin=2, glyph_width=16), "above")

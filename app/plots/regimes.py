@@ -7,14 +7,14 @@ diagram, the tab “regimes” and the paper's figures. After a change, run `pyt
 
 from __future__ import annotations
 
-from .theme import BLUE, GREY, OUTPUT_COLOUR
+from .theme import BLUE, CYAN, GREY, ORANGE, OUTPUT_COLOUR, PINK, PURPLE, RED
 
 #: Marker, colour and size of every regime: told apart with and without colour.
 REGIME_MARKS = {
-    "period 1": ("circle", OUTPUT_COLOUR, 7), "period 2": ("diamond", "#a855f7", 11),
-    "period 3": ("triangle", "#f59e0b", 10), "period 4": ("square", "#06b6d4", 8),
-    "period 5+": ("star", "#ec4899", 12), "quasi-periodic": ("circle_dot", BLUE, 9),
-    "chaotic": ("x", "#ef4444", 9), "unsettled": ("dash", GREY, 10),
+    "period 1": ("circle", OUTPUT_COLOUR, 7), "period 2": ("diamond", PURPLE, 11),
+    "period 3": ("triangle", ORANGE, 10), "period 4": ("square", CYAN, 8),
+    "period 5+": ("star", PINK, 12), "quasi-periodic": ("circle_dot", BLUE, 9),
+    "chaotic": ("x", RED, 9), "unsettled": ("dash", GREY, 10),
 }
 
 #: The markers as characters, for a legend in words.

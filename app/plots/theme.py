@@ -1,4 +1,7 @@
-"""Themes: their colours and line widths, for the page and for its figures (themed.py)."""
+"""Themes: colours by role, line widths and text sizes, for the page and for its figures (themed.py).
+
+Colours of marks and palettes, which are the same in every theme, are here as well.
+"""
 
 from __future__ import annotations
 
@@ -17,39 +20,94 @@ BLUE = "#3b82f6"
 DRIVE_COLOUR = "#e5484d"
 INPUT_COLOUR = BLUE
 OUTPUT_COLOUR = "#2f9e6a"
+#: Colours of regimes (regimes.py), besides those above.
+PURPLE = "#a855f7"
+ORANGE = "#f59e0b"
+CYAN = "#06b6d4"
+PINK = "#ec4899"
+RED = "#ef4444"
+#: Colours of lines of one kind, such as the methods of a comparison, in this order.
+LINE_COLOURS = (AMBER, VIOLET, TEAL, "#d6489a", "#a97142", "#86a316", "#6d7fd8", "#c26a52")
+#: A mark that is seen on every colour of a palette, and its edge.
+MARK_COLOUR = "#000000"
+MARK_EDGE = "#ffffff"
+
+#: Text of the page grows with the width of the window: by this share of the width, and so that it has its smallest size
+#: on 1280 pixels. Small text grows less, because it stands where there is least room.
+_GROWTH, _SMALL_GROWTH = 0.0055, 0.0045
+_GROWS_FROM = 1280
+#: Small text on a phone [px], in every theme.
+_PHONE_TEXT_SIZE = 13
 
 
 @dataclass(frozen=True)
 class Theme:
-    """Colours by role, a factor of all line widths, and sizes of words [px].
+    """Colours by role, a factor of all line widths, and text sizes [px].
 
-    `scheme` is "light" or "dark", the colour scheme of what the browser draws itself. The roles `drive`, `input` and
-    `output` have one colour in all themes. `style_sheet` gives the page the same. Links and the browser's storage call
-    the theme `look`, a name that is kept for links that were sent.
+    The roles `drive`, `input` and `output` have one colour in all themes. `style_sheet` gives the same roles to the
+    page. Links and the browser's storage call the theme `look`, a name that is kept for links that were sent.
     """
 
+    #: Motion of the driver.
     drive: ClassVar[str] = DRIVE_COLOUR
+    #: Input force.
     input: ClassVar[str] = INPUT_COLOUR
+    #: Output force.
     output: ClassVar[str] = OUTPUT_COLOUR
 
+    #: "light" or "dark": the colour scheme of what the browser draws itself, such as scroll bars.
     scheme: str
+    #: Background of the page.
     paper: str
+    #: Background of its cards and of figures.
     card: str
+    #: Text, and lines that matter most.
     ink: str
+    #: Secondary text, and titles of axes.
     soft: str
+    #: Grid lines and borders.
     faint: str
+    #: Links, the focus, whatever is chosen; the first line of a figure where no quantity has a colour.
     accent: str
+    #: A bead at rest, and whatever is made of metal.
     steel: str
+    #: The reflection on a bead.
     steel_shine: str
+    #: The edge of a bead.
     steel_edge: str
+    #: The number on a bead.
     steel_number: str
+    #: Text of a warning.
     warn: str
+    #: Background of a warning.
     warn_paper: str
+    #: A factor of all line widths.
     line_scale: float = 1.0
+    #: Text of the page, in windows of up to 1280 pixels and at most [px].
     text_size: int = 15
+    largest_text_size: int = 24
+    #: Small text of the page likewise; text of figures has the smaller size [px].
     small_text_size: int = 14
+    largest_small_text_size: int = 20
+    #: A line of wrong numbers beside the right ones.
     naive: str = "#d97706"
+    #: The second line of a figure, such as the observer beside its chain.
     second: str = VIOLET
+
+    @property
+    def figure_text(self) -> str:
+        """Size of text in figures."""
+        return f"{self.small_text_size}px"
+
+    @property
+    def small_figure_text(self) -> str:
+        """Size of text beside the marks of a figure."""
+        return f"{self.small_text_size - 1}px"
+
+    @property
+    def smallest_figure_text(self) -> str:
+        """Size of text where it stands close: in legends inside of a figure, at many marks."""
+        return f"{self.small_text_size - 2}px"
 
 
 THEMES = {
@@ -65,23 +123,40 @@ THEMES = {
                        accent="#003cc0", steel="#66707d",
                        steel_shine="#ffffff", steel_edge="#4a525d", steel_number="#000000",
                        warn=BROWN, warn_paper="#ffe8c2",
-                       line_scale=1.8, text_size=19, small_text_size=17),
+                       line_scale=1.8, text_size=19, largest_text_size=28, small_text_size=17,
+                       largest_small_text_size=22),
 }
 
 
+def _text_sizes(theme: Theme) -> dict[str, str]:
+    """The text sizes of a page in this theme, which grow with the window, and what depends on them."""
+    sizes = {}
+    for name, smallest, largest, growth in (
+            ("--text-size", theme.text_size, theme.largest_text_size, _GROWTH),
+            ("--small-text-size", theme.small_text_size, theme.largest_small_text_size, _SMALL_GROWTH)):
+        at_none = smallest - growth * _GROWS_FROM
+        sizes[name] = f"clamp({smallest}px, {at_none:.3g}px + {100 * growth:.3g}vw, {largest}px)"
+    # Where text is large, the page leaves out what needs much room (`.roomy`).
+    return {**sizes, **({"--roomy": "none"} if theme.text_size > Theme.text_size else {})}
+
+
 def style_sheet() -> str:
-    """The themes as CSS: a custom property for every role. A theme's rule has only what differs from the first one's,
-    so that the page may change sizes on large and small screens for all themes at once. None of them may be
-    called `--font-size`: Bokeh's style sheet sets that one in every figure.
+    """The themes as CSS: a custom property for every role. The rule of a theme has what differs from the first theme.
+
+    No property may be called `--font-size`, which Bokeh's style sheet sets in every figure.
     """
-    rules: list[str] = []
     first: dict[str, str] = {}
+    # Registered, the sizes are known to canvases in pixels.
+    rules = [f'@property {name} {{ syntax: "<length>"; inherits: true; initial-value: {size}px; }}\n'
+             for name, size in (("--text-size", Theme.text_size), ("--small-text-size", Theme.small_text_size))]
     for name, theme in THEMES.items():
         values = {**asdict(theme), "drive": theme.drive, "input": theme.input, "output": theme.output}
-        roles = {f"--{role.replace('_', '-')}": str(value) for role, value in values.items()}
+        roles = {f"--{role.replace('_', '-')}": str(value) for role, value in values.items()
+                 if not role.endswith("text_size")}
         roles["color-scheme"] = roles.pop("--scheme")
-        for size in ("--text-size", "--small-text-size"):
-            roles[size] += "px"
+        roles |= _text_sizes(theme)
+        if not first:
+            roles["--phone-text-size"] = f"{_PHONE_TEXT_SIZE}px"
         own = "; ".join(f"{role}: {value}" for role, value in roles.items() if first.get(role) != value)
         rules.append(f':root{(first and f"[data-theme={name}]") or ""} {{ {own} }}\n')
         first = first or roles

@@ -34,9 +34,10 @@ def empty_figure(tools: str = TOOLS, **options: Any) -> figure:
 
 
 def themed(model: Any, plot: Plot | None = None, **roles: str | float) -> Any:
-    """Mark what follows the theme: a string is a colour's role, a number a line width in pixels. Returns `model`.
+    """Mark what follows the theme: a string is a role, a number is a line width in pixels. Returns `model`.
 
-    With `plot`, a figure that is made once and changes its theme, the model gets the present one at once.
+    A role is an attribute of `Theme`: a colour or a text size. `plot` is a figure that is made once and changes its
+    theme; with it the model gets the present theme at once.
     """
     model.tags = [*model.tags, {"theme": roles}]
     if plot is not None:
@@ -63,13 +64,13 @@ def apply_theme(plot: figure, theme: Theme) -> figure:
     """Give a figure, and all in it that `themed` has named, the colours and widths of a theme. Returns `plot`."""
     plot.background_fill_color = plot.border_fill_color = theme.card
     plot.grid.grid_line_color = theme.faint
-    small = f"{theme.small_text_size}px"
-    plot.title.update(text_color=theme.soft, text_font_size=small)
+    size = theme.figure_text
+    plot.title.update(text_color=theme.soft, text_font_size=size)
     for axis in (*plot.xaxis, *plot.yaxis):
         axis.update(axis_label_text_color=theme.soft, major_label_text_color=theme.ink,
-                    axis_label_text_font_size=small, major_label_text_font_size=small)
+                    axis_label_text_font_size=size, major_label_text_font_size=size)
     for legend in plot.legend:
-        legend.update(label_text_color=theme.ink, label_text_font_size=small, background_fill_color=theme.card,
+        legend.update(label_text_color=theme.ink, label_text_font_size=size, background_fill_color=theme.card,
                       border_line_color=None)
     follow_theme(plot, theme)
     return plot

@@ -1,4 +1,4 @@
-"""The method and setting that the main page uses now, and their place among the measured rows."""
+"""The method and setting that the main page uses now, and its place among the measured rows."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class PlacedSetting:
 
 
 def shown_setting(scene: Scene, settled: Settled | None, live: bool) -> Setting:
-    """The setting of the last computation behind the picture, by the rule of steady/settling/refine_orbit.py."""
+    """The setting of the last computation of the picture, by the rule of steady/settling/refine_orbit.py."""
     if live:
         return LIVE_SETTING
     if settled is None:
@@ -37,7 +37,7 @@ def shown_setting(scene: Scene, settled: Settled | None, live: bool) -> Setting:
 
 
 def locate(setting: Setting, rows: Sequence[Row]) -> PlacedSetting | None:
-    """Where `setting` lies on its method's measured line; None until that has two points."""
+    """The place of `setting` on the measured line of its method; None until the line has two points."""
     value = setting.tolerance if METHODS[setting.method].error_control else float(setting.refine)
     known = sorted((row.value, row.error, row.wall_s) for row in rows
                    if row.method == setting.method and not row.failure and 0.0 < row.error < np.inf)

@@ -1,4 +1,4 @@
-"""The list of what is being computed for one session."""
+"""The list of computations of one session."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ def picture_activities(session: Session, busy: bool) -> list[Activity]:
 
 
 def account_activity(session: Session, busy: bool) -> Activity:
-    """The energy account, which is computed after the picture if it is switched on."""
+    """The energy account, which is computed after the picture if the account is switched on."""
     return ("energy account", *_account(session, busy))
 
 
 def _lyapunov(settled: Settled | None) -> tuple[str, str]:
-    """State and detail of the exponent, which is computed only for a motion that does not become periodic."""
+    """State and detail of the exponent, which is computed for motions that do not become periodic."""
     if settled is None or settled.regime.lyapunov is None:
         return OFF, "only for motions that do not become periodic"
     return READY, f"{exponent_words(*settled.regime.lyapunov)} per period"

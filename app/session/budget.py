@@ -10,11 +10,11 @@ from granchain_core.run.budget import picture_seconds, refuse_long_picture
 from ..frames import PERIODS, samples_for
 from .scene_facts import slider_range
 
-#: The longest that a first picture may take unless the visitor insists [s].
+#: Longest time of a first picture unless the visitor insists [s].
 FIRST_PICTURE = 5.0
 #: Processor time after which the search for the steady state of one picture is given up [s].
 WHOLE_PICTURE = 120.0
-#: Most that a resonance curve may take that nobody asked for [s].
+#: Longest time of a resonance curve that the page computes unasked [s].
 UNASKED_CURVE = 120.0
 
 #: Drive periods before the first picture, and in it.
@@ -24,7 +24,7 @@ _CURVE_PERIODS = 10_000
 
 
 def check_first_picture(scene: Scene) -> None:
-    """Raise `OverBudget` if the first picture would take too long; the sentence says what would fit."""
+    """Raise `OverBudget` if the first picture would take too long; its sentence says what would fit."""
     refuse_long_picture(scene, _FIRST_PICTURE_PERIODS, samples_for(scene), FIRST_PICTURE)
 
 
@@ -46,9 +46,9 @@ class TooLong(BadInput):
 
 @functools.lru_cache(maxsize=64)
 def curve_affordable(scene: Scene) -> bool:
-    """Whether there is a curve, and it is short enough for the page to compute it without being asked.
+    """Whether the scene has a curve that is short enough to be computed unasked.
 
-    The time is estimated from the frequency in the middle of its range.
+    The time is estimated at the frequency in the middle of the range.
     """
     if not scene.is_driven:
         return False

@@ -1,4 +1,4 @@
-"""The energy residual of the picture: its motion computed again with work and loss."""
+"""The energy residual of the picture: its motion is computed again with work and loss."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ from granchain_core.execution.stop import Stop
 from granchain_core.integrate import Engine, dop853_setting
 from granchain_core.results.run import residual
 
-#: Tolerance per step over the accuracy asked for: small, so that the residual is not the account's own error.
+#: Tolerance per step as a fraction of the accuracy asked for: so small that the residual is not the account's own
+#: error.
 _TOLERANCE_FRACTION = 0.01
 
 

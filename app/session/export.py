@@ -1,4 +1,4 @@
-"""Exports: the picture's data as tables, and a program that computes them again."""
+"""Exports: the picture's data as tables, and a program that computes the data again."""
 
 from __future__ import annotations
 
@@ -18,19 +18,16 @@ from granchain_core.results.regime_columns import evidence_columns
 from ..frames import jumps_of
 from .scene_facts import without_frequency
 
-#: Names of the forces in a program, and the fields of a run.
+#: The fields of a run by the names that the forces have in a program.
 _FORCES = {"largest output force [N]": "max_output_force", "its elastic part [N]": "max_output_force_elastic",
            "largest input force [N]": "max_input_force"}
-#: Relative difference above which a program reports that its result differs from the page's: the last of six digits.
+#: Relative difference above which a program reports another result than the page: half of the last of six digits.
 _SAME_DIFFERENCE = 5e-6
 
 
 @dataclass(frozen=True, eq=False)
 class Screen:
-    """A settled picture with its initial state, its complete curves by the start of each, and its address.
-
-    An initial state of None is rest.
-    """
+    """A settled picture with its initial state (None is rest), its complete curves by their start, and its address."""
 
     run: Run
     initial_state: State | None
@@ -44,10 +41,7 @@ class Screen:
 
 
 def trains_csv(run: Run) -> str:
-    """The force trains and the drive, one row a sample; what a force does between samples stands in comments above.
-
-    A force that jumps does so from 0.
-    """
+    """The force trains and the drive, one row a sample. Comments above list the jumps between samples, from 0."""
     comments = [f"# {name} force jumps from 0 to {float(force)!r} N at {float(time)!r} s"
                 for name, contact in (("input", 0), ("output", run.scene.N))
                 for time, force in jumps_of(run, contact)]
@@ -61,7 +55,7 @@ def trains_csv(run: Run) -> str:
 def curve_csv(curves: Mapping[str, Sequence[CurvePoint]]) -> str:
     """The resonance curves, one row a point: largest forces, and the regime with its evidence.
 
-    `claim` is the stated relative error of the output force; a cell is empty where a number is not known.
+    `claim` is the stated relative error of the output force. The cell of an unknown number is empty.
     """
     all_points = [(start, point) for start, points in curves.items() for point in points]
     evidence = evidence_columns([point.regime for _, point in all_points], "frequency")
@@ -79,12 +73,12 @@ def curve_csv(curves: Mapping[str, Sequence[CurvePoint]]) -> str:
 
 
 def script(screen: Screen) -> str:
-    """A Python program that computes what is on the screen and says whether its results agree."""
+    """A Python program that computes the picture and its curves again, and says whether its results agree."""
     return "\n\n".join(source for _, source in _pieces(screen)) + "\n"
 
 
 def notebook(screen: Screen) -> str:
-    """A Jupyter notebook that computes what is on the screen, compares the results and draws them."""
+    """A Jupyter notebook that computes the picture and its curves again, compares the results and draws them."""
     cells: list[dict[str, Any]] = []
     for words, source in [*_pieces(screen), *_drawings(screen)]:
         if words:
@@ -178,12 +172,12 @@ def _csv(titles: Sequence[str], rows: Any) -> str:
     return text.getvalue()
 
 
-#: What can be exported, in words.
+#: Kinds of exports, in words.
 EXPORTS = {
     "trains": "forces over time, CSV", "curve": "resonance curve, CSV", "hdf5": "everything, HDF5",
     "script": "Python script that computes it again", "notebook": "Jupyter notebook that computes it again",
 }
-#: Those that are texts: the end of the file name, and the function that writes the text.
+#: Exports that are texts: the end of the file name, and the function that writes the text.
 TEXTS: dict[str, tuple[str, Callable[[Screen], str]]] = {
     "trains": ("-trains.csv", lambda screen: trains_csv(screen.run)),
     "curve": ("-curve.csv", lambda screen: curve_csv(screen.curves)),

@@ -1,4 +1,4 @@
-"""The interface of the dashboard that pages use; `Controller` implements it, and tests have their own."""
+"""The interface of the dashboard that pages use; `Controller` implements it, and so do hosts of tests."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ class Caller(Protocol):
         """Call `action` with the document locked, after `seconds`."""
 
     def on_close(self, action: Callable[[], object]) -> None:
-        """Call `action` when the session ends; nothing is called by `next_tick` or `call_later` from then on."""
+        """Call `action` when the session ends; after that, `next_tick` and `call_later` call nothing."""
 
 
 class WorkHost(Caller, Protocol):
-    """What work in the background needs: calls, whether to wait for the picture, and whom to tell of errors.
+    """The host of background work: calls, whether work has to wait for the picture, and reports of errors.
 
-    A `Task` waits while `awaiting_picture`; peak names, pins and sweeps, which compute much, also wait for a live step
+    A `Task` waits while `awaiting_picture`. Peak names, pins and sweeps compute much, and also wait for a live step
     (`busy`).
     """
 
@@ -41,13 +41,13 @@ class WorkHost(Caller, Protocol):
 
     @property
     def awaiting_picture(self) -> bool:
-        """Whether a knob has moved and its steady picture is not there yet; false for a live run, which never ends."""
+        """Whether a knob has moved and its settled picture has not come; false for a live run, which never ends."""
 
     def report_failure(self, error: Exception) -> None:
-        """Show the visitor a failure that has no place on its own page."""
+        """Show the visitor a failure for which a page has no place."""
 
     def report_fault(self, error: Exception, sentence: str) -> None:
-        """Log an error of granchain itself, and show `sentence`, which is empty where a page shows its own."""
+        """Log an error of granchain itself, and show `sentence`; it is empty if a page shows a sentence of its own."""
 
 
 class Host(WorkHost, Protocol):
@@ -68,29 +68,29 @@ class Host(WorkHost, Protocol):
         """Whether a resonance curve is being computed."""
 
     def complete_curve(self) -> list[CurvePoint]:
-        """The resonance curve from rest of the present knobs, in order of frequency; empty unless it is complete."""
+        """The complete resonance curve from rest of the present knobs, in order of frequency; otherwise empty."""
 
     def show_measured_curve(self, measured: Measured | None) -> Difference | None:
-        """Draw a measured curve over the resonance curve, or none; return how they differ if the latter is complete."""
+        """Draw a measured curve over the resonance curve, or none; return how it differs from a complete curve."""
 
     def show_measured_series(self, found: Overlay | None) -> None:
         """Draw a measured series over the force trains, or none."""
 
     def activities(self) -> list[Activity]:
-        """Everything that is computed for this session, or could be."""
+        """All computations of this session, including those that are switched off."""
 
     def show(self, scene: Scene, state: State | None = None, mode: str = "settled") -> None:
-        """Turn the knobs to `scene` and show its motion, from `state` or from where the visitor chose.
+        """Turn the knobs to `scene` and show its motion, from `state` or from the start that the visitor chose.
 
-        In live mode the run goes on with the new knobs, unless a state is given. Raises `BadInput` for a mode other
-        than "settled" and "live".
+        In live mode the run goes on with the new knobs, unless a state is given. `mode` is "settled" or "live"; raises
+        `BadInput` for any other.
         """
 
     def address_changed(self) -> None:
-        """Send the page its new address: something that a link carries has changed, but no knob."""
+        """Send the page its new address: a field of the link other than a knob has changed."""
 
     def open(self, scene: Scene, state: State | None, curves: str) -> None:
         """Open a scene, maybe another preset, settled from `state` or from rest.
 
-        `curves` are those of a link; an empty text leaves them as they are.
+        `curves` is the field of a link; an empty text leaves the curves as they are.
         """

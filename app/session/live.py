@@ -1,4 +1,4 @@
-"""The live run, which continues while knobs move, one step per painted picture."""
+"""The live run, which continues while knobs move: one step for each painted picture."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ from ..serve.computing.turns import TurnFlag
 
 #: Viewing time that the first step of a run, or the first after a pause, makes up for [s]: two frames of a screen.
 _FIRST_STEP = 0.03
-#: Longest viewing time [s] that one step makes up for: the run does not jump after its tab was hidden.
+#: Longest viewing time that one step makes up for [s]: the run does not jump after its tab was hidden.
 _LONGEST_STEP = 0.1
-#: Longest time [s] that one step is to compute.
+#: Intended longest computing time of one step [s].
 _LONGEST_COMPUTING = 0.1
 
 
 @dataclass(frozen=True)
 class LiveStep:
-    """One step of the live run: the last few periods, the run of the newest samples, drive periods since rest."""
+    """One step of the live run: the last few periods, the run of the newest samples, drive periods since the start."""
 
     frames: Frames
     run: Run
@@ -35,9 +35,9 @@ class LiveStep:
 class LiveRun:
     """One chain that keeps running, from rest or from `start`.
 
-    The chain itself is made at the first step: that may compile or load kernels, for which the event loop has no time.
-    `step` and `advance` are called in a worker thread, which reads `scene`, the knobs that the next sample will have;
-    everything else is used by the page. The run holds its `flag` while it computes.
+    The first step makes the chain: this may compile or load kernels, for which the event loop has no time. A worker
+    thread calls `step` and `advance`, and reads `scene`, which has the knobs of the next sample. The page uses
+    everything else. The run holds its `flag` while it computes.
     """
 
     def __init__(self, scene: Scene, cpu_time: CpuTime, start: State | None = None) -> None:
@@ -67,18 +67,18 @@ class LiveRun:
             self._reset = True
 
     def hold(self) -> None:
-        """Let no viewing time pass until the next step."""
+        """Stop the clock until the next step: no viewing time passes."""
         self._last = None
 
     def close(self) -> None:
-        """End the computation under way: the session ended."""
+        """The session has ended: end the computation under way."""
         self.flag.set()
 
     def step(self, periods_per_second: float) -> LiveStep:
         """Advance by the viewing time since the last step; in slow motion, wait for the next sample.
 
-        No step takes longer than `_LONGEST_COMPUTING`, so that a slow chain lags behind the clock and not behind its
-        knobs.
+        A step computes for about `_LONGEST_COMPUTING` at most, so that a slow chain lags behind the clock and not
+        behind its knobs.
         """
         rate = periods_per_second * self.samples
         now = time.perf_counter()

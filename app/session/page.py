@@ -17,10 +17,10 @@ Actions = Mapping[str, Callable[[dict[str, Any]], None]]
 class Page:
     """One page of one session. Hooks are called with the document locked; by default they do nothing.
 
-    All sessions share the event loop in which hooks and actions run, so none may take longer than about ten
-    milliseconds; longer work is a `Task`.
+    Hooks and actions run in the event loop, which all sessions share. So each may take about ten milliseconds at most;
+    longer work is a `Task`.
 
-    `actions` maps the "do" of a browser message to its handler; every name may be used only once in the dashboard.
+    `actions` maps the "do" of a browser message to its handler. A name may be used only once in the dashboard.
     """
 
     actions: Actions
@@ -31,18 +31,18 @@ class Page:
         return None
 
     def picture_requested(self) -> None:
-        """A new picture was requested: what belongs to the old one is out of date."""
+        """A new picture was requested: results of the old picture are out of date."""
 
     def scene_changed(self) -> None:
         """The knobs have changed, or another scene was opened."""
 
     def address_applied(self) -> None:
-        """The session became what an address says: a visit, or a step back or forward."""
+        """The session was set from an address, after a step back or forward."""
 
     def picture_ready(self, settled: Settled) -> None:
-        """A settled picture has been offered to the browser, whose pace may still hold it back.
+        """A settled picture was offered to the browser, and may still wait for the browser's pace.
 
-        A better one for these knobs may follow unless `settled.final`.
+        A better picture for these knobs may follow unless `settled.final`.
         """
 
     def curve_ready(self) -> None:
@@ -52,7 +52,7 @@ class Page:
         """A measured curve was compared with the complete curve from rest; with None, a new curve was begun."""
 
     def theme_changed(self, theme: Theme) -> None:
-        """The page is shown in another theme; a view's own figures follow by themselves."""
+        """The page has another theme; the figures of a view follow by themselves."""
 
     def visibility_changed(self, visible: bool) -> None:
         """Called when the page or its tab becomes visible or hidden; it is hidden at first."""

@@ -1,4 +1,4 @@
-"""What the scripts take from Python: `window.pageConstants`, which the template writes before the inline scripts."""
+"""Constants that the scripts take from Python: the template writes `window.pageConstants` before the inline scripts."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Pinned motions as links, and their numbers beside those of the present motion."""
+"""Pinned motions as links, and their numbers beside the numbers of the present motion."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ..format import figures_of, in_words, signed_in_words
 from .share import PINS, START, decode, encode
 from .starts import read_start, start_text
 
-#: What the pins are called, in their order.
+#: Names of the pins, in their order.
 NAMES = "ABC"
 _NOTHING = ["", "", ""]
 
@@ -36,11 +36,15 @@ def pin_texts(pins: Sequence[Pin]) -> dict[str, str]:
 
 
 def read_pin(text: str) -> Pin:
-    """Read the pin of a link's field. Raises `BadInput` for the first bad value: a pin is read whole or not at all."""
-    shown, fields, refused = decode(text)
+    """Read the pin of a link's field. Raises `BadInput` for any bad value: a pin is read whole or not at all."""
+    try:
+        shown, fields, refused = decode(text)
+        start = read_start(fields[START], shown) if START in fields else None
+    except BadInput:
+        refused = [text]
     if refused:
-        raise BadInput(f"A pin of the link was left out. {refused[0]}")
-    return Pin(shown, read_start(fields[START], shown) if START in fields else None)
+        raise BadInput("A pin of the link is damaged and was left out.")
+    return Pin(shown, start)
 
 
 def setting_words(pin: Scene, now: Scene) -> str:
@@ -61,9 +65,9 @@ def _knob(name: str, value: object) -> str:
 
 
 def compared_rows(now: Run, pinned: Sequence[Run | None]) -> list[dict[str, object]]:
-    """The numbers of the present motion and of each pinned one, with difference and ratio of the present one to it.
+    """Rows of numbers: the present motion, and for each pinned motion its number, the difference and the ratio.
 
-    A pin that is still being computed has None, and empty cells.
+    A pin that is still being computed is None here, and has empty cells.
     """
     rows: list[dict[str, object]] = []
     for title, attribute, error in (("output force", "max_output_force", "output"),

@@ -10,7 +10,7 @@ from granchain_core.precompile.pieces import FIXED_STEP_KERNELS
 
 from ..serve.compiling.compiler import compiling_words
 
-#: State of an entry in the list of what is computed now: nobody asked for it.
+#: State of an entry in the list of computations: nobody has asked for it.
 OFF = "off"
 #: Nothing is left to do.
 READY = "ready"
@@ -21,7 +21,7 @@ COMPUTING = "computing"
 Status = Literal["none", "waiting", "compiling", "settling", "computing", "measuring", "following", "searching",
                  "drawing", "done", "stopped", "failed"]
 
-#: What a page says of a computation that is under way or waits for its turn.
+#: The words of a page for a computation that is under way or waits for its turn.
 UNDER_WAY: dict[Status, str] = {
     "waiting": "waiting for its turn …", "compiling": "compiling …", "settling": "looking for the first orbit …",
     "computing": "computing …", "measuring": "measuring …", "following": "following …", "searching": "searching …",
@@ -33,8 +33,9 @@ UNDER_WAY: dict[Status, str] = {
 class StatusWords:
     """The words of one computation of a page.
 
-    compiles, piece : what has to be compiled for it, and the piece of that which takes longest.
-    kept : what stays when the visitor stops it, empty if nothing does. instead : words in place of `UNDER_WAY`.
+    compiles, piece : words for its kernels, and the piece that takes longest to compile.
+    kept : words for the results that stay when the visitor stops it; empty if none stay.
+    instead : words in place of `UNDER_WAY`.
     """
 
     compiles: str = "the kernels"
@@ -45,8 +46,8 @@ class StatusWords:
     def of(self, status: Status, failure: str = "") -> dict[str, Any]:
         """The entries of `state`, or of a message, that the page shows in the browser.
 
-        `status` itself, `progress` in words (empty where there is nothing to say), whether it is `running`, and
-        `failure`, the sentence that says why it failed.
+        `status` itself, `progress` in words (may be empty), whether the computation is `running`, and `failure`, the
+        sentence that says why the computation failed.
         """
         return {"status": status, "progress": self._words(status), "running": status in UNDER_WAY, "failure": failure}
 

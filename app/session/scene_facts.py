@@ -1,4 +1,4 @@
-"""What the page derives from a scene: ranges of sliders, the chain of a curve over f, the beads of the paper's rig."""
+"""Facts about a scene for the page: ranges of sliders, the chain of a curve over f, the beads of the paper's rig."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def slider_range(current: Scene, name: str) -> tuple[float, float]:
 
 
 def clicked_frequency(current: Scene, frequency: object) -> object:
-    """The frequency of a click on the curve, inside the slider's range; the knob refuses what is not a number."""
+    """The frequency of a click on the curve, inside the slider's range; any other value is left to the knob's check."""
     if not is_number(frequency):
         return frequency
     low, high = slider_range(current, "f")
@@ -26,12 +26,12 @@ def clicked_frequency(current: Scene, frequency: object) -> object:
 
 
 def without_frequency(current: Scene) -> Scene:
-    """The scene with f at a fixed value. It identifies a curve or branch over f, whatever the knob f is set to."""
+    """The scene with f at a fixed value: the key of a curve or branch over f, whatever the value of the knob f."""
     return current.evolve(f=slider_range(current, "f")[0])
 
 
 def rig_beads() -> tuple[Bead, ...]:
-    """The beads of the paper's rig: its stated features are drawn for scenes with these beads."""
+    """The beads of the paper's rig; the features that the paper states are drawn for scenes with these beads."""
     return scene("rig").pattern
 
 

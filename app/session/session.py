@@ -1,6 +1,8 @@
-"""The state of one session's page: scene, mode, start, the last good picture, and a sentence if something failed.
+"""The state of one session: scene, mode, start, the last good picture, and a sentence if something failed.
 
-No Panel and no Bokeh in here, so that every rule of the page can be tested without a browser.
+This module uses neither Panel nor Bokeh, so that every rule of the page can be tested without a browser. The state is
+changed by the controller and its parts (`app/dashboard`), and by the pages *analysis*, *data*, *effects*, *map* and
+*stories*, always with the document locked.
 """
 
 from __future__ import annotations
@@ -25,24 +27,25 @@ STARTS = VIEW_VALUES["start"]
 
 @dataclass
 class Session:
-    """The state of one page; methods change it or raise `BadInput` and leave it as it was.
+    """The state of one page. A method changes the state, or raises `BadInput` and leaves the state as it was.
 
-    The values of fields that a link has are listed in share.py (`VIEW`).
+    share.py lists the values of the fields that a link has (`VIEW`).
     """
 
-    #: The chain with the knobs as they are.
+    #: The chain with the present knobs.
     scene: Scene = field(default_factory=lambda: scene(DEFAULT_SCENE))
-    #: Whether the steady motion is shown, "settled", or a run that goes on while knobs move, "live".
+    #: "settled" to show the steady motion, "live" for a run that goes on while knobs move.
     mode: str = "settled"
-    #: Where a settled picture starts: "rest", or "previous", the state of the picture before.
+    #: The start of a settled picture: "rest", or "previous" for the state of the picture before.
     start: str = "rest"
     #: The theme that a link asks for; "auto" leaves it to the browser.
     theme: str = "auto"
-    #: Whether all pictures of the scene are drawn to one scale, "same", or each to its largest values, "fit".
+    #: "same" if all pictures of the scene are drawn to one scale, "fit" if each is drawn to its largest values.
     scale: str = "same"
-    #: What is drawn on the resonance curve: "auto" for what suits the scene, or names joined by dots, "rest.up".
+    #: The curves of the resonance curve's figure: "auto" for those that suit the scene, or names joined by dots,
+    #: "rest.up".
     curves: str = "auto"
-    #: The "tab" that the address opens and the "page", an overlay; only those that it names.
+    #: The "tab" and the "page" (an overlay) that the address opens, if it names them.
     place: dict[str, str] = field(default_factory=dict)
     #: Drive periods shown in a second.
     speed: float = 1.0
@@ -52,19 +55,19 @@ class Session:
     settled: Settled | None = None
     #: The state in which the motion on the screen began; None for rest.
     initial_state: State | None = None
-    #: What the visitor is told until the next valid action, for instance why a value was refused.
+    #: A sentence for the visitor until the next valid action, for instance why a value was refused.
     sentence: str = ""
-    #: What the visitor is told until the next picture, for instance that kernels are being compiled.
+    #: A sentence for the visitor until the next picture, for instance that kernels are being compiled.
     notice: str = ""
     #: Whether the energy account is computed after each settled picture.
     energy_account: bool = False
-    #: Values that knobs had when their effect was switched off, for when it is switched on again.
+    #: Values of knobs before their effect was switched off; they return when the effect is switched on again.
     remembered: dict[str, Any] = field(default_factory=dict)
-    #: The processor time of its pictures, by which sessions take turns.
+    #: The processor time of the session's pictures, by which sessions take turns.
     cpu_time: CpuTime = field(default_factory=CpuTime)
-    #: The scene that is computed however long it takes, because the visitor has insisted.
+    #: The scene on whose picture the visitor has insisted, however long it takes.
     insisted: Scene | None = None
-    #: The visitor's own measurement, which is drawn over the figures and saved with a run.
+    #: The visitor's measurement, which is drawn over the figures and saved with a run.
     measured: Measured | Series | None = None
     #: The pinned pictures.
     pins: tuple[Pin, ...] = ()
@@ -77,7 +80,7 @@ class Session:
 
     @property
     def link(self) -> str:
-        """The query string that brings back what is on the screen: scene, knobs, where the motion began, the view."""
+        """The query string that brings back the screen: scene, knobs, initial state and view."""
         view = {name: setting.text(getattr(self, setting.attribute))
                 for name, setting in VIEW.items() if name not in BROWSER_FIELDS}
         began = self.initial_state if self.mode == "settled" else None
@@ -85,13 +88,13 @@ class Session:
         return encode(self.scene, view, texts)
 
     def apply_view(self, fields: Mapping[str, str]) -> None:
-        """Take over the view settings of a link; one that is not among its fields gets its default."""
+        """Take over the view settings of a link; a setting that the link does not have gets its default."""
         for name, setting in VIEW.items():
             setattr(self, setting.attribute, setting.read(fields.get(name, setting.values[0])))
 
     @property
     def pins_left_out(self) -> str:
-        """A sentence where the link has no room for all pins; empty where it has."""
+        """A sentence if the link has no room for all pins; otherwise empty."""
         kept = pins_in(self.link)
         left = len(self.pins) - kept
         if not left:
@@ -104,7 +107,7 @@ class Session:
         self.scene = self.scene.evolve(**{name: value})
 
     def switch(self, name: str, on: bool) -> None:
-        """Switch an effect on or off; the values of its knobs are kept until it is switched on again."""
+        """Switch an effect on or off; the values of its knobs are kept until the effect is switched on again."""
         if name == ACCOUNT_SWITCH:
             self.energy_account = on
             return
@@ -135,15 +138,15 @@ class Session:
         self.scene, self.mode, self.start = opened, "settled", "rest"
 
     def set_mode(self, mode: object) -> None:
-        """`settled` or `live`."""
+        """Set the mode, `settled` or `live`."""
         self.mode = _one_of("mode", mode, MODES)
 
     def set_start(self, start: object) -> None:
-        """Where settled pictures start: from rest or from where the chain was."""
+        """Set the start of settled pictures, `rest` or `previous`."""
         self.start = _one_of("start", start, STARTS)
 
     def set_scale(self, scale: object) -> None:
-        """One scale for all pictures of the scene, or every picture fitted to its frame."""
+        """Set the scale of pictures, `same` or `fit`."""
         self.scale = _one_of("scale", scale, VIEW_VALUES["scale"])
 
     def set_speed(self, speed: object) -> None:
@@ -154,7 +157,7 @@ class Session:
         self.speed = float(speed)
 
     def previous_state(self, scene: Scene) -> State | None:
-        """The state from which the next settled picture, of `scene`, starts; None is rest."""
+        """The state from which the next settled picture of `scene` starts; None is rest."""
         if self.start == "rest" or self.settled is None:
             return None
         state = self.settled.state

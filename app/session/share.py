@@ -1,7 +1,7 @@
 """Share links: scene, knobs that differ from it, and view settings in one versioned query string.
 
-A link stores differences only: a changed preset changes what old links mean (tests/session/test_share.py).
-Each field is checked by itself: a bad one is refused with a sentence, and the others are still used.
+A link stores differences only, so a changed preset changes the meaning of old links (tests/session/test_share.py).
+Each field is checked by itself: a bad field is refused with a sentence, and the other fields are used.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from ..plots.theme import THEMES
 VERSION = "1"
 #: The scene of a page that is opened without a link.
 DEFAULT_SCENE = "sec2"
-#: What the curve's figure may draw: curves from rest and by sweeps, and the paper's stated features.
+#: Items of the curve's figure: curves from rest and by sweeps, and the features that the paper states.
 CURVES = (*CURVE_STARTS, "features")
 
 
@@ -49,8 +49,9 @@ class ViewField:
     text: Callable[[Any], str] = str
 
 
-#: The view settings by their names in a link; one more needs a row here and its attribute. In links the theme is called
-#: "look"; at "auto" the browser chooses it. "curves" has every combination; without it a scene shows its own curves.
+#: The view settings by their names in a link; a new setting needs a row here and an attribute of `Session`. Links call
+#: the theme "look"; with "auto" the browser chooses. "curves" has every combination; by default a scene shows its own
+#: curves.
 VIEW: dict[str, ViewField] = {
     "mode": ViewField("mode", ("settled", "live")),
     "start": ViewField("start", ("rest", "previous")),
@@ -61,8 +62,8 @@ VIEW: dict[str, ViewField] = {
     "speed": ViewField("speed", tuple(f"{speed:g}" for speed in SPEEDS), float, lambda speed: f"{speed:g}"),
     "account": ViewField("energy_account", ("off", "on"), lambda text: text == "on", lambda on: "on" if on else "off"),
 }
-#: Fields that the browser adds to a link, because it alone knows them (`parts/inline_scripts/address.js`): the open
-#: tab, the overlay, the theme if the visitor has chosen one, and whether another page embeds this one.
+#: Fields that the browser adds to a link, because the browser alone knows them (`parts/inline_scripts/address.js`): the
+#: open tab, the overlay, the theme that the visitor has chosen, and whether another page embeds this page.
 BROWSER_FIELDS = ("tab", "page", "look", "embed")
 #: The values of the view settings; the first is the default.
 VIEW_VALUES: dict[str, tuple[str, ...]] = {name: field.values for name, field in VIEW.items()}
@@ -74,15 +75,16 @@ PINS = ("pin", "pin2", "pin3")
 QUESTION = "question"
 #: Most characters of a link.
 LONGEST = 4500
-#: Characters of these that are kept free for `BROWSER_FIELDS`.
+#: Characters of a link that are kept free for `BROWSER_FIELDS`; tests/dashboard/test_table.py compares this number with
+#: the longest values.
 _ADDED_BY_BROWSER = 100
 
 
 def encode(shown: Scene, view: Mapping[str, str], texts: Mapping[str, str] | None = None) -> str:
     """The query string (without "?") that brings back this scene and view.
 
-    `texts` has `START`, `PINS`, `QUESTION` and "story". Pins for which there is no room are left out, the last one
-    first (`pins_in`).
+    `texts` has `START`, `PINS`, `QUESTION` and "story". If there is no room for all pins, the last pins are left out
+    (`pins_in`).
     """
     fields: dict[str, Any] = {"v": VERSION, "scene": shown.name}
     for name, value in shown.differences().items():
@@ -106,9 +108,9 @@ def pins_in(query: str) -> int:
 
 
 def decode(query: str, more: Mapping[str, Sequence[str]] | None = None) -> tuple[Scene, dict[str, str], list[str]]:
-    """Scene, view settings, and one sentence for every field that was refused; the texts come as they are.
+    """Scene, fields of the view, and one sentence for every refused field. Texts are not read here.
 
-    `more` has further view settings with their values, which only the page itself knows.
+    `more` has further view settings with their values, which the page alone knows.
     """
     known = {**VIEW_VALUES, **(more or {})}
     if len(query) > LONGEST:
@@ -119,7 +121,7 @@ def decode(query: str, more: Mapping[str, Sequence[str]] | None = None) -> tuple
         refused.append(f"The link's format is not version {VERSION}; only the fields that are understood were used.")
     shown = _scene(fields.pop("scene", DEFAULT_SCENE), refused)
     view: dict[str, str] = {}
-    # kappa last: it is converted with the link's own A0, and replaces k only if it is valid
+    # kappa comes last: it is converted with the A0 of the link, and replaces k only if it is valid
     for name, text in sorted(fields.items(), key=lambda field: field[0] == "kappa"):
         if name in (START, QUESTION, *PINS):
             view[name] = text
@@ -145,7 +147,7 @@ def decode(query: str, more: Mapping[str, Sequence[str]] | None = None) -> tuple
 
 
 def _fields(query: str, refused: list[str]) -> dict[str, str]:
-    """The fields of a query string; of one that comes twice the first counts."""
+    """The fields of a query string; if a field comes twice, the first counts."""
     fields: dict[str, str] = {}
     for name, text in parse_qsl(query.lstrip("?"), keep_blank_values=True):
         if name in fields:

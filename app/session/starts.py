@@ -1,8 +1,7 @@
 """The state in which a motion began, as text in a link.
 
-Where several motions are possible, the start decides which is reached, so a picture cannot be repeated without it.
-
-Little-endian doubles, in base64 for addresses: drive phase, N displacements [m], N velocities [m/s].
+If several motions are possible, the start decides which motion is reached. A picture cannot be repeated without its
+start. The text has little-endian doubles in base64 for addresses: drive phase, N displacements [m], N velocities [m/s].
 """
 
 from __future__ import annotations
@@ -20,7 +19,7 @@ MOST_BEADS = 40
 
 
 def start_text(start: State | None) -> str:
-    """The state as a text; empty for rest, and for a chain that is too long for a link."""
+    """The state as text; empty for rest, and for a chain that is too long for a link."""
     if start is None or len(start.displacement) > MOST_BEADS:
         return ""
     values = np.concatenate([[start.phase], start.displacement, start.velocity]).astype("<f8")
@@ -28,7 +27,7 @@ def start_text(start: State | None) -> str:
 
 
 def read_start(text: str, scene: Scene) -> State:
-    """The state that a text has for a scene. Raises `BadInput`."""
+    """Read the state of a scene's chain from its text. Raises `BadInput`."""
     try:
         content = base64.b64decode(text + "=" * (-len(text) % 4), altchars=b"-_", validate=True)
         values = np.frombuffer(content, dtype="<f8").astype(float)
@@ -40,7 +39,7 @@ def read_start(text: str, scene: Scene) -> State:
         raise BadInput(f"The link begins the motion in a state of {(len(values) - 1) // 2} beads, but the chain has "
                        f"{scene.N}; it begins at rest.")
     phase, displacement, velocity = values[0], values[1:scene.N + 1], values[scene.N + 1:]
-    # No contact law holds for displacements beyond a bead's size or speeds beyond that of sound in steel.
+    # No contact law holds for displacements beyond a bead's size or speeds beyond the speed of sound in steel.
     sane = np.isfinite(values).all() and 0.0 <= phase < 1.0 and np.abs(displacement).max() < 1.0
     if not sane or not nearest_fraction(float(phase))[1] or np.abs(velocity).max() > 6000.0:
         raise BadInput("The initial state in the link is impossible for a chain; the motion begins at rest.")

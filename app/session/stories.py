@@ -1,6 +1,6 @@
 """Guided stories, read from assets/stories/*.toml: scenes to look at, a question, and an answer.
 
-The numbers of a story are those of its file; tests/session/test_story_files.py computes them again. docs/stories.md
+The numbers of a story stand in its file; tests/session/test_story_files.py computes them again. docs/stories.md
 has the format. Nothing in a file is trusted: a mistake becomes a sentence that says where it is.
 """
 
@@ -23,11 +23,11 @@ from .share import VIEW_VALUES
 
 FOLDER = ASSETS / "stories"
 
-#: What a step may point to: the parts of the main page by the names of their elements.
+#: Parts of the main page that a step may point to, by the names of their elements.
 LOOKS = ("chain", "left", "map", "right", "curve")
-#: Relative difference that a computed force may have from the one a story tells, where the motion repeats.
+#: Allowed relative difference of a computed force from the force in a story, if the motion repeats.
 TOLERANCE = 5e-3
-#: The same where it does not repeat: there the largest force depends on the periods that are recorded.
+#: The same for a motion that does not repeat: its largest force depends on the periods that are recorded.
 IRREGULAR_TOLERANCE = 0.1
 _STORY_FIELDS = ("title", "about", "order", "steps")
 _STEP_FIELDS = ("say", "ask", "answer", "scene", "set", "via", "look", "curves", "page", "expect")
@@ -41,9 +41,9 @@ _NUMBER = re.compile(r"\{(?:(\d+)\.)?(\w+)\}")
 
 @dataclass(frozen=True)
 class Expect:
-    """What the motion of a step is: regime and period, largest output and input force [N].
+    """The expected motion of a step: regime and period, largest output and input force [N].
 
-    Without a drive: the largest force [N] of the first pulse in the middle of the chain, and its speed [m/s] there.
+    Without a drive: the largest force [N] and the speed [m/s] of the first pulse in the middle of the chain.
     """
 
     regime: str
@@ -58,7 +58,7 @@ class Expect:
 class StoryStep:
     """One step. `via` are frequencies [Hz] at which the chain is settled before, one after the other, from rest.
 
-    `look` is the part of the main page that it is about, `page` the overlay that it offers to open.
+    `look` is the part of the main page that the step points to, `page` the overlay that the step offers to open.
     """
 
     say: str
@@ -86,7 +86,7 @@ class Story:
 def stories(pages: Sequence[str], folder: Path = FOLDER) -> tuple[tuple[Story, ...], tuple[str, ...]]:
     """All stories in their order, and one sentence for every file that cannot be used.
 
-    `pages` are those that a step may offer to open, by name.
+    `pages` are the names of the pages that a step may offer to open.
     """
     found, refused = [], []
     for path in sorted(folder.glob("*.toml")):
@@ -98,9 +98,9 @@ def stories(pages: Sequence[str], folder: Path = FOLDER) -> tuple[tuple[Story, .
 
 
 def read_story(path: Path, pages: Sequence[str]) -> Story:
-    """The story in a file, whose steps may open `pages`.
+    """Read a story from its file; its steps may open `pages`.
 
-    Raises `BadInput` with one sentence for the first thing that is wrong.
+    Raises `BadInput` with one sentence for the first mistake.
     """
     try:
         data = tomllib.loads(path.read_text(encoding="utf-8"))
@@ -143,7 +143,7 @@ def told_words(story: Story, number: int, words: str) -> str:
 
 
 def state_before(step: StoryStep, stop: Stop | None = None) -> State | None:
-    """The state in which the motion of a step begins: the last one of its `via`, None for rest."""
+    """The state in which the motion of a step begins: that after the last frequency of `via`; None is rest."""
     state: State | None = None
     for frequency in step.via:
         state = settle(step.scene.evolve(f=frequency), start=state, stop=stop).state
@@ -151,7 +151,7 @@ def state_before(step: StoryStep, stop: Stop | None = None) -> State | None:
 
 
 def differences(step: StoryStep, shown: Run) -> list[str]:
-    """How a run differs from what the step says, in sentences."""
+    """Sentences about the differences of a run from the step."""
     found, expected = [], step.expect
     regime = shown.regime.name if shown.regime.driven else UNDRIVEN
     if (regime, shown.regime.period) != (expected.regime, expected.period):
@@ -169,7 +169,7 @@ def differences(step: StoryStep, shown: Run) -> list[str]:
 
 
 def _force(newtons: float, repeats: bool) -> str:
-    """In newtons, whatever its size, so that steps can be compared; two figures where the motion does not repeat."""
+    """A force in newtons, so that steps can be compared; with two figures if the motion does not repeat."""
     return f"{newtons:.{3 if repeats else 2}g} N"
 
 

@@ -1,4 +1,4 @@
-"""Switchable effects: the knobs each switch sets, and the two kernels whose times give an effect's cost."""
+"""Switchable effects: the knobs that each switch sets, and the two kernels whose times give the cost of an effect."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from granchain_core.scene.effects import Effect
 
 from .message_checks import quoted
 
-#: The one effect that is not a knob of the scene: it changes nothing in the motion.
+#: The one effect without a knob of the scene: it does not change the motion.
 ACCOUNT_SWITCH = table.ACCOUNT.name
 
 #: The effects in the order in which the page lists them.
@@ -25,12 +25,12 @@ def present(name: str, shown: Scene, account: bool) -> bool:
 
 
 def refusal(name: str, shown: Scene) -> str:
-    """Why the effect cannot be switched for this scene; empty where it can."""
+    """A sentence if the effect cannot be switched for this scene; otherwise empty."""
     return "" if SWITCHES[name].possible(shown) else SWITCHES[name].refusal
 
 
 def changes(name: str, on: bool, shown: Scene, remembered: Mapping[str, Any]) -> dict[str, Any]:
-    """Knob values that a switch sets; on: those the visitor had, else the preset's, else the usual ones."""
+    """Knob values that a switch sets; for an effect that is switched on the visitor's, the preset's or usual values."""
     if name not in SWITCHES or name == ACCOUNT_SWITCH:
         raise BadInput(f"There is no switchable effect {quoted(name)}.")
     if refused := refusal(name, shown):
@@ -41,7 +41,7 @@ def changes(name: str, on: bool, shown: Scene, remembered: Mapping[str, Any]) ->
     before = {**scene(shown.name).knobs, **remembered}
     found: dict[str, Any] = {}
     for knob in effect.knobs:
-        # switching off changed only the knobs in `off`; the others still have their value
+        # switching off changed the knobs in `off` alone; other knobs still have their values
         values = [before[knob]] if knob in effect.off else [shown.knobs[knob], before[knob]]
         found.update([(knob, value) for value in values if value != effect.off.get(knob, 0.0)][:1])
     missing = set(effect.knobs) - set(found)
@@ -49,7 +49,7 @@ def changes(name: str, on: bool, shown: Scene, remembered: Mapping[str, Any]) ->
 
 
 def variants(name: str, shown: Scene) -> tuple[Variant, Variant] | None:
-    """The scene with the effect and without it, everything else the same; None where it cannot be switched."""
+    """The scene with the effect and without it; None if the effect cannot be switched."""
     if name == ACCOUNT_SWITCH:
         return Variant(shown, account=True), Variant(shown)
     if refusal(name, shown):

@@ -1,4 +1,4 @@
-"""A page's background work: starting, cancelling, and handling its failures."""
+"""A page's background work: starting it, cancelling it, and handling its failures."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from ..serve.computing.worker_pools import WorkerPool
 from .host import WorkHost
 from .progress import Status
 
-#: Time between the first two checks whether the main picture is done [s]. Long work waits for the picture, so that it
-#: never competes with a knob.
+#: Time between the first two checks whether the main picture is done [s]. Long work waits for the picture, and so never
+#: competes with a knob.
 _PICTURE_CHECK_INTERVAL = 0.01
 #: Longest time between two such checks [s].
 _LONGEST_CHECK_INTERVAL = 0.2
@@ -27,11 +27,11 @@ Report = Callable[[Status, str], None]
 
 
 def report_nothing(status: Status, sentence: str) -> None:
-    """Show no status, for a task whose result is all there is to see; the host reports failures."""
+    """Show no status: for a task whose result alone is shown, and whose failures the host reports."""
 
 
 class Job:
-    """One run of a task, as its work sees it from a worker thread."""
+    """One run of a task; its work uses the job in a worker thread."""
 
     def __init__(self, host: WorkHost, report: Report) -> None:
         self.stop: Stop = Flag()
@@ -63,7 +63,7 @@ class Job:
     def give_way(self, while_: Callable[[], bool] | None = None) -> None:
         """Wait while the picture for a moved knob is being computed, or while `while_` returns True.
 
-        The longer this takes, the less often it checks: each check takes the GIL from all other threads.
+        The longer the wait, the rarer the checks: each check takes the GIL from all other threads.
         """
         waits, pause = while_ or (lambda: self._host.awaiting_picture), _PICTURE_CHECK_INTERVAL
         while waits() and not self.stop:
@@ -71,9 +71,9 @@ class Job:
             pause = min(2.0 * pause, _LONGEST_CHECK_INTERVAL)
 
     def progress(self, report: Callable[[float], None], steps: int = 50) -> Callable[[float], None]:
-        """For work that tells how much of it is done, from 0 to 1: what it calls, which then gives way.
+        """A function that work calls with the part that is done, from 0 to 1; each call gives way to the picture.
 
-        `report` is called with that number, with the document locked, at most `steps` times.
+        `report` is called with this number and the document locked, at most `steps` times.
         """
         reported = 0
 
@@ -89,11 +89,11 @@ class Job:
 
 
 class Task:
-    """One kind of background work of a page; a new start replaces the last, and it ends when the session ends.
+    """One kind of background work of a page; a new start replaces the last. The work ends when the session ends.
 
     `report` is called with the document locked: with "done", with "failed" and a sentence, or with a status that the
-    work reports. `title` begins the sentence about a fault. With `report_to_host` the dashboard shows errors, for work
-    whose page has no place for them.
+    work reports. `title` begins the sentence about a fault. With `report_to_host` the dashboard shows errors, because
+    the page has no place for them.
     """
 
     def __init__(self, host: WorkHost, pool: WorkerPool, report: Report, title: str = "The computation",
@@ -113,15 +113,15 @@ class Task:
         return self._job is not None
 
     def start(self, work: Callable[[Job], None]) -> None:
-        """Queue `work`, in place of what was started before."""
+        """Queue `work` in place of work that was started before."""
         self.cancel()
         self._job = job = Job(self._host, self._report)
         self._queued = self._pool.submit(self._run, work, job, owner=self._host)
 
     def cancel(self) -> bool:
-        """Cancel the work under way, so that nothing more of it arrives; return whether there was any.
+        """Cancel the work under way; return whether there was any. No further result of the work arrives.
 
-        Work that has not begun leaves the queue, with all that it would have worked on.
+        Work that has not begun is dropped with its arguments.
         """
         job, self._job = self._job, None
         queued, self._queued = self._queued, None
@@ -132,7 +132,7 @@ class Task:
         return job is not None
 
     def _run(self, work: Callable[[Job], None], job: Job) -> None:
-        """In a thread of the pool."""
+        """Do the work in a thread of the pool."""
         if job.stop:
             return
         try:

@@ -7,9 +7,9 @@ from functools import cache
 
 from granchain_core.scene.presets import ASSETS
 
-#: The wheel has the glossary among its assets.
+#: The glossary; an installed wheel has it among its assets.
 FILE = next(path for path in (ASSETS / "glossary.md", ASSETS.parent / "docs" / "glossary.md") if path.is_file())
-#: Terms of the glossary that the page's own texts use, longest first so that "anti-resonance" is not "resonance".
+#: Terms of the glossary that the texts of the page use, longest first so that "anti-resonance" is not "resonance".
 SHOWN = ("quasi-periodic", "anti-resonance", "Floquet multiplier", "Lyapunov exponent", "sonic vacuum", "stop band",
          "stated error", "output force", "energy residual", "error control", "fixed-step method", "special point",
          "time step", "tangent flow", "attractor", "resonance",
@@ -24,7 +24,7 @@ def definitions() -> dict[str, str]:
     rows: dict[str, str] = {}
     for terms, meaning in _ROW.findall(FILE.read_text(encoding="utf-8")):
         for name in _names(terms):
-            rows.setdefault(name, _plain(meaning))  # the first row that has it
+            rows.setdefault(name, _plain(meaning))  # the first row with the term counts
     return {term: rows[term] for term in SHOWN}
 
 

@@ -24,7 +24,8 @@ class Quantity:
     a slider goes through its range: "linear", "log", or "cubic" for knobs that start at 0 and span decades: the value
     is the cube of the position, fine near 0. `step` is the fine step of the keyboard; 0 stands for half a decade.
     `choices` is set for knobs that are words; `numeric` says whether a plain number is accepted too. `main` knobs are
-    always on the page, the others under "more knobs". `short` is the label beside a number where `label` is too long.
+    always on the page, the others under "more knobs"; those with `main_if_set` are on the page of a scene whose preset
+    has another value than the default. `short` is the label beside a number where `label` is too long.
     `at_zero` says in a few words what 0 means if 0 switches something off. `shown_in` is the factor and unit on
     the page if that is not `unit`. `changes_motion` is False for a knob of the computation alone, `at_start` true for
     one that changes where a motion begins and not the chain.
@@ -44,6 +45,7 @@ class Quantity:
     numeric: bool = True
     whole: bool = False
     main: bool = False
+    main_if_set: bool = False
     short: str = ""
     at_zero: str = ""
     shown_in: tuple[float, str] | None = None
@@ -146,25 +148,26 @@ _TABLE = (
              0.0, 1e4, "linear", 0.1, at_zero="nothing presses the beads"),
     Quantity("dimer", "m₂/m₁", "1", "m_2/m_1", "mass of every second bead",
              "Mass of beads 2, 4, … over that of the others; of the same material, so the radius goes with its cube "
-             "root. 1 is a chain of equal beads.", 1e-3, 1e3, "log", short="dimer"),
+             "root. 1 is a chain of equal beads.", 1e-3, 1e3, "log", short="dimer", main_if_set=True),
     Quantity("taper", "R_N/R₁", "1", "R_N/R_1", "taper",
              "Radius of the last bead over that of the first; the radii form a geometric sequence.",
-             0.01, 100.0, "log"),
+             0.01, 100.0, "log", main_if_set=True),
     Quantity("striker", "mₛ/m", "1", "m_s/m", "mass of bead 1",
              "Mass of bead 1 (the striker) relative to a regular bead at its place.",
-             1e-3, 1e3, "log", short="striker"),
+             1e-3, 1e3, "log", short="striker", main_if_set=True),
     Quantity("site", "j", "1", "j", "place of the impurity", "Index j of the impurity bead.",
-             1, 10_000, "linear", 1, whole=True, short="impurity’s place"),
+             1, 10_000, "linear", 1, whole=True, short="impurity’s place", main_if_set=True),
     Quantity("impurity", "mⱼ/m", "1", "m_j/m", "mass of the impurity",
              "Mass of bead j relative to a regular bead at its place; 1 means no impurity.", 1e-3, 1e3, "log",
-             short="impurity"),
+             short="impurity", main_if_set=True),
     Quantity("drive", "", "", "", "drive", "Whether the driver moves: harmonic, or at rest as a fixed bead. Without a "
-             "drive 1/f is only the time that is shown.", choices=DRIVES, numeric=False),
+             "drive 1/f is only the time that is shown.", choices=DRIVES, numeric=False, main_if_set=True),
     Quantity("strike", "v₁", "m/s", "v_1", "initial velocity of bead 1",
              "Speed at which bead 1 moves towards the wall at time 0.", 0.0, 100.0, "cubic", 0.001, short="strike",
-             at_zero="bead 1 starts at rest", at_start=True),
+             at_zero="bead 1 starts at rest", at_start=True, main_if_set=True),
     Quantity("end", "", "", "", "driven end", "The end that the driver touches; the wall is at the other. "
-             "“last” drives a chain of unequal beads from its other end.", choices=ENDS, numeric=False),
+             "“last” drives a chain of unequal beads from its other end.", choices=ENDS, numeric=False,
+             main_if_set=True),
     Quantity("wall", "W", "1", "W", "right wall",
              "Stiffness of the last contact over that of two beads like the last: 1 for a fixed bead, √2 for a flat "
              "wall of the same material, 2√2 for a rigid flat wall, or a number.",

@@ -16,6 +16,7 @@ from bokeh_figures import FIGURES
 from evidence import WATCHED, folder_of, leave, watch
 from knobs import COMPILED, look_seldom
 from playwright.sync_api import Browser, BrowserContext, Page, ViewportSize, expect, sync_playwright
+from pointer import POINTER_TESTS
 from server import dashboard, launch_with_profile
 
 HERE = Path(__file__).parent
@@ -34,12 +35,9 @@ expect.set_options(timeout=60_000)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """A test of the browser that fails is run once more, and the summary says so; `.ci/run` allows few repetitions.
-
-    On two busy processors Chromium loses a click now and then, or draws late, which says nothing of the page.
-    """
+    """A test of `POINTER_TESTS` that fails is run once more; `.ci/run` allows few repetitions."""
     for item in items:
-        if item.path.is_relative_to(HERE):
+        if item.path.is_relative_to(HERE) and getattr(item, "originalname", "") in POINTER_TESTS.get(item.path.stem, ()):
             item.add_marker(pytest.mark.flaky(reruns=1))
 
 

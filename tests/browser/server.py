@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 import socket
 import subprocess
 import sys
@@ -16,6 +15,8 @@ from pathlib import Path
 from typing import Any
 
 from playwright.sync_api import Browser, BrowserContext, Page, Playwright
+
+from app.plots.chromium import installed_browser
 
 #: A number for every call of `at_rest`: what an earlier call has seen says nothing of this one.
 _CALLS = count()
@@ -126,8 +127,7 @@ def launch_with_profile(playwright: Playwright, profile: Path, **options: Any) -
 
 def _how(playwright: Playwright) -> dict[str, Any]:
     headed = bool(os.environ.get("GRANCHAIN_HEADED"))
-    names = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome")
-    system = next((path for name in names[headed:] if (path := shutil.which(name))), None)
+    system = installed_browser(with_window=headed)
     if system is None and not Path(playwright.chromium.executable_path).exists():
         raise RuntimeError("The browser tests need Chromium: install the system's chromium package, "
                            "or run `playwright install chromium`.")

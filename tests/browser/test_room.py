@@ -76,7 +76,7 @@ def fits(page: Page) -> None:
 
 def test_dark_differs_from_light_in_colours_only() -> None:
     """The tests below look at the light theme only: with equal sizes, what fits there fits in the dark one."""
-    for role in ("line_scale", "text_size", "small_text_size"):
+    for role in ("line_scale", "text_size", "largest_text_size", "small_text_size", "largest_small_text_size"):
         assert getattr(THEMES["dark"], role) == getattr(THEMES["light"], role)
     dark = next(rule for rule in style_sheet().splitlines() if "data-theme=dark" in rule)
     values = re.findall(r"--[\w-]+: ([^;}]+)", dark)

@@ -23,7 +23,7 @@ class WaitingCalls(Calls):
 
     def next_tick(self, action: Callable[..., None], *arguments: object) -> None:
         """From any thread."""
-        self.pending.callbacks.append(partial(self.guarded, action, *arguments))
+        self.pending.callbacks.append(partial(self.call_and_report, action, *arguments))
 
 
 class Dashboard(Controller):

@@ -191,3 +191,46 @@ def test_a_picture_that_is_overtaken_before_it_is_sent_is_not_counted(dashboard:
     assert METRICS.counted["pictures"] - counted == 2
     dashboard.pictures.painted(1)
     assert METRICS.counted["pictures"] - counted == 3
+
+
+def test_only_the_picture_of_a_request_answers_it(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A picture of the knobs before may arrive in between; it is shown, but the visitor still waits for the other."""
+    clock, counted, begun = [0.0], [], threading.Event()
+    go_on = {frequency: threading.Event() for frequency in (2000.0, 2100.0)}
+    monkeypatch.setattr(main_picture, "time", SimpleNamespace(monotonic=lambda: clock[0], thread_time=time.thread_time))
+    monkeypatch.setattr(main_picture, "check_first_picture", lambda chain: (begun.set(), go_on[chain.f].wait(60)))
+    monkeypatch.setattr(METRICS, "answered", counted.append)
+    session, pictures = dashboard.session, dashboard.pictures
+    session.scene = scene("sec2").evolve(N=2, f=2000.0)
+    pictures.compute()
+    assert begun.wait(60)
+    clock[0] = 1.0
+    session.change("f", 2100.0)
+    pictures.compute()
+    go_on[2000.0].set()
+    dashboard.run_callbacks_until(lambda: bool(counted))
+    assert counted == [1.0], "the picture of 2000 Hz, from its own request on"
+    clock[0] = 4.0
+    go_on[2100.0].set()
+    dashboard.run_callbacks_until(lambda: not (pictures.busy or dashboard.callbacks))
+    assert session.settled is not None and session.settled.run.scene.f == 2100.0
+    assert counted == [1.0, 3.0], "each request is counted once, with its first picture"
+
+
+def test_a_live_step_answers_only_the_knobs_that_were_moved_before_it(dashboard: Dashboard,
+                                                                      monkeypatch: pytest.MonkeyPatch) -> None:
+    counted: list[float] = []
+    monkeypatch.setattr(METRICS, "answered", counted.append)
+    session, pictures = dashboard.session, dashboard.pictures
+    session.set_mode("live")
+    session.playing = False
+    pictures.begin_live()
+    pictures.advance(3)
+    dashboard.run_callbacks_until(lambda: not (pictures.busy or dashboard.callbacks))
+    assert counted == [], "nothing was moved"
+    session.change("f", 2100.0)
+    pictures.compute()
+    dashboard.run_callbacks_until(lambda: not (pictures.busy or dashboard.callbacks))
+    pictures.advance(3)
+    dashboard.run_callbacks_until(lambda: not (pictures.busy or dashboard.callbacks))
+    assert len(counted) == 1

@@ -5,10 +5,12 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from pathlib import Path
+from urllib.parse import quote
 
 import pytest
 
-from app.dashboard.table import CURVE_NAME, PAGES, TABS, TabSpec, check_names
+from app.dashboard.table import CURVE_NAME, PAGES, TABS, TabSpec, check_names, tab_names
+from app.session import share
 
 
 @pytest.mark.parametrize("row", [replace(PAGES[0], name=CURVE_NAME), TabSpec(PAGES[0].name, "learn")], ids=["curve", "twice"])
@@ -33,3 +35,11 @@ def test_every_tab_without_a_page_over_the_pictures_is_drawn_by_the_browser_itse
 def test_the_browser_calls_the_curve_as_the_server_does() -> None:
     script = Path(__file__).parents[2] / "app" / "dashboard" / "visibility.js"
     assert f'const CURVE_NAME = "{CURVE_NAME}";' in script.read_text(encoding="utf-8")
+
+
+def test_a_link_keeps_room_for_what_the_browser_adds() -> None:
+    """The server leaves out pins so that the rest fits; it does not know the longest tab."""
+    longest = {"tab": max(tab_names(), key=len), "page": max(tab_names(), key=len),
+               "look": max(share.VIEW_VALUES["look"], key=len), "embed": "1"}
+    assert longest.keys() == set(share.BROWSER_FIELDS)
+    assert sum(len(f"&{name}={quote(value)}") for name, value in longest.items()) <= share._ADDED_BY_BROWSER

@@ -31,16 +31,26 @@ def properties(name: str) -> dict[str, str]:
 def test_the_page_has_the_colours_of_its_pictures(name: str) -> None:
     style, theme = properties(name), THEMES[name]
     assert style.pop("color-scheme") == theme.scheme
-    assert (style.pop("--small-text-size"), style.pop("--text-size")) == (f"{theme.small_text_size}px", f"{theme.text_size}px")
+    for role in ("text_size", "small_text_size"):
+        smallest, largest = re.fullmatch(r"clamp\((\d+)px, .+, (\d+)px\)", style.pop(f"--{role.replace('_', '-')}")).groups()  # type: ignore[union-attr]
+        assert (int(smallest), int(largest)) == (getattr(theme, role), getattr(theme, f"largest_{role}"))
+    assert style.pop("--phone-text-size") == "13px" and style.pop("--roomy", "") == ("none" if theme.text_size > 15 else "")
     assert style == {f"--{field.name.replace('_', '-')}": str(getattr(theme, field.name)) for field in fields(Theme)
-                     if field.name not in ("scheme", "small_text_size", "text_size")} | {
+                     if field.name != "scheme" and not field.name.endswith("text_size")} | {
         "--drive": DRIVE.colour, "--input": INPUT.colour, "--output": OUTPUT.colour}
 
 
-def test_no_theme_but_the_projectors_fixes_the_size_of_words() -> None:
-    """On a large or small screen dashboard.css gives them another size, in a rule for `:root` alone."""
-    rules = dict(re.findall(r"(\S+) \{ (.*) \}", style_sheet()))
-    assert [selector for selector, body in rules.items() if "--text-size" in body] == [":root", ":root[data-theme=projector]"]
+def test_sizes_of_a_theme_are_in_its_row_alone() -> None:
+    """A new theme with sizes of its own needs no other file: no style sheet names a theme, or sets a size in pixels."""
+    sheets = "".join(path.read_text(encoding="utf-8") for path in Path(app.__file__).parent.rglob("*.css"))
+    assert not [name for name in THEMES if re.search(rf"data-theme\W+{name}\b", sheets)]
+    assert re.findall(r"--(?:small-)?text-size:([^;]+);", sheets) == [" var(--phone-text-size)"]
+
+
+def test_text_grows_with_the_window_from_its_smallest_size_on() -> None:
+    for selector, body in re.findall(r"(:root\S*) \{ (.*) \}", style_sheet()):
+        for smallest, start, share in re.findall(r"clamp\((\d+)px, ([\d.]+)px \+ ([\d.]+)vw", body):
+            assert abs(float(start) + 12.8 * float(share) - float(smallest)) < 0.05, selector
 
 
 @pytest.mark.parametrize("path", sorted(Path(app.__file__).parent.rglob("*.css")), ids=lambda path: path.name)

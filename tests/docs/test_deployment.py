@@ -7,6 +7,9 @@ import re
 import pytest
 from documents import ROOT
 
+from app.serve.monitoring.metrics import HISTOGRAM, METRICS
+from app.server import add_shared_metrics
+
 pytestmark = pytest.mark.quick
 
 TEXT = (ROOT / "docs" / "deployment.md").read_text(encoding="utf-8")
@@ -35,3 +38,10 @@ def test_the_health_check_of_the_container_asks_at_its_port() -> None:
     (port,) = re.findall(r'"--port", "(\d+)"', entry)
     assert re.findall(r"127\.0\.0\.1:(\d+)/liveness", DOCKER) == re.findall(r"^EXPOSE (\d+)", DOCKER, re.MULTILINE) == [port]
     assert f"port is always {port}" in " ".join(TEXT.split())
+
+
+def test_the_advice_of_monitoring_names_metrics_that_there_are() -> None:
+    add_shared_metrics()
+    table = TEXT.partition("| sign |")[2].partition("\n\n")[0]
+    named = set(re.findall(r"`((?:granchain|process)_\w+)", table))
+    assert len(named) > 8 and named <= {HISTOGRAM, *(metric.full_name for metric in METRICS.table())}

@@ -111,6 +111,16 @@ def test_the_glossary_names_a_place_for_every_term():
     assert len(set(terms)) == len(terms)
 
 
+def test_the_file_of_a_term_of_the_web_has_the_word():
+    """A term that has moved to another file would keep its row otherwise."""
+    section = (ROOT / "docs" / "glossary.md").read_text("utf-8").partition("## Web and server")[2].partition("\n## ")[0]
+    rows = re.findall(r"^\| [^|]+ \| ([^|]+) \| [^|]+ \| ([^|]+) \|$", section, re.MULTILINE)[1:]
+    assert len(rows) > 12
+    for term, place in rows:
+        text = (ROOT / re.findall(r"`(app/[\w/]+\.py)`", place)[0]).read_text("utf-8").lower()
+        assert any(word in text for word in re.findall(r"[a-z]{4,}", term)), term
+
+
 @pytest.mark.parametrize("command", _COMMANDS)
 def test_commands_parse_and_their_scenes_and_knobs_exist(command: str):
     """The parser takes them, and the scene takes their knobs."""

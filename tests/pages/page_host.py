@@ -61,9 +61,9 @@ class PageHost(FakeHost):
 
 @dataclass(frozen=True)
 class Given:
-    """Work that a task gave to a queue."""
+    """Work that a task gave to a worker pool."""
 
-    queue: str
+    pool: str
     run: Callable[[Callable[[Job], None], Job], None]
     work: Callable[[Job], None]
     job: Job
@@ -84,8 +84,8 @@ class Trial:
         self.told: list[dict[str, Any]] = []
         self.given: list[Given] = []
         monkeypatch.setattr(self.view, "send", lambda **message: self.told.append(message))
-        monkeypatch.setattr(WorkerPool, "submit", lambda queue, run, work, job, owner=None: self.given.append(
-            Given(queue.name, run, work, job)))
+        monkeypatch.setattr(WorkerPool, "submit", lambda pool, run, work, job, owner=None: self.given.append(
+            Given(pool.name, run, work, job)))
         for name in ("has", "await_piece", "load"):
             monkeypatch.setattr(COMPILER, name, lambda *_: True)
         self.page: Page = row.page(self.host, self.view)
@@ -116,7 +116,7 @@ class Trial:
             self.host.call_waiting()
 
     def compute(self, work: Callable[[Job], None] | None = None) -> None:
-        """Compute what was given to a queue and not cancelled, or `work` in its place, and take over the results."""
+        """Compute what was given to a pool and not cancelled, or `work` in its place, and take over the results."""
         given, self.given = self.given, []
         for one in given:
             one.run(work or one.work, one.job)
@@ -124,7 +124,7 @@ class Trial:
 
     @property
     def under_way(self) -> list[Given]:
-        """The work that was given to a queue and neither computed nor cancelled."""
+        """The work that was given to a worker pool and neither computed nor cancelled."""
         return [one for one in self.given if not one.job.stop]
 
     @property

@@ -33,7 +33,7 @@ def test_it_measures_when_it_is_first_looked_at_and_goes_on_hidden(page: Trial) 
     page.turn(f=2000.0)
     assert page.told == [], "until it is opened there is nothing to see"
     page.look()
-    assert [one.queue for one in page.given] == ["measurements"] and page.state["status"] == "waiting"
+    assert [one.pool for one in page.given] == ["measurements"] and page.state["status"] == "waiting"
     page.look(False)
     assert len(page.under_way) == 1
     page.compute()

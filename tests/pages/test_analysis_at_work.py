@@ -36,7 +36,7 @@ def page(page_of: Callable[[str], Trial], monkeypatch: pytest.MonkeyPatch) -> Tr
 
 def test_the_first_question_is_answered_for_every_picture_until_the_visitor_asks(page: Trial) -> None:
     page.look()
-    assert [one.queue for one in page.given] == ["long"] and page.state["question"] == FIRST
+    assert [one.pool for one in page.given] == ["long"] and page.state["question"] == FIRST
     page.compute()
     assert page.state["words"] == ["asked at 2000 Hz"] and page.state["status"] == "done" and page.state["done"] == 0.5
     assert page.last("figure") and page.host.addresses == 0, "what nobody asked is not in the address"

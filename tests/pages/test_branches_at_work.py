@@ -39,7 +39,7 @@ def page(page_of: Callable[[str], Trial], monkeypatch: pytest.MonkeyPatch) -> An
 
 def test_the_orbit_on_the_screen_is_followed_when_the_page_is_opened_first(page: Any) -> None:
     page.do("branches-open")
-    assert [one.queue for one in page.given] == ["long"] and page.state["status"] == "waiting"
+    assert [one.pool for one in page.given] == ["long"] and page.state["status"] == "waiting"
     page.compute()
     ((scene, knob, low, high, period, seed),) = page.began
     assert (scene, knob, period) == (picture().run.scene, "f", 1) and low < scene.f < high and seed is picture().state

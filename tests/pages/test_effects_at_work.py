@@ -33,7 +33,7 @@ def row(tab: Trial, name: str) -> dict[str, Any]:
 
 def test_effects_are_measured_one_after_the_other_while_somebody_looks(tab: Trial) -> None:
     tab.look()
-    assert [one.queue for one in tab.given] == ["measurements"] and row(tab, MEASURED[0])["state"] == "measuring …"
+    assert [one.pool for one in tab.given] == ["measurements"] and row(tab, MEASURED[0])["state"] == "measuring …"
     for _ in MEASURED:
         tab.compute()
     assert row(tab, MEASURED[-1])["code"]["difference"] == 10.0 and row(tab, MEASURED[0])["motion"]["percent"] == 50.0

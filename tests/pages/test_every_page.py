@@ -43,6 +43,8 @@ ASKED: dict[str, tuple[tuple[str, dict[str, Any]], ...]] = {
 }
 #: Pages that show what others have computed.
 WITHOUT_WORK = ("numbers", "probe")
+#: Pages whose work a visitor can stop; the work of the others is short, or has its own end.
+STOPPED = ("accuracy", "map", "branches", "analysis", "hard", "paper")
 #: A page ends work that is of no use for other knobs, or says so. The work of these tasks, by title, is of use:
 FOR_ANY_KNOBS = {
     "The case": "it has a scene of its own", "The figure": "it has scenes of its own",
@@ -61,6 +63,14 @@ def trial(request: pytest.FixtureRequest, page_of: Callable[[str], Trial]) -> Tr
     return page_of(row.name)
 
 
+def only(names: Callable[[str], bool]) -> pytest.MarkDecorator:
+    """The fixture `trial` for those pages alone whose names are chosen."""
+    return pytest.mark.parametrize("trial", [row for row in PAGES if names(row.name)], indirect=True, ids=lambda row: row.name)
+
+
+with_work = only(lambda name: name not in WITHOUT_WORK)
+
+
 def asked(trial: Trial) -> bool:
     """Look at the page and ask for its work; return whether it has any."""
     trial.look()
@@ -75,11 +85,8 @@ def asked(trial: Trial) -> bool:
 
 
 def ask_for_work(trial: Trial) -> None:
-    """Ask a page for its work; skip the test of a page that has none, and fail for one that should have some."""
-    has_some = asked(trial)
-    assert has_some == (trial.row.name not in WITHOUT_WORK)
-    if not has_some:
-        pytest.skip("this page computes nothing by itself")
+    """Ask a page for its work, which it must begin."""
+    assert asked(trial)
 
 
 def stops(action: str) -> bool:
@@ -140,6 +147,16 @@ def test_a_message_without_sense_is_answered_or_refused_in_a_sentence(trial: Tri
             assert str(problem).endswith(".")
 
 
+@only(lambda name: name in WITHOUT_WORK)
+def test_a_page_without_work_begins_none(trial: Trial) -> None:
+    assert not asked(trial)
+
+
+def test_the_pages_whose_work_is_stopped_are_those_with_such_an_action(trial: Trial) -> None:
+    assert any(map(stops, trial.page.actions)) == (trial.row.name in STOPPED)
+
+
+@with_work
 def test_the_sentence_of_failed_work_is_shown(trial: Trial) -> None:
     ask_for_work(trial)
 
@@ -150,6 +167,7 @@ def test_the_sentence_of_failed_work_is_shown(trial: Trial) -> None:
     assert "The chain is too long for this." in trial.sentences and trial.host.faults == []
 
 
+@with_work
 def test_a_fault_is_reported_once_for_each_work_and_said_once(trial: Trial) -> None:
     ask_for_work(trial)
     begun = len(trial.under_way)
@@ -163,10 +181,9 @@ def test_a_fault_is_reported_once_for_each_work_and_said_once(trial: Trial) -> N
     assert trial.host.failures == []
 
 
+@only(lambda name: name in STOPPED)
 def test_stopped_work_ends_and_the_page_says_so(trial: Trial) -> None:
     ask_for_work(trial)
-    if not any(map(stops, trial.page.actions)):
-        pytest.skip("nothing stops this page's work, which is short")
     stopping = trial.under_way
     for name in filter(stops, trial.page.actions):
         trial.do(name)
@@ -176,6 +193,7 @@ def test_stopped_work_ends_and_the_page_says_so(trial: Trial) -> None:
     nothing_arrives(trial)
 
 
+@with_work
 def test_a_moved_knob_ends_the_work_or_the_page_calls_it_out_of_date(trial: Trial) -> None:
     """And whatever the page computes next belongs to the new chain."""
     ask_for_work(trial)
@@ -186,7 +204,7 @@ def test_a_moved_knob_ends_the_work_or_the_page_calls_it_out_of_date(trial: Tria
         nothing_arrives(trial)
 
 
-def test_work_ends_with_the_visit(trial: Trial) -> None:
+def test_work_ends_with_the_session(trial: Trial) -> None:
     asked(trial)
     trial.host.leave()
     assert trial.under_way == []

@@ -46,7 +46,7 @@ def interrupted(monkeypatch: pytest.MonkeyPatch, tab: Trial, cells: int) -> None
 
 def test_the_map_is_computed_once_while_somebody_looks(tab: Trial) -> None:
     tab.look()
-    assert [one.queue for one in tab.given] == ["long"] and tab.last("map-status")["status"] == "waiting"
+    assert [one.pool for one in tab.given] == ["long"] and tab.last("map-status")["status"] == "waiting"
     tab.compute()
     assert tab.last("map-status")["status"] == "done" and tab.last("map-cells")["done"] == 1.0
     tab.look(False)

@@ -61,7 +61,7 @@ def test_each_period_is_asked_for_and_none_is_computed_unasked(page: Any) -> Non
     page.settle()
     assert page.under_way == []
     page.do("observer-more")
-    assert [one.queue for one in page.given] == ["pictures"]
+    assert [one.pool for one in page.given] == ["pictures"]
     page.compute()
     assert run(page).done == ["predict", "step"] and page.state["sentence"] == "It follows its chain."
     assert page.under_way == []

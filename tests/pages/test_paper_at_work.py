@@ -32,7 +32,7 @@ def page(page_of: Callable[[str], Trial], monkeypatch: pytest.MonkeyPatch) -> An
 def test_it_begins_with_a_figure_and_computes_each_once(page: Any) -> None:
     first, other = "2", next(number for number in FIGURES if number != "2")
     page.look()
-    assert [one.queue for one in page.given] == ["long"] and page.state["chosen"] == first
+    assert [one.pool for one in page.given] == ["long"] and page.state["chosen"] == first
     page.compute()
     assert page.drawn == [(first, f"result {first}")] and (page.state["status"], page.state["done"]) == ("done", 0.5)
     page.do("paper-show", figure=other)

@@ -39,7 +39,7 @@ def test_a_step_from_rest_is_shown_at_once(tab: Trial) -> None:
 def test_a_step_that_is_reached_through_others_is_shown_when_they_are_settled(tab: Trial) -> None:
     name, number, step = place(tab, via=True)
     tab.do("story-open", name=name, step=number)
-    assert [one.queue for one in tab.given] == ["analyses"] and tab.host.shown == []
+    assert [one.pool for one in tab.given] == ["analyses"] and tab.host.shown == []
     tab.compute()
     assert tab.host.shown == [(step.scene, picture().state, step.curves)]
 

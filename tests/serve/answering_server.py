@@ -14,9 +14,9 @@ from bokeh.models import Div
 from bokeh.server.server import Server
 from tornado.ioloop import IOLoop
 
-from app.serve.document import socket_tuning
+from app.serve.connection import socket_tuning
+from app.serve.connection.socket_tuning import disable_nagle
 from app.serve.document.document_lock import has_document_lock, with_document_lock
-from app.serve.document.socket_tuning import disable_nagle
 
 
 class Served:

@@ -210,6 +210,7 @@ export class ChainDrawing {
     g.font = `600 ${Math.min(0.72 * radius, 1.15 * parseFloat(ink.small))}px ${ink.font}`;
     g.textAlign = "center";
     g.textBaseline = "middle";
+    // White on the dark colours in the middle of the energy palette, which is the same in every theme.
     g.fillStyle = share > 0.06 && share < 0.4 ? "#ffffff" : ink.number;
     g.fillText(String(i), x, y);
   }

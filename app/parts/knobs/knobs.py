@@ -15,10 +15,8 @@ from .foundation import beside_kappa, foundation_words
 
 MAIN = tuple(name for name, quantity in QUANTITIES.items() if quantity.main)
 MORE = tuple(name for name in QUANTITIES if name not in MAIN)
-#: Knobs of unequal beads and of an impact, with the values at which they have no effect. A scene with other values
-#: shows these knobs among the main ones.
-_NEUTRAL = {one.name: one.default for one in fields(Scene)
-            if one.name in ("dimer", "taper", "striker", "site", "impurity", "drive", "strike", "end")}
+#: The values at which knobs have no effect, those of the fields of `Scene`.
+_DEFAULTS = {one.name: one.default for one in fields(Scene)}
 #: What a knob is without a drive: its label and its meaning.
 _UNDRIVEN = {
     "f": ("time shown = 1/f", "This chain has no drive: 1/f is only the time that is shown."),
@@ -55,13 +53,13 @@ def _spec(name: str, current: Scene, preset: dict[str, Any]) -> dict[str, Any]:
     short, meaning = quantity.short or quantity.label, quantity.meaning
     if name in _UNDRIVEN and preset["drive"] == "rest":
         short, meaning = _UNDRIVEN[name]
-    folded = name in MORE and not (name in _NEUTRAL and preset[name] != _NEUTRAL[name])
+    shown = quantity.main or (quantity.main_if_set and preset[name] != _DEFAULTS[name])
     factor, unit = quantity.shown_in or (1.0, quantity.unit if quantity.unit != "1" else "")
     low, high = slider_range(current, name)
     return {
         "name": name, "symbol": "" if quantity.choices else quantity.symbol, "label": quantity.label,
         "short": short, "meaning": meaning,
         "unit": unit, "factor": factor, "choices": list(quantity.choices), "low": low, "high": high,
-        "whole": quantity.whole, "more": folded, "step": quantity.step, "scale": quantity.scale,
+        "whole": quantity.whole, "more": not shown, "step": quantity.step, "scale": quantity.scale,
         "at_zero": quantity.at_zero,
     }

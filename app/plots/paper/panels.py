@@ -44,7 +44,7 @@ def inside_legend(plot: figure, theme: Theme, location: str = "top_right") -> No
     for legend in plot.legend:
         legend.update(location=location, padding=2, margin=4, spacing=0, label_height=14, glyph_height=14,
                       background_fill_alpha=0.8, click_policy="hide",
-                      label_text_font_size=f"{theme.small_text_size - 2}px")
+                      label_text_font_size=theme.smallest_figure_text)
 
 
 def hollow_points(plot: figure, x: Any, y: Any, error: Any, words: str, hover: Sequence[tuple[str, str]]) -> None:

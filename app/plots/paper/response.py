@@ -43,8 +43,9 @@ def _curves(shown: RigCurves, theme: Theme) -> figure:
         "x": [f.frequency for f in shown.features], "y": [1.36 * high] * len(shown.features),
         "words": [f"{f.frequency:g} Hz, {f.kind}" for f in shown.features],
         "source": [f.source for f in shown.features]}, name="stated")
-    themed(plot.text("x", "y", text="words", source=stated, angle=-math.pi / 2, text_font_size="12px",
-                     text_baseline="bottom", text_align="left", x_offset=3), text_color="soft")
+    themed(plot.text("x", "y", text="words", source=stated, angle=-math.pi / 2,
+                     text_baseline="bottom", text_align="left", x_offset=3), text_color="soft",
+           text_font_size="smallest_figure_text")
     if shown.states:
         _states(plot, shown)
     measured_curve(plot, shown.measured, 1.0)
@@ -85,4 +86,4 @@ def _states(plot: figure, shown: RigCurves) -> None:
     rings = plot.scatter("x", "y", source=source, size=15, fill_color=None, legend_label="figure 12's states")
     themed(rings, line_color="ink", line_width=2.4)
     themed(plot.text("x", "y", text="words", source=source, x_offset=11, text_baseline="middle",
-                     text_font_size="12px", text_font_style="bold"), text_color="ink")
+                     text_font_style="bold"), text_color="ink", text_font_size="smallest_figure_text")

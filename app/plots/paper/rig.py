@@ -122,5 +122,5 @@ def _dimension(plot: figure, left: float, right: float, y: float, words: str) ->
 def _words(plot: figure, x: object, y: float, words: list[str], role: str, align: str = "left",
            up: bool = False) -> None:
     text = plot.text(x, [y] * len(words), text=words, text_align=align, text_baseline="bottom" if up else "middle",
-                     text_font_size="13px", x_offset=6 if align == "left" else 0)
-    themed(text, text_color=role)
+                     x_offset=6 if align == "left" else 0)
+    themed(text, text_color=role, text_font_size="small_figure_text")

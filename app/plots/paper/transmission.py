@@ -25,9 +25,9 @@ def transmission(shown: Transmission, theme: Theme) -> figure:
                  else f"{p.frequency:g} Hz" + ("" if p.regime.period == 1 else f", {p.regime.name}") for p in found]
         source = ColumnDataSource({"x": [p.frequency for p in found], "words": words,
                                    "y": [p.max_output_force_elastic / scale for p in found]}, name=name)
-        text = plot.text("x", "y", text="words", source=source, text_align="center", text_font_size="13px",
+        text = plot.text("x", "y", text="words", source=source, text_align="center",
                          text_baseline="top" if below else "bottom", y_offset=10 if below else -8)
-        themed(text, text_color="soft" if below else "ink")
+        themed(text, text_color="soft" if below else "ink", text_font_size="small_figure_text")
     measured_curve(plot, shown.measured, scale)
     plot.legend.ncols = 3  # four columns are wider than a phone
     highest = largest if shown.measured is None else max(largest, float(shown.measured.force.max()))

@@ -1,7 +1,7 @@
-"""Compiling outside the server process, so that only the session that needs it waits.
+"""Compiling outside the server process, so that only the session that needs the kernels waits.
 
-Numba holds the GIL while it compiles, so kernels that are not cached yet are compiled in processes of their own; this
-one then loads them from the cache.
+Numba holds the GIL while it compiles. Kernels that are not cached yet are therefore compiled in processes of their own,
+and the server then loads them from the cache.
 """
 
 from __future__ import annotations
@@ -33,12 +33,12 @@ _ROOT = Path(__file__).resolve().parents[3]
 
 
 def compiling_words(what: str, piece: str) -> str:
-    """What is being compiled, and how long that takes. `piece` is the one that takes longest."""
+    """A sentence: what is being compiled, and how long the longest `piece` takes."""
     return f"compiling {what}: about {COMPILE_SECONDS[piece]} s, only the first time on this computer"
 
 
 def _compile(scene: Scene, piece: str) -> None:
-    """Compile in another process or, if none can be started, in this one."""
+    """Compile in another process, or in this process if no other can be started."""
     command = [sys.executable, "-m", f"{__package__}.compiling_process", str(os.getpid()), piece]
     try:  # in a session of its own, where a terminal's Ctrl-C does not reach it; its stderr is the server's
         subprocess.run(command, input=json.dumps(scene.to_json()), text=True, cwd=_ROOT, check=True,
@@ -49,14 +49,14 @@ def _compile(scene: Scene, piece: str) -> None:
 
 
 def _log_failure(ended: Future[None]) -> None:
-    """Report a failure that nobody waits for."""
+    """Log a failure that no session waits for."""
     error = ended.exception()
     if error is not None:
         log.error("loading kernels ahead of time failed", exc_info=error)
 
 
 class Compiler:
-    """Compiles kernels in other processes, each once; again where that failed."""
+    """Compiles kernels in other processes: each piece once, and again if it failed."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
@@ -65,7 +65,7 @@ class Compiler:
         self._loaded: set[tuple[str, str]] = set()
 
     def has(self, scene: Scene, *pieces: str) -> bool:
-        """Whether these kernels of the scene's structure only need to be loaded."""
+        """Whether these kernels are compiled for the scene's structure, and only need to be loaded."""
         missing = [piece for piece in pieces if (structure(scene), piece) not in self._known]
         if missing and not is_warm(scene, missing):
             return False
@@ -73,7 +73,7 @@ class Compiler:
         return True
 
     def ask(self, scene: Scene, piece: str) -> Future[None]:
-        """Begin to compile in another process, unless that is under way or done; what failed is tried again."""
+        """Begin to compile in another process, unless that is under way or done. A failed piece is tried again."""
         key = structure(scene), piece
         with self._lock:
             compilation = self._compilations.get(key)
@@ -82,7 +82,7 @@ class Compiler:
             return compilation
 
     def await_piece(self, scene: Scene, piece: str, stop: Stop) -> bool:
-        """Wait for these kernels; False when the stop flag went up first. Call it from a worker thread."""
+        """Wait for these kernels in a worker thread; False if the stop flag was set first."""
         if self.has(scene, piece):
             return True
         compilation = self.ask(scene, piece)
@@ -93,14 +93,14 @@ class Compiler:
         return True
 
     def load(self, scene: Scene, piece: str) -> None:
-        """Load compiled kernels into this process now, so that their first call does not have to."""
+        """Load compiled kernels into this process now, and not at their first call."""
         key = structure(scene), piece
         if key not in self._loaded:
             compile_piece(scene, piece)
             self._loaded.add(key)
 
     def prepare(self, scene: Scene) -> None:
-        """Have this scene's kernels ready in this process before the first session asks."""
+        """Compile and load this scene's kernels before the first session needs them."""
         for piece in PICTURE_PIECES:
             if not self.has(scene, piece):
                 self.ask(scene, piece)
@@ -114,9 +114,9 @@ class Compiler:
 
 
 class Requests:
-    """What one session's work asks for: each piece once, so that one that cannot be compiled is not tried for ever.
+    """The pieces that one session's work has asked for, each once: a piece that fails is not tried for ever.
 
-    Another session's work, or a picture, may try it again.
+    The work of another session, or a picture, may try it again.
     """
 
     def __init__(self, compiler: Compiler) -> None:
@@ -124,7 +124,7 @@ class Requests:
         self._compilations: dict[tuple[str, str], Future[None]] = {}
 
     def failure(self, scene: Scene, *pieces: str) -> Exception | None:
-        """Ask for these kernels; returns why one of them could not be compiled, None as long as that is not known."""
+        """Ask for these kernels. Return why a piece could not be compiled; None as long as no failure is known."""
         for piece in pieces:
             key = structure(scene), piece
             if key not in self._compilations:

@@ -1,4 +1,7 @@
-"""A process that compiles for the server and ends with it: PARENT PIECE, and the scene as JSON on standard input."""
+"""A process that compiles for the server and ends when the server ends.
+
+Its arguments are PARENT PIECE; the scene comes as JSON on standard input.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +12,7 @@ from granchain_core.execution.child_processes import end_with_parent
 
 
 def main(parent: str, piece: str) -> None:
-    """Watch the parent first, because loading what is needed takes seconds; then compile."""
+    """Watch the parent before the imports, which take seconds; then compile."""
     end_with_parent(int(parent))
     from granchain_core import Scene
     from granchain_core.precompile.warm import compile_piece

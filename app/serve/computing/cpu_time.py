@@ -1,4 +1,4 @@
-"""The processor time that sessions have used lately, by which turns are given (turns.py)."""
+"""The processor time that each session has used lately; turns are given by it (turns.py)."""
 
 from __future__ import annotations
 
@@ -27,7 +27,10 @@ class CpuTime:
 
 
 class SharedCpuTime(CpuTime):
-    """Sessions that wait for one picture: they share its cost, and their rank is that of the one that used least."""
+    """The processor time of a computation that several sessions wait for.
+
+    The sessions share the cost. The computation has the rank of the session that has used least.
+    """
 
     def __init__(self) -> None:
         super().__init__()
@@ -35,11 +38,11 @@ class SharedCpuTime(CpuTime):
 
     @property
     def used(self) -> float:
-        """The least time that any member has used [s]."""
+        """The smallest time that a member has used [s]."""
         return min((member.used for member in list(self.members)), default=math.inf)
 
     def charge(self, seconds: float) -> None:
-        """Charge each member an equal part."""
+        """Charge every member an equal part."""
         members = list(self.members)
         for member in members:
             member.charge(seconds / len(members))

@@ -1,4 +1,7 @@
-"""One running computation, replaced by a newer one. Each session has two: for the picture and for drafts of a curve."""
+"""One computation at a time, replaced by a newer request.
+
+Each session has two of these: for its picture, and for drafts of its curve.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +28,7 @@ _FIRST_RESULT_TIME = 1.0
 
 
 class _Alarms:
-    """One thread that calls actions when they are due."""
+    """A thread that calls each action when it is due."""
 
     def __init__(self) -> None:
         self._changed = threading.Condition()
@@ -57,11 +60,11 @@ _later = _Alarms()
 
 
 class LatestWins:
-    """One running computation for a session; a newer one replaces whatever waits.
+    """At most one running computation and one waiting request; a newer request replaces the waiting one.
 
-    A computation is an iterator of ever better results. A newer request stops at once a computation that has had its
-    first result. One that has none yet may take up to a second for it: if each were stopped, nothing would be repainted
-    during a drag.
+    A computation is an iterator of ever better results. A newer request stops a computation that has had its first
+    result at once. A computation without a result may go on for up to a second: if every request stopped it, the page
+    would show no new picture during a drag.
     """
 
     def __init__(self, deliver: Callable[[object], None], fail: Callable[[Exception], None],
@@ -79,11 +82,11 @@ class LatestWins:
 
     @property
     def busy(self) -> bool:
-        """Whether something is being computed or waits to be."""
+        """Whether a computation runs or waits."""
         return self._running
 
     def submit(self, work: TurnWork) -> None:
-        """Compute `work` next, in place of anything that has not started."""
+        """Compute `work` next, in place of a request that still waits."""
         with self._lock:
             if self._closed:
                 return
@@ -100,7 +103,7 @@ class LatestWins:
         SESSION_WORK.submit(self._drain)
 
     def _give_up(self, stop: TurnFlag) -> None:
-        """Give up the computation: its first result has not come within a second, and newer work waits."""
+        """End a computation without a result after a second, if newer work waits."""
         with self._lock:
             if self._stop is stop and self._waiting is not None:
                 stop.set()
@@ -131,7 +134,7 @@ class LatestWins:
                 return
 
     def _do(self, work: TurnWork) -> None:
-        """Deliver the results of a computation; after each, end it if newer work waits. A failure is reported."""
+        """Deliver the results of a computation. It ends after a result if newer work waits; a failure is reported."""
         try:
             for result in work(self._stop):
                 if self._closed:
@@ -147,7 +150,7 @@ class LatestWins:
             self._report(error)
 
     def _report(self, error: Exception) -> None:
-        """Report a failure; if reporting fails as well, log that, so that the next computation still begins."""
+        """Report a failure. If reporting fails too, log that, so that the next computation still begins."""
         try:
             if not self._closed:
                 self._fail(error)

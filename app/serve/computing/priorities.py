@@ -1,9 +1,9 @@
 """Priorities of threads: the event loop and computations that have just begun go before long work.
 
-On Linux every thread has a nice value of its own; elsewhere it belongs to the whole process, and nothing is changed.
-Without special rights a thread cannot raise its priority again, so a thread of lower priority ends with its work
-(worker_pools.py). Threads that it starts have the lower priority too, unless `begin` starts them. The main thread,
-which has the event loop, keeps its priority.
+On Linux every thread has a nice value of its own. Elsewhere the nice value belongs to the whole process, and this
+module changes nothing. Without special rights a thread cannot raise its priority again, so a thread of lower priority
+ends with its work (worker_pools.py). Threads inherit the lower priority of the thread that starts them, unless `begin`
+starts them. The main thread, which runs the event loop, keeps its priority.
 """
 
 from __future__ import annotations
@@ -13,12 +13,12 @@ import sys
 import threading
 from queue import SimpleQueue
 
-#: Added to the nice value of a thread of lower priority: beside another thread it gets a tenth of a processor.
+#: Added to the nice value of a thread of lower priority; it then gets a tenth of a processor beside another thread.
 _ADDED_NICENESS = 10
 
 
 class _Starter:
-    """A thread of usual priority, which starts others."""
+    """A thread of usual priority that starts other threads."""
 
     def __init__(self) -> None:
         self.asked: SimpleQueue[threading.Thread] = SimpleQueue()
@@ -26,7 +26,7 @@ class _Starter:
         self._running = False
 
     def run(self) -> None:
-        """Start it; called by a thread of usual priority."""
+        """Start this thread once; called by a thread of usual priority."""
         with self._lock:
             if not self._running:
                 threading.Thread(target=self._serve, daemon=True, name="starter").start()
@@ -41,7 +41,7 @@ _STARTER = _Starter()
 
 
 def lower_priority() -> None:
-    """Lower this thread's priority: from now on threads of usual priority have the processor first."""
+    """Lower the priority of this thread: threads of usual priority get the processor first."""
     if sys.platform != "linux" or threading.current_thread() is threading.main_thread():
         return
     if not has_lower_priority():
@@ -50,7 +50,7 @@ def lower_priority() -> None:
 
 
 def has_lower_priority() -> bool:
-    """Whether the priority of this thread, or of the one that started it, was lowered."""
+    """Whether the priority of this thread was lowered, or inherited from a thread of lower priority."""
     return sys.platform == "linux" and os.getpriority(os.PRIO_PROCESS, threading.get_native_id()) > _usual()
 
 
@@ -60,7 +60,7 @@ def _usual() -> int:
 
 
 def begin(thread: threading.Thread) -> None:
-    """Start a thread of usual priority, whatever the priority of this one."""
+    """Start a thread of usual priority, whatever the priority of this thread."""
     if has_lower_priority():
         _STARTER.asked.put(thread)
     else:

@@ -1,7 +1,7 @@
-"""Shared results: computed once for all sessions that wait, and cached in bounded memory.
+"""Shared results: request coalescing (*single flight*) with an LRU cache in bounded memory.
 
-A lecture hall whose pages all have the same knobs costs as much as one session. A computation ends when the last
-session that waits for it has moved on or ended.
+A result is computed once for all sessions that wait for it, so a lecture hall whose pages all have the same knobs costs
+as much as one session. A computation ends when the last session that waits for it has moved on or ended.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from .worker_pools import WorkerPool
 
 Item = TypeVar("Item")
 
-#: Time between two checks of a session's stop flag while it waits [s]; new items wake it at once.
+#: Time between two checks of the stop flag of a session that waits [s]; new items wake the session at once.
 _STOP_CHECK_INTERVAL = 0.5
 
 
 class _Computation(Generic[Item]):
-    """One computation: what it has found so far, who waits for it, and how it ended."""
+    """One computation: its results so far, the sessions that wait for it, and how it ended."""
 
     def __init__(self) -> None:
         self.changed = threading.Condition()
@@ -36,9 +36,10 @@ class _Computation(Generic[Item]):
 
 
 class Shared(Generic[Item]):
-    """Computations by their keys. `kept` chooses which items of a finished one are kept; `size` gives their memory.
+    """Computations by their keys.
 
-    Finished computations take at most `memory` bytes; the least recently used is dropped first. With `turns` the
+    `kept` chooses the items of a finished computation that are kept, and `size` gives the memory of an item. All that
+    is kept takes at most `memory` bytes; the least recently used computation is dropped first. With `turns` the
     computations take turns (turns.py).
     """
 
@@ -55,7 +56,7 @@ class Shared(Generic[Item]):
                cpu_time: CpuTime) -> Generator[Item, None, None]:
         """The items of `compute`, or of the computation with the same key that is under way or finished.
 
-        A key of None is shared with nobody. Raises `Cancelled` when `stop` is set, and what `compute` raises.
+        A computation with the key None is not shared. Raises `Cancelled` when `stop` is set, and what `compute` raises.
         """
         with self._lock:
             if key in self._finished:
@@ -75,7 +76,7 @@ class Shared(Generic[Item]):
 
     def _joined(self, key: Hashable, compute: Callable[[TurnFlag], Iterator[Item]],
                 cpu_time: CpuTime) -> _Computation[Item]:
-        """With the lock held: the computation under way, or a new one."""
+        """The computation under way, or a new one; called with the lock held."""
         found = None if key is None else self._under_way.get(key)
         if found is None:
             self.misses += 1
@@ -102,9 +103,9 @@ class Shared(Generic[Item]):
 
     @staticmethod
     def _awaited(computation: _Computation[Item], stop: Stop) -> Iterator[Item]:
-        """Each result once it is there, until the computation has ended; its error is raised after the last one.
+        """Each result as soon as it is there, until the computation has ended; then raise its error, if any.
 
-        Waiting ends at once when the flag goes up, or at the next check where the flag cannot call.
+        The wait ends at once when a `Flag` is set, and at the next check when another `Stop` is set.
         """
         def wake() -> None:
             with computation.changed:
@@ -128,7 +129,7 @@ class Shared(Generic[Item]):
 
     def _compute(self, key: Hashable, computation: _Computation[Item],
                  compute: Callable[[TurnFlag], Iterator[Item]]) -> None:
-        """In a thread of the pool."""
+        """Compute in a thread of the pool."""
         error: Exception | None = None
         try:
             computation.stop.check()
@@ -146,16 +147,16 @@ class Shared(Generic[Item]):
                 if error is None and key is not None:
                     self._keep(key, self._kept(computation.items))
         finally:
-            with computation.changed:  # even after an error, because others wait
+            with computation.changed:  # after an error, too, because sessions wait
                 computation.done, computation.error = True, error
                 computation.changed.notify_all()
 
     def _keep(self, key: Hashable, items: list[Item]) -> None:
-        """With the lock held: keep these items, and drop the least recently used ones beyond `memory`."""
+        """Keep these items, and drop the least recently used ones beyond `memory`; called with the lock held."""
         size = sum(map(self._size, items))
         if size > self.memory:
             return
-        if key in self._finished:  # computed a second time, because its last session ended just before
+        if key in self._finished:  # computed twice: the last session of the first computation had just ended
             self.used -= self._finished.pop(key)[1]
         self._finished[key] = items, size
         self.used += size

@@ -1,8 +1,9 @@
-"""Fair scheduling: of the sessions that wait, the one that has used least time gets the next turn to compute.
+"""Turns to compute, given by *least attained service* with a time slice.
 
-Kernels run without the GIL, so about as many computations as there are cores run at once. A computation is new until
-it has its first result or has taken long; from then on it is a refinement. A new one begins at once and is not
-interrupted, because it is short. A refinement gives up its turn at the first pause after a time slice.
+Of the sessions that wait, the one that has used the least processor time lately gets the next turn. Kernels run without
+the GIL, so about as many computations as there are cores run at once. A computation is new until it has its first
+result or has taken long; from then on it is a refinement. A new computation begins at once and is not interrupted,
+because it is short. A refinement gives up its turn at the first pause after its time slice.
 """
 
 from __future__ import annotations
@@ -23,28 +24,28 @@ from .priorities import lower_priority
 
 Result = TypeVar("Result")
 
-#: A computation without a result is new for this processor time [s]. A first picture of ten beads takes a tenth of it.
+#: Processor time for which a computation without a result is new [s]. A first picture of ten beads takes a tenth of it.
 _NEW_CPU_TIME = 0.03
-#: Time for which a turn is kept although others wait [s]. Giving it up at every pause would be too often: passing it to
-#: another thread costs some waits for the GIL.
+#: Time for which a turn is kept although others wait [s]. Every pause would be too often: passing a turn to another
+#: thread costs several waits for the GIL.
 _TIME_SLICE = 0.02
 #: Most new computations whose waits are averaged.
 _MOST_WAITS = 200
 #: Span of time over which the waits are averaged [s].
 _WAITS_WINDOW = 10.0
-#: A computation that has waited this long gets a slice although others use all cores [s].
+#: Wait after which a refinement gets a turn although new computations use all cores [s].
 _LONGEST_WAIT = 0.5
-#: Time between two checks of a waiting computation whether it may begin [s]. It may when a turn ends, but also when a
-#: turn has grown too old or the wait too long. The time is multiplied by the number of computations that wait.
+#: Time after which a waiting thread checks whether a computation may begin [s]: nobody tells it that a turn has grown
+#: too old, or a wait too long. The time is multiplied by the number of computations that wait.
 _CHECK_INTERVAL = 0.05
-#: The largest such multiple.
+#: Largest factor of this time.
 _LONGEST_CHECK_MULTIPLE = 20
-#: A turn that has lasted longer than this does not keep others waiting [s]: not every computation can pause.
+#: Age at which a turn no longer keeps others waiting [s]: not every computation can pause.
 _LONGEST_TURN = 0.1
 
 
 class _Priority(NamedTuple):
-    """Sort key of waiting turns: new before refinements, long waits first, then least processor time."""
+    """Sort key of those that wait: new before refinements, long waits first, then least processor time."""
 
     is_refinement: bool
     waited_little: bool
@@ -52,9 +53,9 @@ class _Priority(NamedTuple):
 
 
 class _Turn:
-    """A thread that waits for a turn or has one; `at` is the time at which the wait or the turn began.
+    """A thread that waits for a turn or has one.
 
-    `is_new` says whether its computation is new.
+    `at` is the time at which the wait or the turn began. `is_new` says whether the computation is new.
     """
 
     def __init__(self, cpu_time: CpuTime, stop: Stop, is_new: bool, at: float) -> None:
@@ -62,16 +63,17 @@ class _Turn:
         self.granted = threading.Event()
 
     def priority(self, now: float) -> _Priority:
-        """Its place among those that wait."""
+        """The place of the thread among those that wait."""
         return _Priority(not self.is_new, now - self.at < _LONGEST_WAIT, self.cpu_time.used)
 
 
-class FairScheduler:
+class Turns:
     """Gives turns to computations that wait; only turns younger than `_LONGEST_TURN` keep others waiting.
 
-    A new computation gets one while fewer than `at_once` new ones have one, whatever else computes. A refinement gets
-    one while fewer than `at_once` computations of both kinds have one; once it has waited for `_LONGEST_WAIT`, only
-    refinements count. So `2 * at_once` turns are possible for a moment.
+    A new computation gets a turn while fewer than `at_once` new computations have one, whatever else computes. A
+    refinement gets a turn while fewer than `at_once` computations of both kinds have one. A refinement that has waited
+    for `_LONGEST_WAIT` gets a turn while fewer than `at_once` refinements have one. So `2 * at_once` turns are possible
+    for a moment.
     """
 
     def __init__(self, at_once: int, clock: Callable[[], float] = time.monotonic) -> None:
@@ -84,31 +86,28 @@ class FairScheduler:
 
     @property
     def wait(self) -> float:
-        """How long a computation waited lately before it could begin, on average [s]."""
+        """Mean wait of new computations lately [s]."""
         since = self._clock() - _WAITS_WINDOW
         waits = [wait for at, wait in list(self._waits) if at > since]
         return sum(waits) / len(waits) if waits else 0.0
 
     @property
     def waiting(self) -> int:
-        """How many wait for their turn."""
+        """Number of computations that wait for a turn."""
         return len(self._waiting)
 
     @property
     def running(self) -> int:
-        """How many have a turn."""
+        """Number of computations that have a turn."""
         return len(self._running)
 
     def begin(self, cpu_time: CpuTime, stop: Stop, is_new: bool = True) -> _Turn:
-        """Wait for a turn, or until the stop flag is set; returns what `end` needs.
-
-        `is_new` says whether the computation is new.
-        """
+        """Wait for a turn or until the stop flag is set, and return the turn."""
         mine = _Turn(cpu_time, stop, is_new, self._clock())
         with self._lock:
             self._waiting.append(mine)
             self._grant()
-        # One waiting thread checks for all: more checks would keep the GIL from the event loop and pictures.
+        # One waiting thread checks for all of them: more checks would keep the GIL from the event loop.
         while not mine.granted.wait(_CHECK_INTERVAL * min(len(self._waiting), _LONGEST_CHECK_MULTIPLE)):
             if stop:
                 self.stopped(stop)
@@ -118,7 +117,7 @@ class FairScheduler:
         return mine
 
     def stopped(self, stop: Stop) -> None:
-        """Release the thread that waits with this stop flag, which has been set."""
+        """The stop flag has been set: release the thread that waits with it."""
         with self._lock:
             for turn in [turn for turn in self._waiting if turn.stop is stop]:
                 self._waiting.remove(turn)
@@ -131,16 +130,17 @@ class FairScheduler:
             self._grant()
 
     def became_refinement(self, turn: _Turn) -> None:
-        """The computation is a refinement from now on, which makes room for a new one."""
+        """The computation is a refinement from now on; this makes room for a new computation."""
         if turn.is_new:
             with self._lock:
                 turn.is_new = False
                 self._grant()
 
     def should_yield(self, turn: _Turn) -> bool:
-        """Whether a computation has to give up its turn; a new one has not.
+        """Whether a refinement has to give up its turn; a new computation keeps its turn.
 
-        It has to if another has a higher priority, or if more than `at_once` compute and its session has used most.
+        A refinement has to give up its turn if a waiting computation has a higher priority. It also has to if more than
+        `at_once` computations have a turn and its session has used the most processor time of them.
         """
         with self._lock:
             now = self._clock()
@@ -154,9 +154,9 @@ class FairScheduler:
             return more < too_many
 
     def _grant(self) -> None:
-        """With the lock held: give turns to those with the highest priority."""
+        """Give turns in the order of priority; called with the lock held."""
         self._checked_at = now = self._clock()
-        # Mostly there is room for none, and finding that out is cheaper than sorting.
+        # Mostly there is no room, and finding that out is cheaper than sorting.
         if not any(self._has_room(turn, now) for turn in self._waiting):
             return
         for turn in sorted(self._waiting, key=lambda turn: turn.priority(now)):
@@ -170,7 +170,7 @@ class FairScheduler:
             turn.granted.set()
 
     def _has_room(self, turn: _Turn, now: float) -> bool:
-        """Whether a turn could begin beside those that are held."""
+        """Whether this turn could begin beside the turns that are held."""
         are_new = [other.is_new for other in self._running if now - other.at < _LONGEST_TURN]
         if turn.is_new:
             return sum(are_new) < self._at_once
@@ -178,11 +178,11 @@ class FairScheduler:
         return len(are_new) < self._at_once or waited
 
 
-TURNS = FairScheduler(max(2, usable_cores()))
+TURNS = Turns(max(2, usable_cores()))
 
 
 class Flag(Stop):
-    """A stop flag that wakes a waiting thread: `on_set` is called in the thread that sets the flag."""
+    """A stop flag that calls `on_set` in the thread that sets the flag, to wake a waiting thread."""
 
     __slots__ = ("on_set",)
 
@@ -191,49 +191,49 @@ class Flag(Stop):
         self.on_set: Callable[[], None] | None = None
 
     def set(self) -> None:
-        """Ask for the end."""
+        """Set the flag: the computation should end."""
         super().set()
         if self.on_set is not None:
             self.on_set()
 
 
 class TurnFlag(Flag):
-    """The stop flag of a picture's computation, which takes turns with others while it computes."""
+    """The stop flag of a picture's computation, which takes turns with other computations."""
 
-    __slots__ = ("_began", "_scheduler", "_spent", "_turn", "cpu_time")
+    __slots__ = ("_began", "_spent", "_turn", "_turns", "cpu_time")
 
-    def __init__(self, cpu_time: CpuTime, scheduler: FairScheduler = TURNS) -> None:
+    def __init__(self, cpu_time: CpuTime, turns: Turns = TURNS) -> None:
         super().__init__()
         self.cpu_time = cpu_time
-        self._scheduler = scheduler
+        self._turns = turns
         self._turn: _Turn | None = None
         self._began = self._spent = 0.0
 
     @property
     def is_new(self) -> bool:
-        """Whether the computation is new: there is no result yet, and it has not taken long."""
+        """Whether the computation is new: it has no result yet, and has not taken long."""
         return self._spent < _NEW_CPU_TIME
 
     def set(self) -> None:
-        """Ask for the end, even of the wait for a turn."""
+        """Set the flag; a wait for a turn ends as well."""
         super().set()
-        self._scheduler.stopped(self)
+        self._turns.stopped(self)
 
     def pause(self) -> None:
-        """Between two parts of the computation: let sessions that have used less go first."""
+        """Between two parts of the computation: give up the turn if another session is due."""
         if self._turn is None:
             return
         self._charge()
         self._lower_priority()
         if not self.is_new:
-            self._scheduler.became_refinement(self._turn)
-        if self._scheduler.should_yield(self._turn):
+            self._turns.became_refinement(self._turn)
+        if self._turns.should_yield(self._turn):
             self._leave()
             self._enter()
 
     @contextmanager
     def held(self, is_new: bool = False) -> Iterator[None]:
-        """Wait for a turn and hold it. `is_new`: another computation begins with this flag."""
+        """Wait for a turn and hold it. With `is_new` another computation begins with this flag."""
         if is_new:
             self._spent = 0.0
         self._enter()
@@ -245,7 +245,7 @@ class TurnFlag(Flag):
 
     @contextmanager
     def released(self) -> Iterator[None]:
-        """Leave the turn to others while this thread waits for something else."""
+        """Give up the turn while this thread waits for something else."""
         if self._turn is None:
             yield
             return
@@ -257,7 +257,7 @@ class TurnFlag(Flag):
             self._enter()
 
     def in_turns(self, results: Iterable[Result]) -> Iterator[Result]:
-        """Compute each result while a turn is held."""
+        """The results, each computed while a turn is held."""
         found = iter(results)
         while True:
             with self.held():
@@ -275,13 +275,13 @@ class TurnFlag(Flag):
 
     def _enter(self) -> None:
         self._lower_priority()
-        self._turn = self._scheduler.begin(self.cpu_time, self, self.is_new)
+        self._turn = self._turns.begin(self.cpu_time, self, self.is_new)
         self._began = time.thread_time()
 
     def _leave(self) -> None:
         turn, self._turn = self._turn, None
         if turn is not None:
-            self._scheduler.end(turn)
+            self._turns.end(turn)
 
     def _charge(self) -> None:
         now = time.thread_time()

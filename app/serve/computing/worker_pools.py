@@ -1,8 +1,8 @@
-"""Where computations of the dashboard run.
+"""The pools of threads in which the dashboard computes.
 
-All sessions share named pools of threads. Kernels release the GIL, so threads are enough; those that compute pictures
-take fair turns (turns.py), and of a session's pictures the latest request counts (latest_wins.py). Long work has pools
-of its own, because a picture must never wait for it.
+All sessions share these pools. Kernels release the GIL, so threads are enough. Threads that compute pictures take turns
+(turns.py), and of a session's requests for pictures the latest counts (latest_wins.py). Long work has pools of its own,
+because a picture must never wait for long work.
 """
 
 from __future__ import annotations
@@ -22,16 +22,16 @@ Result = TypeVar("Result")
 
 
 class WorkerPool:
-    """At most `workers` threads for work of one kind, each started when it is needed. What comes first begins first.
+    """At most `workers` threads for work of one kind, first come, first served. A thread is started when it is needed.
 
-    The threads are daemons: a branch or a map lasts minutes, and a server that ends does not wait for it. Those of a
-    `low_priority` pool leave the processor to others (priorities.py).
+    The threads are daemons: a branch or a map takes minutes, and a server that ends does not wait for them. Threads of
+    a `low_priority` pool leave the processor to others (priorities.py).
 
-    With a `per_owner_limit`, at most that many pieces of one owner's work run or wait for a thread. Further ones are
-    held; as the owner's earlier ones end they are queued, behind the work of others.
+    With a `per_owner_limit`, at most that many pieces of one owner's work run or wait for a thread. Further pieces are
+    held. When an earlier piece of the owner ends, the next is queued behind the work of others.
 
-    A thread counts as busy from the moment it is given work, before it has begun it: otherwise the next piece of work
-    would be given to the same thread, and wait although another thread could begin it.
+    A thread is busy from the moment at which it is given work, before the work begins. Otherwise the next piece of work
+    would be given to the same thread, and wait although another thread is free.
     """
 
     def __init__(self, name: str, workers: int, low_priority: bool = False, per_owner_limit: int | None = None) -> None:
@@ -42,33 +42,33 @@ class WorkerPool:
         self._given: SimpleQueue[Callable[[], None]] = SimpleQueue()
         self._threads: list[threading.Thread] = []
         self._numbers = count()
-        self._free = 0  # threads without work
-        self.queued = 0  # work that waits for a thread
+        self._free = 0  # number of threads without work
+        self.queued = 0  # pieces of work that wait for a thread
         self._lock = threading.Lock()
-        self._taken: Counter[object] = Counter()  # work of each owner that runs or waits for a thread
-        self._held: dict[object, deque[Callable[[], None]]] = {}  # work of each owner beyond its limit
+        self._taken: Counter[object] = Counter()  # by owner: pieces of work that run or wait for a thread
+        self._held: dict[object, deque[Callable[[], None]]] = {}  # by owner: work beyond the limit
 
     @property
     def busy_threads(self) -> int:
-        """How many threads are at work, or wait for something in the middle of it, such as a turn."""
+        """Number of threads that have work, even if they wait in the middle of it, such as for a turn."""
         return len(self._threads) - self._free
 
     @property
     def held(self) -> int:
-        """How much work waits because its owner has reached its limit."""
+        """Number of pieces of work that wait because their owner has reached the limit."""
         with self._lock:
             return sum(map(len, self._held.values()))
 
     def submit(self, work: Callable[..., Result], *args: object, owner: object = None) -> Future[Result]:
-        """Call `work` as soon as a thread is free; the future has what it returns or raises.
+        """Call `work` as soon as a thread is free; the future has its result or its error.
 
-        Work without an `owner` has no limit. If the future is cancelled before the work has begun, the work
-        is not done, and nothing keeps it or its arguments any longer.
+        Work without an `owner` has no limit. If the future is cancelled before the work begins, the work is not done,
+        and nothing keeps the work or its arguments alive.
         """
         future: Future[Result] = Future()
         limited = self.per_owner_limit is not None and owner is not None
         piece = [partial(work, *args)]
-        owners = [owner]  # emptied at the end: a future keeps its callbacks, and they would keep the owner
+        owners = [owner]  # emptied at the end: a future keeps its callbacks, which would keep the owner alive
 
         def do() -> None:
             try:
@@ -99,7 +99,7 @@ class WorkerPool:
         return future
 
     def _give(self, do: Callable[[], None]) -> None:
-        """Give work to a free or a new thread, or let it wait for one; called with the lock held."""
+        """Give work to a free or a new thread, or queue it; called with the lock held."""
         self._given.put(do)
         if self._free:
             self._free -= 1
@@ -109,10 +109,10 @@ class WorkerPool:
             self.queued += 1
 
     def _let_go(self, owners: list[object], do: Callable[[], None]) -> bool:
-        """Cancelled work that waits because of its owner's limit is dropped; returns whether this was.
+        """Drop cancelled work that is held because of its owner's limit; return whether it was held.
 
-        Where it waits for a thread already, it stays and does nothing. `owners` is empty if a thread has taken it since
-        it was cancelled.
+        Cancelled work that is queued stays in the queue and does nothing. `owners` is empty if a thread has taken the
+        work since it was cancelled.
         """
         with self._lock:
             held = self._held.get(owners[0]) if owners else None
@@ -124,7 +124,7 @@ class WorkerPool:
             return True
 
     def _ended(self, owner: object) -> None:
-        """Work of this owner has ended: its next work is queued."""
+        """Work of this owner has ended: queue the owner's next work."""
         with self._lock:
             if held := self._held.get(owner):
                 self._give(held.popleft())
@@ -141,18 +141,18 @@ class WorkerPool:
         begin(thread)
 
     def _serve(self) -> None:
-        """Do one piece of work after the other, in a thread of its own.
+        """Do one piece of work after the other, in a thread.
 
-        A thread that work has given a lower priority ends, because it cannot get the usual one back.
+        A thread whose priority was lowered by its work ends, because it cannot get its usual priority back.
         """
         if self._low_priority:
             lower_priority()
         while True:
             work = self._given.get()
             work()
-            del work  # or a waiting thread would keep objects of the session it served last
+            del work  # otherwise a waiting thread would keep objects of the last session alive
             with self._lock:
-                if has_lower_priority() and not self._low_priority:  # this thread ends; the next work gets a new one
+                if has_lower_priority() and not self._low_priority:  # the next work gets a new thread
                     self._threads.remove(threading.current_thread())
                     if self.queued:
                         self.queued -= 1
@@ -164,36 +164,36 @@ class WorkerPool:
                     self._free += 1
 
 
-#: One thread for each session whose picture is awaited; live steps, energy accounts and drafts are computed in it. The
-#: number of threads is limited because each takes memory. It is below the largest `--max-sessions`, since most pages
-#: rest: only if more than this many are answered at once, the next wait for a thread, first come, first served.
+#: One thread for each session that waits for its picture; live steps, energy accounts and drafts of curves are computed
+#: in these threads. Their number is limited because a thread takes memory. The limit is below the largest
+#: `--max-sessions`, since most pages rest.
 SESSION_WORK = WorkerPool("session_work", 1000)
-#: Pictures. There are more threads than cores, because turns decide who computes (turns.py), and a picture that waits
-#: for the compiler keeps its thread. While more pictures than this are computed or wait for a turn, the next wait for a
-#: thread, first come, first served: turns do not put a first picture before refinements then.
+#: Pictures. There are more threads than cores, because turns decide which threads compute (turns.py), and a picture
+#: that waits for the compiler keeps its thread. If more pictures than this have a thread or wait for one, first
+#: pictures no longer go before refinements.
 PICTURES = WorkerPool("pictures", 200)
 #: Analyses of a picture while the knobs rest: short, and cancelled when a knob moves.
 ANALYSES = WorkerPool("analyses", 8, low_priority=True)
-#: Reading and writing visitors' files: on the event loop, one visitor's file would hold up everybody. One session's
-#: files are read one by one, so that they cannot take both threads.
+#: Reading and writing visitors' files, which would hold up everybody on the event loop. The files of one session are
+#: read one by one, so that they cannot take both threads.
 FILES = WorkerPool("files", 2, per_owner_limit=1)
 #: Loading kernels before a session needs them.
 LOADING = WorkerPool("loading", 1)
-#: One thread for each session whose resonance curve is awaited. A map waits for a curve that is under way; in one pool
-#: maps could take all threads and wait for curves that have none.
+#: One thread for each session that waits for its resonance curve. A map waits for a curve that is under way: in one
+#: pool maps could take all threads and wait for curves that have no thread.
 CURVES = WorkerPool("curves", 200)
 #: The computations of these curves. Each uses all cores, which the system divides among them.
 SWEEPS = WorkerPool("sweeps", 8, low_priority=True)
 #: Work that takes minutes: maps, searches for attractors, branches, analyses, figures of the paper, virtual
-#: experiments. One session can start all six, so two sessions could fill the pool: each has two at a time.
+#: experiments. One session can start all six, and two sessions could fill the pool; so each has two at a time.
 LONG = WorkerPool("long", 8, low_priority=True, per_owner_limit=2)
-#: Timings and hard cases, one at a time for all sessions: two timings at once would disturb each other.
+#: Timings and hard cases, one at a time for all sessions, because two timings at once disturb each other.
 MEASUREMENTS = WorkerPool("measurements", 1)
 #: Waiting for processes that compile.
 COMPILATIONS = WorkerPool("compilations", 2)
 
 #: All pools.
 POOLS = (SESSION_WORK, PICTURES, ANALYSES, FILES, LOADING, CURVES, SWEEPS, LONG, MEASUREMENTS, COMPILATIONS)
-#: Those whose threads compute while they are busy. A thread of `PICTURES` or `SESSION_WORK` computes while it has a
-#: turn, and one of `CURVES` waits for `SWEEPS`.
+#: Pools whose busy threads compute. A thread of `PICTURES` or `SESSION_WORK` computes only while it has a turn, and a
+#: thread of `CURVES` waits for `SWEEPS`.
 COMPUTING = (ANALYSES, SWEEPS, LONG, MEASUREMENTS)

@@ -1,8 +1,8 @@
-"""Changes of a document on their way to the browser: those of one action leave as one message, in one write.
+"""Changes of a document on their way to the browser: all changes of one action leave as one message, in one write.
 
-It is the message that Bokeh would send, but it is made without a search of all the document's models. Bokeh encodes
-values that are not plain, such as new models. The parts of Tornado and Bokeh that are used here are not documented;
-where a release does not have them, changes leave as Bokeh sends them.
+The message is the one that Bokeh would send, made without a search of all models of the document. Bokeh encodes values
+that are not plain, such as new models. This module uses undocumented parts of Tornado and Bokeh; if a release lacks
+them, changes leave as Bokeh sends them.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from ...library_internals import Internal, internals, missing
 _LARGEST_SAFE_INTEGER = 2**53 - 1
 #: Types for which BokehJS has arrays, by NumPy's letters.
 _ARRAYS = {"f": "float32", "d": "float64", "i": "int32", "B": "uint8"}
-#: Arrays up to this size are written into the text [bytes]: a larger one costs both sides two more frames.
+#: Arrays up to this size are written into the text [bytes]. A larger array costs both sides two more frames.
 _LARGEST_INLINE_ARRAY = 8192
 _NUMBERS = itertools.count(1)
 _WITHOUT = "changes leave as Bokeh sends them: a move takes three times as long"
@@ -65,11 +65,11 @@ _COMPLETE = is_complete()
 
 
 class _NotPlainValue(Exception):
-    """A value that Bokeh has to encode."""
+    """Bokeh has to encode this value."""
 
 
 class _Message:
-    """One message being written: its events as plain values, and its arrays."""
+    """A message that is being written: its events as plain values, and its arrays."""
 
     def __init__(self) -> None:
         self.arrays: list[tuple[str, memoryview]] = []
@@ -111,7 +111,7 @@ class _Message:
     def _array(self, value: np.ndarray) -> dict[str, Any]:
         data: str | dict[str, str]
         if value.nbytes <= _LARGEST_INLINE_ARRAY:
-            # BokehJS expects gzip there; without compression it is only a frame around the bytes
+            # BokehJS expects gzip here; level 0 only puts a frame around the bytes
             data = base64.b64encode(gzip.compress(value.tobytes(), compresslevel=0, mtime=1)).decode()
         else:
             data = {"id": f"a{len(self.arrays)}"}
@@ -127,7 +127,7 @@ def _reference(model: Model | None) -> dict[str, str]:
 
 
 def _frame(payload: bytes | memoryview, binary: bool = False) -> Iterator[bytes | memoryview]:
-    """A websocket frame of a server (RFC 6455): whole, not masked, not compressed."""
+    """A websocket frame of a server (RFC 6455): unfragmented, unmasked and uncompressed."""
     kind, length = 0x82 if binary else 0x81, len(payload)
     if length < 126:
         yield struct.pack("!BB", kind, length)
@@ -139,7 +139,7 @@ def _frame(payload: bytes | memoryview, binary: bool = False) -> Iterator[bytes 
 
 
 def encode_patch(events: list[DocumentPatchedEvent]) -> bytes | None:
-    """The frames of a message with these events; None if Bokeh has to encode one of them."""
+    """The frames of a message with these events; None if Bokeh has to encode an event."""
     message = _Message()
     try:
         content = {"events": [message.event(event) for event in events]}
@@ -158,7 +158,7 @@ def encode_patch(events: list[DocumentPatchedEvent]) -> bytes | None:
 
 
 def _encoded(document: Document, events: list[DocumentPatchedEvent], connection: Any) -> bytes:
-    """The frames of these events as Bokeh encodes them, with models that the browser does not have yet."""
+    """The frames of these events as Bokeh encodes them: with models that are new to the browser."""
     message = connection.protocol.create("PATCH-DOC", events)
     parts: list[bytes | memoryview] = []
     for text in (message.header_json, message.metadata_json, message.content_json):
@@ -170,7 +170,7 @@ def _encoded(document: Document, events: list[DocumentPatchedEvent], connection:
 
 
 class _Socket:
-    """A page's websocket, if this release of Bokeh and Tornado has the attributes that are needed."""
+    """A page's websocket, usable if the releases of Bokeh and Tornado have the necessary attributes."""
 
     def __init__(self, connection: Any) -> None:
         self.connection = connection
@@ -185,13 +185,13 @@ class _Socket:
         return isinstance(self._stream, IOStream) and isinstance(self._lock, Lock)
 
     def write(self, data: bytes) -> None:
-        """Write whole messages, after any message that Bokeh is writing."""
+        """Write whole messages, after the message that Bokeh is writing."""
         stream, lock, ws_connection = self._stream, self._lock, self._ws_connection
         assert isinstance(stream, IOStream) and isinstance(lock, Lock) and ws_connection is not None
 
         def put(locked: Any) -> None:
             with locked.result():
-                # after the closing frame nothing may be sent (RFC 6455, section 5.5.1)
+                # no frame may follow the closing frame (RFC 6455, section 5.5.1)
                 if not (stream.closed() or ws_connection.is_closing()):
                     try:
                         stream.write(data)
@@ -206,7 +206,7 @@ class _Socket:
 
 
 def _send(document: Document, session: Any, events: list[Any]) -> None:
-    """Send held events: those for the browser as one message; Bokeh handles the rest."""
+    """Send held events for the browser as one message; Bokeh handles all other events."""
     patches = [event for event in events if isinstance(event, DocumentPatchedEvent)]
     sockets = [_Socket(connection) for connection in getattr(session, "_subscribed_connections", ())]
     if patches and sockets and all(socket.usable for socket in sockets):
@@ -220,7 +220,7 @@ def _send(document: Document, session: Any, events: list[Any]) -> None:
 
 @contextmanager
 def batched_changes(document: Document) -> Iterator[None]:
-    """Send the changes made inside as one message. To be used with the document locked."""
+    """Send the changes that are made inside as one message; used with the document locked."""
     session = getattr(document.session_context, "session", None)
     callbacks = document.callbacks
     known = _COMPLETE and session is not None and hasattr(callbacks, "_held_events")
@@ -237,7 +237,7 @@ def batched_changes(document: Document) -> Iterator[None]:
 
 
 def _batching_document(model: Model) -> Document | None:
-    """The document whose changes are being gathered, if the model is in one."""
+    """The document of the model, if its changes are being gathered."""
     document = model.document
     if document is None or not _COMPLETE or document.callbacks.hold_value is None:
         return None
@@ -251,9 +251,9 @@ def is_batched(model: Model) -> bool:
 
 
 def set_properties(model: Model, **values: Any) -> None:
-    """Change properties of a model to valid values: Bokeh neither checks nor converts them.
+    """Set properties of a model to valid values, which Bokeh neither checks nor converts.
 
-    An equal value is not a change. Where nothing is gathered, this is the model's own `update`.
+    An equal value is not a change. While no changes are gathered, this is the model's own `update`.
     """
     document = _batching_document(model)
     if document is None:
@@ -262,14 +262,14 @@ def set_properties(model: Model, **values: Any) -> None:
     known, events = model._property_values, document.callbacks._held_events
     for name, value in values.items():
         columns = name == "data" and isinstance(model, ColumnarDataSource)
-        if not columns and name in known and known[name] == value:  # arrays cannot be compared so
+        if not columns and name in known and known[name] == value:  # columns are arrays, which == does not compare
             continue
         known[name] = value
         _keep_last(events, (ColumnDataChangedEvent if columns else ModelChangedEvent)(document, model, name, value))
 
 
 def _keep_last(events: list[Any], event: Any) -> None:
-    """Keep an event; it replaces an earlier one of the same property, which is out of date."""
+    """Keep an event in place of an earlier event of the same property, which is out of date."""
     for number, kept in enumerate(events):
         if type(kept) is type(event) and kept.model is event.model and kept.attr == event.attr:
             events[number] = event
@@ -278,7 +278,7 @@ def _keep_last(events: list[Any], event: Any) -> None:
 
 
 def send_event(model: Model, event: ModelEvent) -> bool:
-    """Send an event to a model's view in the browser with the gathered changes; False if nothing is being gathered."""
+    """Send an event to a model's view with the gathered changes; False if no changes are being gathered."""
     document = _batching_document(model)
     if document is None:
         return False

@@ -20,18 +20,19 @@ INTERNALS = internals(
 def has_document_lock(document: Document) -> bool:
     """Whether Bokeh is known to hold the document's lock, without which the document may not be changed.
 
-    While it holds the lock it keeps a list of pending writes. A message can also arrive while answers to an earlier
-    one are still being written; Bokeh then refuses every change. Where a release keeps the list elsewhere, the lock is
-    not known to be held, and a change waits for the next iteration of the event loop.
+    While Bokeh holds the lock, it keeps a list of pending writes. A message can arrive while answers to an earlier
+    message are still being written; Bokeh then refuses every change. If a release keeps the list elsewhere, a change
+    waits for the next iteration of the event loop.
     """
     session = getattr(document.session_context, "session", None)
     return session is None or getattr(session, "_pending_writes", None) is not None
 
 
 def with_document_lock(document: Document, action: Callable[[], None]) -> None:
-    """Run `action` as soon as the document may be changed and the browser will be told of the change.
+    """Run `action` as soon as the document may be changed and changes reach the browser.
 
-    The browser can send requests before it has reported that all parts are rendered. Until it has, Panel drops changes.
+    The browser can send requests before it has reported that all parts are rendered. Until this report, Panel drops
+    changes.
     """
     if not pn.state.loaded:
         pn.state.onload(action)

@@ -1,6 +1,6 @@
-"""Messages of the page's own parts, passed from the websocket to the part without Bokeh's decoding of a change.
+"""Messages of the page's own parts, dispatched to the part without Bokeh's decoding of a change.
 
-Everything that a visitor does comes this way. A message that is not plainly of this kind goes through Bokeh.
+Everything that a visitor does comes this way. Any other message goes to Bokeh.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import Any
 
 from bokeh.document import Document
 
-from .channel import can_lock, run_locked
+from .locked_callbacks import can_lock, run_locked
 
 Receive = Callable[[dict[str, Any]], None]
 
@@ -22,16 +22,16 @@ _RECEIVERS: weakref.WeakKeyDictionary[Document, dict[str, weakref.WeakMethod[Rec
 
 
 class _NotAPartMessage(Exception):
-    """This is not a message of a part in plain values."""
+    """The message is not a part's message in plain values."""
 
 
 def register(document: Document, model: str, receive: Receive) -> None:
-    """Let the messages of the model with this id go to a part's method, which is not kept alive."""
+    """Pass the messages of the model with this id to a method of a part; the part is not kept alive."""
     _RECEIVERS.setdefault(document, {})[model] = weakref.WeakMethod(receive)
 
 
 def dispatch(session: Any, content: dict[str, Any]) -> bool:
-    """Pass a message on to its part, with the session's document locked; False if it is for Bokeh."""
+    """Pass a message to its part with the session's document locked; False if Bokeh has to handle the message."""
     if session is None or not can_lock(session) or session.destroyed:
         return False
     known = _RECEIVERS.get(session.document)
@@ -49,7 +49,7 @@ def dispatch(session: Any, content: dict[str, Any]) -> bool:
 
 
 def _read(content: dict[str, Any]) -> tuple[str, dict[str, Any]]:
-    """The model's id and what its part says."""
+    """The model's id, and the message of its part."""
     match content:
         case {"events": [{"kind": "MessageSent", "msg_type": "bokeh_event", "msg_data": {
                 "type": "event", "name": "data_event", "values": {"type": "map", "entries": [

@@ -1,6 +1,7 @@
-"""Compressed scripts and styles, each compressed once: 1 MB for a page instead of 3.4 MB.
+"""Compressed scripts and styles, each compressed once: a page takes 1 MB in place of 3.4 MB.
 
-In a lecture hall a hundred laptops fetch them over one wireless network. Tornado would compress them anew for each.
+In a lecture hall a hundred laptops fetch these files over one wireless network. Tornado would compress every file again
+for each of them.
 """
 
 from __future__ import annotations
@@ -15,11 +16,11 @@ from tornado.web import StaticFileHandler
 
 from ...scripts import FILES, file_at
 
-#: Kinds of files that are smaller when compressed; pictures and fonts are not.
+#: Kinds of files that compression makes smaller; pictures and fonts are compressed already.
 _COMPRESSED_SUFFIXES = frozenset({".js", ".mjs", ".css", ".svg", ".json", ".map", ".html", ".txt"})
 #: The modules of the page.
 _MODULES = frozenset(map(str, FILES.values()))
-#: For how long a browser keeps what does not change [s].
+#: Time for which a browser keeps a file that never changes [s].
 _UNCHANGED_TIME = 365 * 86400
 #: Smallest file that is compressed: the size of one packet [bytes].
 _SMALLEST_COMPRESSED = 1400
@@ -27,7 +28,7 @@ _SMALLEST_COMPRESSED = 1400
 
 @functools.lru_cache(maxsize=512)
 def compressed(path: str, modified: int, size: int) -> bytes | None:
-    """The compressed file, None if that saves nothing; `modified` and `size` tell a changed file from the old one."""
+    """The compressed file; None if compression saves nothing. `modified` and `size` distinguish a changed file."""
     if size < _SMALLEST_COMPRESSED or Path(path).suffix not in _COMPRESSED_SUFFIXES:
         return None
     whole = Path(path).read_bytes()
@@ -38,7 +39,7 @@ def compressed(path: str, modified: int, size: int) -> bytes | None:
 def accepts_gzip(wanted: str) -> bool:
     """Whether the header `Accept-Encoding` names gzip with another weight than 0 (RFC 9110, section 12.5.3).
 
-    `*` alone is not taken for gzip: a client that names nothing gets the file as it is.
+    `*` alone does not count as gzip: a client that names no coding gets the file as it is.
     """
     for one in wanted.lower().split(","):
         coding, _, weight = one.replace(" ", "").partition(";")
@@ -48,12 +49,12 @@ def accepts_gzip(wanted: str) -> bool:
 
 
 class CompressedFiles(StaticFileHandler):
-    """Mixed into a handler of files: compresses a file for a browser that accepts that and asks for all of it."""
+    """A mixin for a handler of files: sends the compressed file to a browser that accepts gzip and wants all of it."""
 
     def parse_url_path(self, url_path: str) -> str:
-        """The file of an address: one of our modules, or what the handler itself finds.
+        """The file of an address: one of our modules, or the file that the handler finds.
 
-        Nothing is remembered here: strangers may ask for any number of addresses.
+        No address is remembered, because strangers may ask for any number of them.
         """
         ours = file_at(url_path)
         return super().parse_url_path(url_path) if ours is None else str(ours)
@@ -66,7 +67,7 @@ class CompressedFiles(StaticFileHandler):
         return compressed(self.absolute_path, found.st_mtime_ns, found.st_size)
 
     async def get(self, path: str, include_body: bool = True) -> None:
-        """Replace the content for this answer alone; Tornado takes the file's version from the class's own method."""
+        """Replace the content of this answer alone; Tornado computes the file's version with the class's own method."""
         self.get_content = self._content  # type: ignore[method-assign, assignment]
         await super().get(path, include_body)
 
@@ -75,14 +76,14 @@ class CompressedFiles(StaticFileHandler):
         return type(self).get_content(path, start, end) if packed is None else packed
 
     def get_content_size(self) -> int:
-        """Number of bytes that are sent."""
+        """Number of bytes of the answer."""
         packed = self._packed()
         return super().get_content_size() if packed is None else len(packed)
 
     def set_extra_headers(self, path: str) -> None:
-        """State the encoding, that it depends on the request, and that our modules never change.
+        """Set headers: the encoding, its dependence on the request, and that our modules never change.
 
-        If any module changes, the addresses of all change, so a page that is opened again requests none of them.
+        If a module changes, the addresses of all modules change; a browser may therefore keep them.
         """
         super().set_extra_headers(path)
         if path in _MODULES:
@@ -92,6 +93,6 @@ class CompressedFiles(StaticFileHandler):
             self.set_header("Content-Encoding", "gzip")
 
     def compute_etag(self) -> str | None:
-        """The compressed file has a tag of its own, because its bytes differ."""
+        """The tag of the answer: a compressed file has other bytes, and so a tag of its own."""
         tag = super().compute_etag()
         return tag if tag is None or self._packed() is None else f'{tag[:-1]}-gzip"'

@@ -1,7 +1,7 @@
 """Request guard: checks host, session and the number of sessions, and adds security headers.
 
-docs/security.md says what is promised. Bokeh's, Panel's and Tornado's handlers are kept: from each a class is derived
-that checks a request first (`app/serve/monkeypatches/request_handlers.py`).
+docs/security.md has the promises. The handlers of Bokeh, Panel and Tornado stay as they are: a class that is derived
+from each of them checks a request first (`app/serve/monkeypatches/request_handlers.py`).
 """
 
 from __future__ import annotations
@@ -17,7 +17,9 @@ from tornado.web import HTTPError, RequestHandler, StaticFileHandler
 from tornado.websocket import WebSocketHandler
 
 from ...library_internals import Internal, internals
-from ..monitoring.metrics import METRICS, Liveness, MetricsHandler
+from ..monitoring.metrics import METRICS
+from .health import HANDLERS
+from .limits import RETRY_AFTER
 from .rules import Rules
 
 log = logging.getLogger("granchain.requests")
@@ -34,17 +36,15 @@ INTERNALS = internals(
              "a server with as many sessions as it may have also refuses to sign visitors in or out"),
 )
 
-#: Addresses of Bokeh's that our page does not use; the first would make a session. The dot is any letter in Bokeh's
-#: pattern, too.
+#: Bokeh's addresses that our page does not use; the first would make a session. In Bokeh's pattern, as in this one, the
+#: dot stands for any letter.
 _UNUSED_ADDRESSES = re.compile(r"/(autoload.js|metadata)/?")
-#: After how long a page that was refused because there are too many tries again, at least and at most [s].
-_TRY_AGAIN = (20, 60)
 #: Whether the request that is being answered has passed a guard. A page is made in the context of its request.
 _IS_GUARDED: ContextVar[bool] = ContextVar("is_guarded", default=False)
 
 
 class Guard(RequestHandler):
-    """Checks a request before the handler that it is mixed into; `rules` is set by `guarded`."""
+    """A mixin that checks a request before the handler does anything; `Guards` sets `rules`."""
 
     rules: Rules
     request_id = ""
@@ -58,7 +58,7 @@ class Guard(RequestHandler):
         self.set_header("X-Request-Id", self.request_id)
 
     async def prepare(self) -> None:
-        """Refuse a request that is for another server or not allowed."""
+        """Refuse a request that is not allowed; then let the handler prepare its answer."""
         self.check_request()
         self.admit()
         _IS_GUARDED.set(True)
@@ -67,7 +67,7 @@ class Guard(RequestHandler):
             await looked
 
     def check_request(self) -> None:
-        """Raise `HTTPError` if the request is not allowed; nothing changes."""
+        """Raise `HTTPError` if the request is not allowed."""
         if not self.rules.serves(self.request.host_name):
             raise HTTPError(421, "host %r is not served", self.request.host_name[:80])
         if any(name in self.request.arguments for name in ("bokeh-session-id", "bokeh-token")) \
@@ -82,19 +82,19 @@ class Guard(RequestHandler):
             self.refuse_session()
 
     def refuse_session(self) -> NoReturn:
-        """Refuse a request for which there is no place."""
+        """Refuse a request, because all places for sessions are taken."""
         METRICS.count("refused_sessions")
         raise HTTPError(503, "there are %d sessions", self.rules.sessions.most)
 
     def write_error(self, status_code: int, **_: Any) -> None:
-        """Answer with a line for the visitor; the log has the details under the same id."""
+        """Answer with one sentence for the visitor; the log has the details under the same id."""
         self.set_header("Content-Type", "text/plain; charset=UTF-8")
         sentences = {404: "There is no such page.", 403: "This is not allowed.", 421: "This host is not served here.",
                      503: "This server has as many visitors as it can serve; please try again in a minute.",
                      500: "Something went wrong inside granchain."}
         sentence = f"{sentences.get(status_code, 'The request cannot be answered.')} (request {self.request_id})\n"
         if status_code == 503:
-            seconds = random.randint(*_TRY_AGAIN)  # pages that wait do not all come back at once
+            seconds = random.randint(*RETRY_AFTER)  # so that waiting pages do not all come back at once
             self.set_header("Retry-After", seconds)
             if self.request.path == "/":
                 self.set_header("Content-Type", "text/html; charset=UTF-8")
@@ -112,25 +112,11 @@ class Guard(RequestHandler):
             log.error("request failed", exc_info=(typ, value, tb), extra=words)
 
 
-class Readiness(RequestHandler):
-    """`/readiness`: whether one more page can be opened. A full server is no failure, and nothing is logged."""
-
-    rules: Rules
-
-    def get(self) -> None:
-        """Answer `{"/readiness": true}`, or false with status 503."""
-        full = self.rules.sessions.full
-        if full:
-            self.set_status(503)
-            self.set_header("Retry-After", random.randint(*_TRY_AGAIN))
-        self.write({"/readiness": not full})
-
-
 def _opens_page(handler: RequestHandler) -> bool:
-    """Whether a request may open a page; without Bokeh's class of such handlers, of all that are not known not to."""
+    """Whether a request may open a page. Without Bokeh's class of such handlers, every unknown handler may."""
     if SessionHandler is not None:
         return isinstance(handler, SessionHandler)
-    return not isinstance(handler, (StaticFileHandler, WebSocketHandler, Liveness, MetricsHandler, Readiness))
+    return not isinstance(handler, (StaticFileHandler, WebSocketHandler, *HANDLERS))
 
 
 def is_guarded() -> bool:

@@ -1,6 +1,6 @@
-"""The guard of a websocket: whose it is, how many frames come, and which messages reach Bokeh.
+"""The guard of a websocket: its session, the rate of its frames, and the messages that reach Bokeh.
 
-docs/libraries.md lists the behaviour of Tornado and Bokeh that it relies on; where a release behaves otherwise, the
+docs/libraries.md lists the behaviour of Tornado and Bokeh that the guard relies on. If a release behaves otherwise, the
 first message closes the connection.
 """
 
@@ -18,10 +18,10 @@ from bokeh.util.token import check_token_signature, get_session_id
 from tornado.iostream import IOStream, StreamClosedError
 from tornado.web import HTTPError
 
-from ..document.leaving import leave
+from ..connection.leaving import leave
 from ..document.part_messages import dispatch
 from ..monitoring.metrics import METRICS
-from .frames import FrameBucket
+from .frame_rate import FrameBucket
 from .guard import Guard
 from .message_rules import LARGEST_HEADER, RefusedMessage, checked_content
 
@@ -29,30 +29,30 @@ log = logging.getLogger("granchain.requests")
 
 #: Status of a websocket that is closed because of what the client did (RFC 6455, section 7.4.1).
 _POLICY_VIOLATION = 1008
-#: Most that waits until the client reads it when another message is written [bytes]: two pictures of the longest chain,
-#: with the most rows, are in transit to a slow browser and are just below it. Other chains need a hundredth.
+#: Most unread bytes when another message is written. Two pictures of the longest chain with the most rows, in flight to
+#: a slow browser, have a little less; other pictures have a hundredth.
 MOST_UNREAD = 64_000_000
 
 
 class GuardedSocket(Guard):
-    """The guard of a websocket: one connection for a session, not too many frames, only messages of pages."""
+    """The guard of a websocket: one connection for a session, a limited rate of frames, only messages of pages."""
 
-    #: Whether the frames that come are counted.
+    #: Whether incoming frames are counted.
     _counted = False
-    #: Fragments of a message that is not whole yet, as Bokeh calls them: header, metadata and content.
+    #: Fragments of an incomplete message: header, metadata and content, as Bokeh calls them.
     _fragments: tuple[str, ...] = ()
     _refused = False
     _left = False
-    #: What was written and waits until the client reads it [bytes].
+    #: Bytes that were written and that the client has not read yet.
     _unread = 0
-    #: The session whose token came with the request, and the same once it has its connection.
+    #: The session whose token came with the request, and the same session once it has its connection.
     _offered = _session_id = ""
     _has_connection = False
 
     def check_request(self) -> None:
-        """Also refuse a connection without a token of this server, or with one that was used before.
+        """Refuse also a connection without a valid token of this server.
 
-        Bokeh looks at the signature again, but only after the handshake.
+        Bokeh checks the signature, too, but only after the handshake.
         """
         super().check_request()
         offered = [word.strip() for word in self.request.headers.get("Sec-WebSocket-Protocol", "").split(",")]
@@ -66,15 +66,16 @@ class GuardedSocket(Guard):
         self._offered = session
 
     def admit(self) -> None:
-        """Refuse a connection whose session Bokeh would make anew where there is no place for it."""
+        """Refuse a connection whose session was dropped, if there is no place for a new one."""
         super().admit()
         if not self.rules.sessions.has_place(self._offered):
             self.refuse_session()
 
     def select_subprotocol(self, subprotocols: list[str]) -> str | None:
-        """Give the session its one connection: origin and headers of the handshake have been checked by now.
+        """Give the session its one connection; raise `HTTPError` if the session had one before.
 
-        Given before, a request that becomes no connection would take it from the page. Raises `HTTPError`.
+        Tornado has checked origin and headers of the handshake by now. Earlier, a request that fails would use up the
+        connection of the page.
         """
         if not self.rules.sessions.claim_connection(self._offered):
             raise HTTPError(403, "a second connection to one session, or a page that has lost its place")
@@ -88,13 +89,13 @@ class GuardedSocket(Guard):
 
     @property
     def session(self) -> Any:
-        """Bokeh's session of this connection; None before the handshake, and when Bokeh has dropped it."""
+        """Bokeh's session of this connection; None before the handshake, and after Bokeh has dropped the session."""
         return self.rules.sessions.find(self._session_id) if self._session_id else None
 
     def detach(self) -> IOStream:
-        """The stream of the websocket. Too many frames from the client close it, and too much that it does not read.
+        """The stream of the websocket, which too many frames or too many unread bytes close.
 
-        Bytes count as unread until the system has taken them. Answers to pings count, too.
+        Bytes count as unread until the operating system has taken them. Answers to pings count, too.
         """
         stream: IOStream = super().detach()
         read, write, bucket = stream.read_bytes, stream.write, FrameBucket(time.monotonic())
@@ -102,7 +103,7 @@ class GuardedSocket(Guard):
         async def read_and_count(*args: Any, **kwargs: Any) -> bytes:
             data = await read(*args, **kwargs)
             self._counted = True
-            if not bucket.pay(data, time.monotonic()):
+            if not bucket.consume(data, time.monotonic()):
                 self._refuse("too many frames")
                 raise StreamClosedError
             return data
@@ -110,10 +111,10 @@ class GuardedSocket(Guard):
         def write_and_count(data: bytes | memoryview) -> Future[None]:
             if self._unread > MOST_UNREAD:
                 self._refuse("too much that is not read")
-                stream.close()  # a closing frame would wait behind all that
+                stream.close()  # a closing frame would wait behind the unread bytes
                 unwritten: Future[None] = Future()
                 unwritten.set_exception(StreamClosedError())
-                unwritten.exception()  # retrieved: who writes need not wait for it
+                unwritten.exception()  # mark it as retrieved: not every writer awaits the future
                 return unwritten
             written = write(data)
             if not written.done():
@@ -129,8 +130,8 @@ class GuardedSocket(Guard):
         self._unread -= length
 
     def on_message(self, fragment: str | bytes) -> Awaitable[None] | None:
-        """Pass whole messages on, unless one is not of a page; that closes the connection."""
-        if self._refused:  # fragments may still arrive after the connection was closed
+        """Pass whole messages on; a message that no page sends closes the connection."""
+        if self._refused:  # fragments may still arrive after the closing frame
             return None
         try:
             if not self._counted:
@@ -164,9 +165,9 @@ class GuardedSocket(Guard):
         self.close(_POLICY_VIOLATION, reason)  # type: ignore[attr-defined]
 
     def on_close(self) -> None:
-        """The visitor left: the page's computations end, and Bokeh drops the session at its next check.
+        """The visitor has left: end the page's computations; Bokeh drops the session at its next check.
 
-        Tornado calls this twice if the closing frame of a refused page arrives before its stream ends.
+        Tornado calls this method twice if the closing frame of a refused page arrives before its stream ends.
         """
         if self._left:
             return
@@ -174,18 +175,18 @@ class GuardedSocket(Guard):
         session = self.session
         try:
             super().on_close()  # type: ignore[misc]
-        except AssertionError:  # Bokeh expects a session, which may have been discarded meanwhile
+        except AssertionError:  # Bokeh expects a session, but may have dropped it by now
             self.application.client_lost(self.connection)  # type: ignore[attr-defined]
         if session is not None:
             leave(session)
 
     def write_message(self, message: Any, *args: Any, **kwargs: Any) -> Any:
-        """Send errors with the request's id in place of a traceback."""
+        """Send a message; an error has the request's id in place of a traceback."""
         return super().write_message(self._without_traceback(message), *args, **kwargs)  # type: ignore[misc]
 
     def _without_traceback(self, frame: Any) -> Any:
-        """The frame; in place of the content of an error, the only one with the key `traceback`, another one."""
-        if not isinstance(frame, str) or '"traceback"' not in frame:  # inside a text there are backslashes
+        """The frame, without the traceback if it is the content of an error, which has the key `traceback`."""
+        if not isinstance(frame, str) or '"traceback"' not in frame:  # inside a string the quotes have backslashes
             return frame
         content = json.loads(frame)
         if not isinstance(content, dict) or "traceback" not in content:

@@ -1,14 +1,16 @@
-"""Limits of the number of sessions and of uploads, which several modules need.
+"""Limits of sessions and uploads that several modules need.
 
-The other limits of docs/security.md are beside what they limit: frames.py, sessions.py, message_rules.py,
-app/server.py, app/session/share.py and app/session/budget.py. The module imports nothing, because the command line
-reads it before it loads the server.
+The other limits of docs/security.md are beside what they limit: frame_rate.py, guarded_socket.py, sessions.py,
+message_rules.py, app/server.py, app/session/share.py and app/session/budget.py. This module imports nothing, because
+the command line reads it before it loads the server.
 """
 
-#: Sessions at once, by default.
+#: Largest number of sessions at once, by default.
 USUAL_SESSIONS = 200
 #: The largest value of the option `--max-sessions`.
 MOST_SESSIONS = 10_000
+#: Time after which a client that a full server has refused tries again, at least and at most [s].
+RETRY_AFTER = (20, 60)
 #: Largest file of a measurement [bytes].
 LARGEST_UPLOAD = 2_000_000
 #: Most points of a measurement.

@@ -1,9 +1,9 @@
-"""Rules for websocket messages: only those that BokehJS sends for our page reach Bokeh.
+"""Rules for websocket messages: only messages that BokehJS sends for our page reach Bokeh.
 
 Bokeh decodes more than its browser side sends: arrays of any shape, new models of any kind, a whole new document, and
-compressed bytes, of which a few kilobytes may expand to gigabytes. It also keeps whatever a browser writes into a
-property. A message consists of three texts: header, metadata and content. It is let through if it asks for the
-document, if it reports the sizes of a figure, or if it sends events with plain values that are not nested too deep.
+compressed bytes: a few kilobytes may expand to gigabytes. Bokeh also keeps whatever a browser writes into a property. A
+message consists of three texts: header, metadata and content. The rules accept a message that asks for the document,
+that reports the sizes of a figure, or that sends events with plain values of limited depth.
 """
 
 from __future__ import annotations
@@ -11,31 +11,31 @@ from __future__ import annotations
 import json
 from typing import Any
 
-#: What BokehJS asks for: the document, and changes of it.
+#: Kinds of messages: a request for the document, and changes of the document.
 KINDS = ("PULL-DOC-REQ", "PATCH-DOC")
-#: What a change may be: a property of a model, or an event of the document or of a model.
+#: Kinds of changes: a new value of a property, and an event of the document or of a model.
 CHANGES = ("ModelChanged", "MessageSent")
 #: Encoded values that are allowed: NaN and infinities, lists, sets and dictionaries, and events.
 TYPES = ("number", "array", "set", "map", "event")
-#: The properties that BokehJS reports for the figures of our page (collected in the browser tests): their sizes in
-#: pixels. The figures have no tool that moves a range or selects points, and Panel's parts change none of their own.
+#: Properties that BokehJS reports for the figures of our page: their sizes in pixels (the browser tests collect them).
+#: The figures have no tool that moves a range or selects points, and the parts of Panel change no property.
 REPORTED_PROPERTIES = frozenset({"inner_width", "inner_height", "outer_width", "outer_height"})
-#: Most characters of a content without a file. The longest that a page sends has a link of at most 4500.
+#: Most characters of a content without a file. The longest content of a page has a link of at most 4500 characters.
 LARGEST_PLAIN_CONTENT = 100_000
-#: Most characters of a header and of metadata, which BokehJS fills with an id and a kind.
+#: Most characters of a header, and of metadata; BokehJS writes an id and a kind.
 LARGEST_HEADER = 1000
-#: What a message with a file of the visitor says in `do`.
+#: The value of `do` in a message with a visitor's file.
 UPLOAD = "measurement"
-#: Deepest nesting of lists and dictionaries that is read; our page nests six.
+#: Deepest nesting of lists and dictionaries; our page nests six levels.
 DEEPEST = 20
 
 
 class RefusedMessage(Exception):
-    """A message that no page of ours sends; the text says why."""
+    """No page of ours sends this message; the text says why."""
 
 
 def checked_content(header: str, content: str) -> dict[str, Any]:
-    """The content of a message; raise `RefusedMessage` for one that is not let through."""
+    """The content of a message; raise `RefusedMessage` if the rules do not accept the message."""
     head = _object("header", header)
     if not isinstance(head.get("msgid"), str) or head.get("msgtype") not in KINDS:
         raise RefusedMessage("unknown kind of message")
@@ -70,7 +70,7 @@ def _object(what: str, text: str) -> dict[str, Any]:
 
 
 def _is_upload(given: dict[str, Any]) -> bool:
-    """Whether this is one event of a part, with a file and its name and nothing else."""
+    """Whether the content is one event of a part with a file and its name, and nothing else."""
     match given:
         case {"events": [{"kind": "MessageSent", "msg_data": {"values": {"entries": [
                 ["model", _], ["data", {"entries": [*entries]}]]}}}]}:
@@ -82,7 +82,7 @@ def _is_upload(given: dict[str, Any]) -> bool:
 
 
 def _check_property(name: object, value: object) -> None:
-    """A figure's size: nothing else is written into a model, where it would stay as long as the page."""
+    """Accept a figure's size alone: any other value would stay in the model as long as the page is open."""
     if not isinstance(name, str) or name not in REPORTED_PROPERTIES:
         raise RefusedMessage("a change of a property that no page reports")
     if value is not None and not isinstance(value, (int, float)):

@@ -1,11 +1,9 @@
-"""The rules of a server: hosts and origins, the number of sessions, and the headers of every answer."""
+"""The rules of a server: hosts and origins, sessions, and the headers of every answer."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
-
-from tornado.web import RequestHandler
 
 from .limits import USUAL_SESSIONS
 from .sessions import Sessions
@@ -13,24 +11,25 @@ from .sessions import Sessions
 
 @dataclass(frozen=True)
 class Rules:
-    """What is allowed: hosts (all if empty), sessions, and the origins whose pages may embed this one."""
+    """The rules of one server. They do not change; its `sessions` do."""
 
+    #: Hosts that are served; all hosts if empty.
     hosts: frozenset[str] = frozenset()
+    #: The sessions of the server, and their largest number.
     sessions: Sessions = field(default_factory=lambda: Sessions(USUAL_SESSIONS))
+    #: Origins whose pages may embed the dashboard.
     embedding: tuple[str, ...] = ()
-    #: Signs sessions.
+    #: The secret that signs sessions.
     secret: bytes = field(default=b"", repr=False)
-    #: Origins that Bokeh's own option refuses: those at addresses of IPv6.
+    #: Origins at IPv6 addresses, which Bokeh's own option refuses.
     origins: frozenset[str] = frozenset()
-    #: The class with a guard for each class of handlers.
-    handlers: dict[type[RequestHandler], type[RequestHandler]] = field(default_factory=dict)
 
     def headers(self) -> dict[str, str]:
         """The headers of every answer.
 
-        BokehJS makes functions of text, Panel loads modules from blobs, and both write style into the page: scripts and
-        styles cannot be forbidden there. Nothing may come from or go to another host; 'self' covers websockets of the
-        page's own origin.
+        BokehJS makes functions of text, Panel loads modules from blobs, and both write style into the page, so the
+        policy has to allow these scripts and styles. No data may come from another host or go there; 'self' covers
+        websockets of the page's own origin.
         """
         ancestors = " ".join(("'self'", *self.embedding))
         found = {
@@ -47,5 +46,5 @@ class Rules:
 
     def serves(self, host: str) -> bool:
         """Whether requests for this host are answered; the names may have Bokeh's wildcards, such as *.example.org."""
-        plain = host.lower().strip("[]")  # Tornado leaves the brackets of IPv6, which are a set of letters in a pattern
+        plain = host.lower().strip("[]")  # in a pattern, the brackets of IPv6 would be a set of letters
         return not self.hosts or any(fnmatchcase(plain, name) for name in self.hosts)

@@ -1,4 +1,4 @@
-"""The sessions of a server: how many there may be, and which of them have had their connection."""
+"""The sessions of a server: their number, and which of them have had their connection."""
 
 from __future__ import annotations
 
@@ -8,11 +8,12 @@ from typing import Any
 from bokeh.protocol.exceptions import ProtocolError
 from bokeh.server.server import Server
 
-from ..document.leaving import leave
+from ..connection.leaving import leave
 
-#: For how long a page may open its connection with the token that it was loaded with [s].
+#: Time for which the token of a loaded page is valid [s].
 TOKEN_LIFETIME = 300
-#: For how long a connected session is remembered, so that its token cannot be used again: longer than it is valid [s].
+#: Time for which a connected session is remembered, so that its token cannot be used again [s]: longer than a token is
+#: valid.
 _SESSIONS_REMEMBERED = 2.0 * TOKEN_LIFETIME
 
 
@@ -20,26 +21,27 @@ class Sessions:
     """The sessions of one server.
 
     A session is *loading* from the request of its page until its websocket connects. A client that fetches pages and
-    never connects would soon have all places, so only half of them are for loading pages: the oldest of these makes
-    room for a newer one. With fewer places for them, many who open the page in the same seconds would lose theirs.
+    never connects would soon take all places. So loading pages have at most half of the places, and the oldest loading
+    page makes room for a new one. With fewer places, many visitors who open the page in the same seconds would lose
+    theirs.
     """
 
     def __init__(self, most: int) -> None:
         self.most = most
         self.most_loading = max(1, most // 2)
-        #: Set when the server is there; requests come later.
+        #: The server, which is set before the first request.
         self.server: Server | None = None
-        #: Ids of the sessions that have connected or were evicted, and when [s].
+        #: By id: when a session connected or was evicted [s].
         self._claimed: dict[str, float] = {}
 
     @property
     def full(self) -> bool:
-        """Whether no more page can be opened."""
+        """Whether no further page can be opened."""
         loading = len(self._loading())
         return len(self._present()) - loading + min(loading, self.most_loading - 1) >= self.most
 
     def find(self, session_id: str) -> Any:
-        """Bokeh's session with this id; None if there is none."""
+        """Bokeh's session with this id, or None."""
         assert self.server is not None
         try:
             return self.server.get_session("/", session_id)
@@ -47,7 +49,7 @@ class Sessions:
             return None
 
     def make_room(self) -> bool:
-        """Make room for a page that is about to be loaded; False if there is none."""
+        """Make room for a page that is about to be loaded; False if all places are taken."""
         if self.full:
             return False
         loading = self._loading()
@@ -57,7 +59,7 @@ class Sessions:
         return True
 
     def claim_connection(self, session_id: str) -> bool:
-        """Give the session its one connection; False if it had one before, or has lost its place."""
+        """Give the session its one connection; False if the session had one before, or has lost its place."""
         now = time.monotonic()
         present = {session.id for session in self._present()}
         for old in [one for one, at in self._claimed.items() if at < now - _SESSIONS_REMEMBERED and one not in present]:
@@ -68,7 +70,7 @@ class Sessions:
         return True
 
     def has_place(self, session_id: str) -> bool:
-        """Whether a session may connect: Bokeh makes a dropped one anew from its token, which needs a free place."""
+        """Whether a session may connect. Bokeh makes a dropped session again from its token, which needs a place."""
         return len(self._present()) < self.most or self.find(session_id) is not None
 
     def _loading(self) -> list[Any]:
@@ -76,6 +78,6 @@ class Sessions:
         return [session for session in self._present() if session.id not in self._claimed]
 
     def _present(self) -> list[Any]:
-        """The sessions that Bokeh has, the oldest first; one that was left is among them until Bokeh drops it."""
+        """The sessions that Bokeh has, the oldest first. A closed session is among them until Bokeh drops it."""
         assert self.server is not None
         return self.server.get_sessions()

@@ -1,4 +1,4 @@
-"""The server's log: one JSON object a line on standard error, with the id of the request where there is one."""
+"""The server's log: JSON lines on standard error, with the id of the request if there is one."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ INTERNALS = internals(
              "messages that Bokeh cannot handle leave tracebacks in the log"),
 )
 
-#: What a line may have beside time, level, logger and message.
+#: Fields that a line may have besides time, level, logger and message.
 _FIELDS = ("request", "path", "remote")
 
 
@@ -24,7 +24,7 @@ class JsonFormatter(logging.Formatter):
     """A record as one line of JSON."""
 
     def format(self, record: logging.LogRecord) -> str:
-        """Time in UTC, level, logger, message, the ids, and what failed."""
+        """Time in UTC, level, logger, message, the fields of the request, and the failure."""
         line = {"time": time.strftime("%Y-%m-%dT%H:%M:%S", time.gmtime(record.created)) + f".{int(record.msecs):03d}Z",
                 "level": record.levelname.lower(), "logger": record.name, "message": record.getMessage()}
         line.update((name, getattr(record, name)) for name in _FIELDS if hasattr(record, name))
@@ -34,15 +34,15 @@ class JsonFormatter(logging.Formatter):
 
 
 def only_when_debugging(_record: logging.LogRecord) -> bool:
-    """A filter that shows Bokeh's records of messages that it cannot handle only with --log-level debug.
+    """A filter for Bokeh's records of messages that it cannot handle: they are logged with --log-level debug alone.
 
-    The guard logs such a message in one line without a traceback, and a stranger can send any number.
+    The guard logs such a message in one line without a traceback, and a stranger can send any number of them.
     """
     return logging.getLogger().isEnabledFor(logging.DEBUG)
 
 
 def configure(level: str) -> None:
-    """Write everything that this process logs from `level` on to standard error in such lines."""
+    """Write all records of this process from `level` on to standard error as JSON lines."""
     handler = logging.StreamHandler(sys.stderr)
     handler.setFormatter(JsonFormatter())
     logging.basicConfig(level=level.upper(), handlers=[handler], force=True)

@@ -1,35 +1,33 @@
-"""Metrics of the server, and the addresses `/liveness` and `/metrics` that show them."""
+"""Metrics of the server. `/metrics` shows them (app/serve/http/health.py)."""
 
 from __future__ import annotations
 
 import asyncio
-import ipaddress
-import os
-import resource
-import sys
+import math
 import threading
 import time
 from collections import deque
 from collections.abc import Callable, Mapping
 from functools import partial
-from pathlib import Path
 from typing import Literal, NamedTuple
 
-from tornado.web import HTTPError, RequestHandler
+from .process import cpu_seconds, most_descriptors, open_descriptors, os_threads, resident_memory, start_time
 
 #: Upper bounds of the histogram of answers [s].
 BUCKETS = (0.025, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0)
 #: The name and the help text of this histogram.
 HISTOGRAM = "granchain_answer_seconds"
-HISTOGRAM_HELP = "From a moved knob to its first picture."
+HISTOGRAM_HELP = "From a change of scene, knob, start or mode to the first picture of it."
 #: Time between two measurements of the event loop's lag [s].
 _LAG_INTERVAL = 0.25
-#: Number of these measurements that are kept: those of ten seconds.
+#: Number of measurements that are kept, of ten seconds.
 _LAGS_KEPT = 40
-#: The server is called busy when a knob's message, or the computation for it, waits longer than this [s].
+#: A single lag above this makes the server busy, too [s]: the mean of ten seconds hides one stall of five.
+_BUSY_STALL = 1.0
+#: Mean wait of a message, or of a computation, above which the server is busy [s].
 _BUSY_WAIT = 0.3
 
-#: What `Metrics.count` counts: the name of each counter, without `_total`, and its help text.
+#: The counters of `Metrics.count`: name without `_total`, and help text.
 COUNTERS = {
     "pictures": "Pictures sent, steps of live runs included. Pictures that were replaced before they were sent are not "
                 "counted.",
@@ -42,21 +40,20 @@ COUNTERS = {
 }
 
 
-#: Names that metrics had before: those who ask for them still get them.
+#: Former names of metrics, which `/metrics` still has.
 FORMER_NAMES = {
     "granchain_sessions": "granchain_visitors",
     "granchain_sessions_opened_total": "granchain_visits_total",
     "granchain_refused_sessions_total": "granchain_refused_visitors_total",
     "process_resident_memory_bytes": "granchain_resident_memory_bytes",
-    "process_threads": "granchain_threads",
 }
 
 
 class Metric(NamedTuple):
-    """A metric as Prometheus has it; the name of a counter ends with `_total`.
+    """A metric of Prometheus; the name of a counter ends with `_total`.
 
-    `read` is called when somebody asks. With a `label` it gives a number for each of the label's values. The prefix is
-    `process` where clients of Prometheus for any program give the same.
+    `read` is called at each request of `/metrics`. With a `label` it gives a number for each value of the label. The
+    prefix is `process` for metrics that clients of Prometheus give for any program.
     """
 
     name: str
@@ -73,7 +70,7 @@ class Metric(NamedTuple):
 
 
 class Metrics:
-    """Counts since the start; answers are times from a moved knob to its first picture. Any thread may count."""
+    """Counts since the start; answers are times from a change to the first picture of it. Any thread may count."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
@@ -83,9 +80,9 @@ class Metrics:
         self.answers = [0] * (len(BUCKETS) + 1)
         self.answers_total = 0.0
         self._lags: deque[float] = deque(maxlen=_LAGS_KEPT)
-        #: Metrics of other modules, which the server adds.
+        #: Metrics of other modules; the server sets them.
         self.added: tuple[Metric, ...] = ()
-        #: How long computations wait before they can begin [s]; the server puts it there.
+        #: The mean wait of computations before they begin [s]; the server sets it.
         self.turn_wait: Callable[[], float] = lambda: 0.0
 
     def count(self, name: str) -> None:
@@ -105,28 +102,33 @@ class Metrics:
             self.sessions -= 1
 
     def answered(self, seconds: float) -> None:
-        """Count a first picture that came `seconds` after the knob moved."""
+        """Count a first picture that came `seconds` after its request."""
         bucket = next((i for i, bound in enumerate(BUCKETS) if seconds <= bound), len(BUCKETS))
         with self._lock:
             self.answers[bucket] += 1
             self.answers_total += seconds
 
     def lagged(self, seconds: float) -> None:
-        """Record that an iteration of the event loop came `seconds` late."""
+        """Record that an iteration of the event loop was `seconds` late."""
         self._lags.append(seconds)
 
     @property
     def event_loop_lag(self) -> float:
-        """How late the event loop was on average in the last ten seconds [s]."""
+        """The mean lag of the event loop in the last ten seconds [s]."""
         return sum(self._lags) / len(self._lags) if self._lags else 0.0
 
     @property
+    def largest_lag(self) -> float:
+        """The largest lag of the event loop in the last ten seconds [s]."""
+        return max(self._lags, default=0.0)
+
+    @property
     def busy(self) -> bool:
-        """Whether visitors notice that there are many: by the event loop, or by the wait for a turn to compute."""
-        return max(self.event_loop_lag, self.turn_wait()) > _BUSY_WAIT
+        """Whether visitors notice the load: by a lag of the event loop, or by the wait for a turn to compute."""
+        return max(self.event_loop_lag, self.turn_wait()) > _BUSY_WAIT or self.largest_lag > _BUSY_STALL
 
     async def watch(self) -> None:
-        """Measure the event loop's lag, for as long as it runs."""
+        """Measure the lag of the event loop again and again."""
         while True:
             due = time.monotonic() + _LAG_INTERVAL
             await asyncio.sleep(_LAG_INTERVAL)
@@ -142,16 +144,29 @@ class Metrics:
             Metric("event_loop_lag_seconds", "gauge",
                    f"Mean lag of the event loop in the last ten seconds; above {_BUSY_WAIT:g} the page says that the "
                    "server is busy.", lambda: self.event_loop_lag),
+            Metric("event_loop_lag_max_seconds", "gauge",
+                   f"Largest lag of the event loop in the last ten seconds; above {_BUSY_STALL:g} the page says that "
+                   "the server is busy.", lambda: self.largest_lag),
             Metric("turn_wait_seconds", "gauge",
                    "Mean wait of a computation before it could begin in the last ten seconds; above "
                    f"{_BUSY_WAIT:g} the page says that the server is busy.", self.turn_wait),
             Metric("resident_memory_bytes", "gauge", "Resident memory.", resident_memory, prefix="process"),
-            Metric("threads", "gauge", "Threads.", threading.active_count, prefix="process"),
+            Metric("threads", "gauge", "Threads of the operating system.", os_threads, prefix="process"),
+            Metric("threads", "gauge", "Threads that Python knows; threads of numerical libraries are missing.",
+                   threading.active_count),
+            Metric("cpu_seconds_total", "counter", "Processor time of all threads, user and system.", cpu_seconds,
+                   prefix="process"),
+            Metric("start_time_seconds", "gauge", "Start of the process, in seconds since 1970.", start_time,
+                   prefix="process"),
+            Metric("open_fds", "gauge", "Open file descriptors, sockets included.", open_descriptors,
+                   prefix="process"),
+            Metric("max_fds", "gauge", "Most open file descriptors that the system allows.", most_descriptors,
+                   prefix="process"),
             *self.added,
         ]
 
     def text(self) -> str:
-        """The counts in the text format of Prometheus, version 0.0.4."""
+        """All metrics in the text format of Prometheus, version 0.0.4."""
         lines: list[str] = []
         for metric in self.table():
             value = metric.read()
@@ -172,41 +187,10 @@ class Metrics:
 
 
 def _written(value: float) -> str:
-    """All digits of a number: a counter rounded to six would stand still and then jump."""
+    """A number with all its digits: a counter rounded to six digits would stand still and then jump."""
+    if not math.isfinite(value):
+        return "NaN" if math.isnan(value) else "+Inf" if value > 0.0 else "-Inf"
     return str(int(value)) if value == int(value) else repr(float(value))
 
 
 METRICS = Metrics()
-
-
-def resident_memory() -> float:
-    """Memory of this process [bytes]; where the system does not tell, the most it ever had."""
-    try:
-        return float(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
-    except OSError:
-        most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-        return float(most if sys.platform == "darwin" else 1024 * most)
-
-
-class Liveness(RequestHandler):
-    """`/liveness`: answers while the event loop runs. Unlike Panel's own, it never makes a page."""
-
-    def get(self) -> None:
-        """Answer `{"/liveness": true}`."""
-        self.write({"/liveness": True})
-
-
-#: Tornado's address of somebody it does not know. `ipaddress` calls it private, so it is refused by name.
-_UNKNOWN = "0.0.0.0"
-
-
-class MetricsHandler(RequestHandler):
-    """`/metrics`."""
-
-    def get(self) -> None:
-        """Answer with the counts as text, to this machine and private networks only."""
-        asking = ipaddress.ip_address(self.request.remote_ip or _UNKNOWN)
-        if asking.is_unspecified or not asking.is_private:
-            raise HTTPError(403, "metrics are for private addresses")
-        self.set_header("Content-Type", "text/plain; version=0.0.4; charset=utf-8")
-        self.write(METRICS.text())

@@ -1,8 +1,8 @@
-"""Monkeypatches of Bokeh: defaults of properties, found once for all models and made when they are needed.
+"""Monkeypatches of Bokeh: defaults of properties are found once for all models, and made when they are needed.
 
-Bokeh finds a default anew for each of a page's models, some 8000 times, and makes ten empty lists and dictionaries for
-each model, which takes more than half of the time of making a page. The functions that are replaced here are not public
-in Bokeh, nor is what their replacements use; where a release lacks anything of it, none is replaced.
+Bokeh finds the defaults again for each of a page's models, some 8000 times, and makes ten empty lists and dictionaries
+for each model. This takes more than half of the time of making a page. The replaced functions are not public in Bokeh,
+nor is what the replacements use. If a release lacks any of it, no function is replaced.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ _CONSTANTS = (type(None), bool, int, float, str, bytes)
 
 @dataclass(frozen=True)
 class _Remembered:
-    """What is known of properties by class: constant defaults, whether each model has its own, whether it is empty."""
+    """By class and property: constant defaults, whether the default is made for each model, whether it is empty."""
 
     known: dict[tuple[type, str], Any] = field(default_factory=dict)
     changing: dict[tuple[type, str], bool] = field(default_factory=dict)
@@ -53,7 +53,7 @@ class _Remembered:
 
 
 def install_defaults_cache() -> None:
-    """Replace the functions by which Bokeh finds the defaults of its models."""
+    """Replace the functions with which Bokeh finds the defaults of its models."""
     if missing(INTERNALS) or hasattr(PropertyDescriptor._get_default, "known"):
         return
     find: Any = PropertyDescriptor._get_default
@@ -72,13 +72,13 @@ def install_defaults_cache() -> None:
 
 
 def _theme(model: Any) -> dict[str, Any] | None:
-    """A model's themed values, without searching its classes for an attribute that is hardly ever set."""
+    """A model's themed values, without a search of its classes: the attribute is hardly ever set."""
     themed: dict[str, Any] | None = model.__dict__.get("__themed_values__")
     return themed
 
 
 def _merges_once(overridden: Any, found: _Remembered) -> Callable[[type], dict[str, Any]]:
-    """The defaults that a class and its bases override; nobody changes them."""
+    """The defaults that a class and its bases override; they never change."""
 
     def overrides(cls: type) -> dict[str, Any]:
         if cls not in found.overridden:
@@ -126,7 +126,7 @@ def _finds_once(find: Any, is_unstable: Callable[[Any, Any], bool], found: _Reme
 
 
 def _tells_what_is_there(query: Any) -> Callable[..., dict[str, Any]]:
-    """The properties of a model that are sent to a browser, found without looking at all its defaults."""
+    """The properties of a model that are sent to a browser, found without a look at all its defaults."""
 
     def changed(model: Any, wanted: Callable[[Any], bool], *, include_defaults: bool = True,
                 include_undefined: bool = False) -> dict[str, Any]:
@@ -147,7 +147,7 @@ def _tells_what_is_there(query: Any) -> Callable[..., dict[str, Any]]:
 
 
 def _visits_what_is_there(visit: Any, found: _Remembered) -> Callable[[Any, Any], None]:
-    """Visit the models to which a model refers, without making defaults that would be empty."""
+    """Visit the models to which a model refers; empty defaults are not made for this."""
 
     def visit_model(value: Any, visitor: Any) -> None:
         if not isinstance(value, HasProps):

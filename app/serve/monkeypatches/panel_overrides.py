@@ -1,7 +1,7 @@
-"""Overrides of Panel's private methods, which leave out what our parts do not need, each a mixin of `Component`.
+"""Overrides of Panel's private methods that leave out what our parts do not need; each is a mixin of `Component`.
 
-They concern properties, design, busy indicator and changes. Where a release has other methods, Panel's own way is
-taken.
+The overrides concern properties, children, design, busy indicator and changes. If a release has other methods, Panel's
+own way is taken.
 """
 
 from __future__ import annotations
@@ -42,9 +42,9 @@ INTERNALS = internals(
 
 
 class _Common(NamedTuple):
-    """What the models of a part's instances have in common, and the properties of their data that are their own.
+    """The properties that the models of all instances of a part share, and the names of those that differ.
 
-    Style sheets are their text, or the address of one that each document imports once.
+    A style sheet is its text, or the address of a sheet that each document imports once.
     """
 
     properties: dict[str, Any]
@@ -54,7 +54,7 @@ class _Common(NamedTuple):
 
     @classmethod
     def of(cls, part: Any, properties: dict[str, Any]) -> _Common | None:
-        """From the properties of a class's first instance; None where they are not as expected."""
+        """Made from the properties of a class's first instance; None if these are not as expected."""
         properties = {**properties, "_defs": []}  # the class of the data is defined once
         data, sheets = properties.pop("data", None), properties.pop("stylesheets", [])
         if not isinstance(data, Model) or collect_models(properties):
@@ -66,7 +66,7 @@ class _Common(NamedTuple):
                    type(data), own | {"name"})
 
     def properties_of(self, part: Any, imported: dict[str, ImportedStyleSheet]) -> dict[str, Any]:
-        """The properties of another instance; `imported` are the sheets that its document imports, by address."""
+        """The properties of another instance; `imported` has the sheets that its document imports, by address."""
         sheets = [text if is_text else imported.get(text) or imported.setdefault(text, ImportedStyleSheet(url=text))
                   for is_text, text in self.sheets]
         return {**self.properties, "stylesheets": sheets,
@@ -78,10 +78,10 @@ _IMPORTED: weakref.WeakKeyDictionary[Document, dict[str, ImportedStyleSheet]] = 
 
 
 class WithCommonProperties:
-    """A Panel component whose class is asked once for the properties of its model, not each instance.
+    """A Panel component that finds the properties of its model once for its class.
 
-    Instances differ in their data alone. Panel goes through 40 parameters of each part for every session, a tenth of an
-    opening's work; it still does where a release has other properties than expected here.
+    Instances differ in their data alone. Panel goes through 40 parameters of each part for every session, which is a
+    tenth of the work of opening a page. If a release has unexpected properties, Panel still does so.
     """
 
     def _get_properties(self, document: Document | None) -> dict[str, Any]:
@@ -94,14 +94,14 @@ class WithCommonProperties:
         return found
 
 
-#: Classes of parts that have no part inside, as Panel found with their first instance.
+#: Classes of parts without children, as Panel found for their first instance.
 _CHILDLESS: set[type] = set()
 
 
 class WithoutChildren:
-    """A Panel component whose class is asked once whether it has other components inside, not each instance.
+    """A Panel component that looks for children once for its class.
 
-    Panel looks at all 40 parameters of each. Where a release asks in another way, it is asked again.
+    Panel looks at all 40 parameters of each instance. If a release calls another method, Panel still does so.
     """
 
     def _get_children(self, *args: Any) -> Any:
@@ -114,10 +114,10 @@ class WithoutChildren:
 
 
 class WithoutDesign:
-    """A Panel component that consults its design only when style sheets change, which is all that the design affects.
+    """A Panel component that consults its design only when style sheets change; the design affects nothing else.
 
-    Panel works out the design's parameters at every change of every property, which takes half of the time of a change.
-    Where a release makes the changes elsewhere, Panel consults the design at every change again.
+    Panel works out the parameters of the design at every change of every property, in half of the time of a change. If
+    a release makes the changes elsewhere, Panel still does so.
     """
 
     def _update_properties(self, *events: Any, doc: Document) -> dict[str, Any]:
@@ -129,9 +129,9 @@ class WithoutDesign:
 
 
 class WithoutBusyIndicator:
-    """A Panel component whose events skip the busy indicator: it takes 2 of 5 ms, and this page does not show it.
+    """A Panel component whose events skip the busy indicator, which takes 2 of 5 ms and is not shown on this page.
 
-    Panel calls `_process_bokeh_event`. Where a release calls another method or has no `set_curdoc`, the indicator comes
+    Panel calls `_process_bokeh_event`. If a release calls another method or has no `set_curdoc`, the indicator comes
     back.
     """
 
@@ -145,10 +145,10 @@ class WithoutBusyIndicator:
 
 
 class WithPlainChanges:
-    """A Panel component that is shown once, whose messages and plain values go straight to its model.
+    """A Panel component, shown once, whose messages and plain values go straight to its model.
 
-    Panel takes each through Param's watchers, its own queues and a search of the documents in which a component is
-    shown. `try_send` and `try_change` return False where that way has to be taken: before the page is connected, or
+    Panel's own way leads through Param's watchers, Panel's queues and a search of the documents that show the
+    component. `try_send` and `try_change` return False if Panel's way has to be taken: before the page is connected, or
     with a release that keeps models or values elsewhere.
     """
 
@@ -157,12 +157,12 @@ class WithPlainChanges:
         return models[0][0] if len(models) == 1 else None
 
     def try_send(self, message: dict[str, Any]) -> bool:
-        """Send a message to the part in the browser, if that can be done here."""
+        """Send a message to the part in the browser; False if Panel has to send it."""
         model = self._shown()
         return model is not None and ESMEvent is not None and send_event(model, ESMEvent(model=model, data=message))
 
     def try_change(self, name: str, value: Any) -> bool:
-        """Give a property of the part another value here and in the browser, if that can be done here."""
+        """Set a property of the part here and in the browser; False if Panel has to set it."""
         data = getattr(self._shown(), "data", None)
         values = getattr(getattr(self, "_param__private", None), "values", None)
         if not isinstance(data, Model) or not isinstance(values, dict) or not is_batched(data):

@@ -1,4 +1,4 @@
-"""Monkeypatches of Panel: scripts and style sheets, worked out once; Panel works them out again for every page."""
+"""Monkeypatches of Panel: scripts and style sheets are worked out once, and not again for every page."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ INTERNALS = internals(
 
 
 def install_resources_cache() -> None:
-    """Ask Panel once for the scripts that a page loads, and once per kind of part where its style sheets are.
+    """Ask Panel once for the scripts of a page, and once per kind of part for the addresses of its style sheets.
 
-    Panel goes through all models of a page for both, which takes a tenth of an opening; all pages of this server have
-    the same parts. Where a release works them out elsewhere, Panel is asked each time.
+    Panel goes through all models of a page for both, which takes a tenth of the time of opening it; all pages of this
+    server have the same parts. If a release works them out elsewhere, Panel is asked for every page.
     """
     bundle: Callable[..., Any] | None = getattr(pages, "bundle_resources", None)
     patch: Callable[[Model, str], None] | None = getattr(pages, "patch_model_css", None)

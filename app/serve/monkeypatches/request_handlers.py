@@ -1,7 +1,7 @@
 """Monkeypatch of Bokeh: a guard stands before every handler of its servers (docs/security.md).
 
-Tornado asks the application for the handler of each request (`get_handler_delegate`). There a class with a guard takes
-the place of the handler's own.
+Tornado asks the application for the handler of each request (`get_handler_delegate`). The replacement gives it a class
+with a guard.
 """
 
 from __future__ import annotations
@@ -18,34 +18,42 @@ from ..http.guard import Guard
 from ..http.guarded_socket import GuardedSocket
 from ..http.rules import Rules
 
-#: The name of the setting that has an application's `Rules`.
-_SETTING = "granchain_rules"
+#: The name of the setting that has an application's `Guards`.
+_SETTING = "granchain_guards"
 
 
-def guarded(handler: type[RequestHandler], rules: Rules) -> type[RequestHandler]:
-    """The handler class with a guard before it; a handler of files also sends them compressed."""
-    if handler not in rules.handlers:
-        guard = GuardedSocket if issubclass(handler, WebSocketHandler) else Guard
-        files = (CompressedFiles,) if issubclass(handler, StaticFileHandler) else ()
-        rules.handlers[handler] = type(f"Guarded{handler.__name__}", (guard, *files, handler), {"rules": rules})
-    return rules.handlers[handler]
+class Guards:
+    """The guarded handlers of one application: for each class of handlers a derived class, which is made once."""
+
+    def __init__(self, rules: Rules) -> None:
+        self._rules = rules
+        self._derived: dict[type[RequestHandler], type[RequestHandler]] = {}
+
+    def before(self, handler: type[RequestHandler]) -> type[RequestHandler]:
+        """The handler class with a guard before it; a handler of files also sends them compressed."""
+        if handler not in self._derived:
+            guard = GuardedSocket if issubclass(handler, WebSocketHandler) else Guard
+            files = (CompressedFiles,) if issubclass(handler, StaticFileHandler) else ()
+            bases = (guard, *files, handler)
+            self._derived[handler] = type(f"Guarded{handler.__name__}", bases, {"rules": self._rules})
+        return self._derived[handler]
 
 
-def install_guards(rules: Rules) -> dict[str, Rules]:
-    """Put a guard before every handler of Bokeh's servers in this process; returns the setting that turns it on.
+def install_guards(rules: Rules) -> dict[str, Guards]:
+    """Put a guard before every handler of Bokeh's servers in this process; return the setting that turns it on.
 
-    It replaces a method of `BokehTornado`, which does nothing for applications without the setting. Raises
-    `MissingPart` where Tornado has no such method. Should a release have it and no longer use it, requests would have
-    no guard, and `is_guarded` says so: a page of ours must not open then.
+    The function replaces a method of `BokehTornado`; applications without the setting keep their handlers. Raises
+    `MissingPart` if Tornado has no such method. If a release has the method and does not call it, requests have no
+    guard. `is_guarded` then returns False, and no page of ours may open.
     """
     if not hasattr(Application, "get_handler_delegate"):
         raise MissingPart("tornado.web.Application.get_handler_delegate", "requests would be answered without checks")
     BokehTornado.get_handler_delegate = _guarded_delegate
-    return {_SETTING: rules}
+    return {_SETTING: Guards(rules)}
 
 
 def _guarded_delegate(application: Application, request: Any, handler: type[RequestHandler], *args: Any,
                       **kwargs: Any) -> Any:
-    rules = application.settings.get(_SETTING)
-    checked = handler if rules is None else guarded(handler, rules)
+    guards = application.settings.get(_SETTING)
+    checked = handler if guards is None else guards.before(handler)
     return Application.get_handler_delegate(application, request, checked, *args, **kwargs)

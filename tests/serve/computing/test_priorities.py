@@ -14,7 +14,7 @@ import waiting
 from app.serve.computing.cpu_time import CpuTime
 from app.serve.computing.latest_wins import LatestWins
 from app.serve.computing.priorities import has_lower_priority, lower_priority
-from app.serve.computing.turns import FairScheduler, TurnFlag
+from app.serve.computing.turns import TurnFlag, Turns
 from app.serve.computing.worker_pools import WorkerPool
 
 linux = pytest.mark.skipif(sys.platform != "linux", reason="elsewhere the niceness is that of the process")
@@ -34,7 +34,7 @@ def computes(slot: TurnFlag, seconds: float) -> Iterator[int]:
 
 
 def in_turns(seconds: float) -> int:
-    slot = TurnFlag(CpuTime(), FairScheduler(2))
+    slot = TurnFlag(CpuTime(), Turns(2))
     return next(slot.in_turns(computes(slot, seconds)))
 
 

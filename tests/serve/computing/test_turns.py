@@ -8,7 +8,7 @@ import pytest
 from waiting import until
 
 from app.serve.computing.cpu_time import CpuTime, SharedCpuTime
-from app.serve.computing.turns import FairScheduler, TurnFlag
+from app.serve.computing.turns import TurnFlag, Turns
 from granchain_core import Stop
 
 pytestmark = pytest.mark.quick
@@ -36,7 +36,7 @@ def test_shared_computation_charges_members_and_ranks_by_the_least_used() -> Non
 
 def test_a_stopped_computation_leaves_the_queue_before_the_next_check(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("app.serve.computing.turns._CHECK_INTERVAL", 3600.0)
-    turns = FairScheduler(1, lambda: 0.0)
+    turns = Turns(1, lambda: 0.0)
     held = turns.begin(CpuTime(), Stop())
     flags = [TurnFlag(CpuTime(), turns) for _ in range(3)]
     begun: list[TurnFlag] = []
@@ -60,7 +60,7 @@ def test_a_stopped_computation_leaves_the_queue_before_the_next_check(monkeypatc
 
 def test_the_visitor_who_has_used_least_gets_the_next_turn() -> None:
     """Not the one that came first. The clock stands still: after a tenth of a second the first turn would make room."""
-    turns, order = FairScheduler(1, lambda: 0.0), []
+    turns, order = Turns(1, lambda: 0.0), []
     first = turns.begin(CpuTime(), Stop())
     cpu_times = {}
     for name, used in (("much", 3.0), ("little", 0.1), ("some", 1.0)):
@@ -82,7 +82,7 @@ def test_the_visitor_who_has_used_least_gets_the_next_turn() -> None:
     assert order == ["little", "some", "much"]
 
 
-def order_of(turns: FairScheduler, waits: list[tuple[str, float, bool]]) -> list[str]:
+def order_of(turns: Turns, waits: list[tuple[str, float, bool]]) -> list[str]:
     """In which order waiting computations get their turns: name, time used, whether it has just begun."""
     order: list[str] = []
     first, threads = turns.begin(CpuTime(), Stop()), []
@@ -108,7 +108,7 @@ def test_first_pictures_go_before_refinements() -> None:
     """Among equals the visitor who has used less."""
     waits = [("refinement", 0.0, False), ("first, much", 3.0, True), ("first, little", 1.0, True),
              ("refinement, much", 5.0, False)]
-    assert order_of(FairScheduler(1, lambda: 0.0), waits) == ["first, little", "first, much", "refinement", "refinement, much"]
+    assert order_of(Turns(1, lambda: 0.0), waits) == ["first, little", "first, much", "refinement", "refinement, much"]
 
 
 def used_time(used: float) -> CpuTime:
@@ -118,7 +118,7 @@ def used_time(used: float) -> CpuTime:
     return found
 
 
-def waiting_threads(turns: FairScheduler, *cpu_times: CpuTime, is_new: bool = False) -> list[threading.Thread]:
+def waiting_threads(turns: Turns, *cpu_times: CpuTime, is_new: bool = False) -> list[threading.Thread]:
     """Threads that wait for a turn, one for each visitor, and end it as soon as they have it."""
     found = [threading.Thread(target=lambda one=one: turns.end(turns.begin(one, Stop(), is_new)), daemon=True)
              for one in cpu_times]
@@ -130,7 +130,7 @@ def waiting_threads(turns: FairScheduler, *cpu_times: CpuTime, is_new: bool = Fa
 
 def test_after_its_slice_a_turn_goes_to_a_visitor_who_has_used_less() -> None:
     now = [0.0]
-    turns = FairScheduler(1, lambda: now[0])
+    turns = Turns(1, lambda: now[0])
     turn = turns.begin(used_time(5.0), Stop(), False)
     thread, = waiting_threads(turns, used_time(1.0))
     assert not turns.should_yield(turn)
@@ -142,7 +142,7 @@ def test_after_its_slice_a_turn_goes_to_a_visitor_who_has_used_less() -> None:
 
 def test_a_turn_does_not_go_to_a_visitor_who_has_used_more() -> None:
     now = [0.0]
-    turns = FairScheduler(1, lambda: now[0])
+    turns = Turns(1, lambda: now[0])
     turn = turns.begin(used_time(1.0), Stop(), False)
     thread, = waiting_threads(turns, used_time(5.0))
     now[0] = 0.05
@@ -153,7 +153,7 @@ def test_a_turn_does_not_go_to_a_visitor_who_has_used_more() -> None:
 
 def test_at_a_pause_the_turn_is_passed_on() -> None:
     now = [0.0]
-    turns = FairScheduler(1, lambda: now[0])
+    turns = Turns(1, lambda: now[0])
     flag = TurnFlag(used_time(5.0), turns)
     list(flag.in_turns([1]))
     with flag.held():
@@ -169,7 +169,7 @@ def test_at_a_pause_the_turn_is_passed_on() -> None:
 def test_a_first_picture_does_not_wait_for_a_refinement_and_is_not_interrupted() -> None:
     """As many first pictures at once as there are cores."""
     now = [0.0]
-    turns = FairScheduler(1, lambda: now[0])
+    turns = Turns(1, lambda: now[0])
     turns.begin(used_time(0.0), Stop(), False)
     begun = []
     threading.Thread(target=lambda: begun.append(turns.begin(used_time(9.0), Stop())), daemon=True).start()
@@ -184,7 +184,7 @@ def test_a_first_picture_does_not_wait_for_a_refinement_and_is_not_interrupted()
 
 
 def test_a_computation_with_a_result_no_longer_counts_as_just_begun() -> None:
-    flag, seen = TurnFlag(CpuTime(), FairScheduler(1)), []
+    flag, seen = TurnFlag(CpuTime(), Turns(1)), []
     for _ in flag.in_turns(seen.append(flag.is_new) for _ in range(3)):
         pass
     assert seen == [True, False, False]
@@ -192,7 +192,7 @@ def test_a_computation_with_a_result_no_longer_counts_as_just_begun() -> None:
 
 def test_a_computation_that_has_made_progress_makes_room_for_a_first_picture() -> None:
     """At its pause it may go on, and the first picture gets a turn beside it."""
-    turns = FairScheduler(1, lambda: 0.0)
+    turns = Turns(1, lambda: 0.0)
     turn = turns.begin(used_time(0.0), Stop())
     thread, = waiting_threads(turns, used_time(0.0), is_new=True)
     turns.became_refinement(turn)
@@ -203,7 +203,7 @@ def test_a_computation_that_has_made_progress_makes_room_for_a_first_picture() -
 
 def test_a_refinement_that_has_waited_half_a_second_gets_a_slice_beside_first_pictures() -> None:
     now = [0.0]
-    turns = FairScheduler(1, lambda: now[0])
+    turns = Turns(1, lambda: now[0])
     first = turns.begin(used_time(0.0), Stop())
     thread, = waiting_threads(turns, used_time(5.0))
     now[0] = 0.6
@@ -215,7 +215,7 @@ def test_a_refinement_that_has_waited_half_a_second_gets_a_slice_beside_first_pi
 def test_of_more_computations_than_turns_the_one_that_has_used_most_yields_after_its_slice() -> None:
     """An old turn keeps nobody waiting, but would share the cores with the computations that began after it."""
     now = [0.0]
-    turns = FairScheduler(1, lambda: now[0])
+    turns = Turns(1, lambda: now[0])
     long = turns.begin(used_time(5.0), Stop(), False)
     now[0] = 1.0
     assert not turns.should_yield(long)
@@ -228,7 +228,7 @@ def test_of_more_computations_than_turns_the_one_that_has_used_most_yields_after
 
 def test_a_computation_that_never_pauses_keeps_nobody_waiting() -> None:
     """However many of them there are."""
-    turns = FairScheduler(2)
+    turns = Turns(2)
     for _ in range(20):
         turns.begin(CpuTime(), Stop())
     got = threading.Event()
@@ -237,7 +237,7 @@ def test_a_computation_that_never_pauses_keeps_nobody_waiting() -> None:
 
 
 def test_a_visitor_who_left_does_not_wait_for_a_turn() -> None:
-    turns, stop, ended = FairScheduler(1), Stop(), threading.Event()
+    turns, stop, ended = Turns(1), Stop(), threading.Event()
     turns.begin(CpuTime(), Stop())
     stop.set()
     threading.Thread(target=lambda: (turns.begin(CpuTime(), stop), ended.set()), daemon=True).start()

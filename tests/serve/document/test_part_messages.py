@@ -14,7 +14,7 @@ from bokeh.server.session import ServerSession
 from event_loop import run_async
 from tornado.ioloop import IOLoop
 
-from app.serve.document.channel import Channel, run_locked
+from app.serve.document.locked_callbacks import LockedCallbacks, run_locked
 from app.serve.document.part_messages import dispatch, register
 
 pytestmark = pytest.mark.quick
@@ -85,7 +85,7 @@ def test_an_action_waits_for_the_lock_and_what_comes_from_threads_runs_in_order(
         session = ServerSession("tested", Document())  # type: ignore[arg-type]
         context = type("Context", (), {"session": session})()
         monkeypatch.setattr(Document, "session_context", context)
-        channel = Channel(session.document)
+        channel = LockedCallbacks(session.document)
         with await session._lock.acquire():
             run_locked(session, [lambda: order.append("later")])
             await asyncio.to_thread(lambda: [channel.next_tick(lambda n=n: order.append(n)) for n in range(5)])  # type: ignore[misc]
@@ -108,7 +108,7 @@ def test_what_comes_for_a_document_that_bokeh_has_destroyed_is_dropped(monkeypat
         session = ServerSession("tested", Document())  # type: ignore[arg-type]
         context = type("Context", (), {"session": session})()
         monkeypatch.setattr(Document, "session_context", context)
-        channel = Channel(session.document)
+        channel = LockedCallbacks(session.document)
         monkeypatch.setattr(Document, "session_context", None)
         session.document.destroy(session)
         channel.next_tick(pytest.fail)

@@ -19,7 +19,7 @@ from tornado.web import Application, StaticFileHandler
 from app.serve.http import compressed as module
 from app.serve.http.compressed import compressed
 from app.serve.http.rules import Rules
-from app.serve.monkeypatches.request_handlers import guarded
+from app.serve.monkeypatches.request_handlers import Guards
 
 SCRIPT = b"// a line that is there often enough\n" * 200
 
@@ -36,7 +36,7 @@ def port(tmp_path: Path) -> Iterator[int]:
     def run() -> None:
         asyncio.set_event_loop(asyncio.new_event_loop())
         loops.append(IOLoop.current())
-        HTTPServer(Application([(r"/(.*)", guarded(StaticFileHandler, Rules()), {"path": str(tmp_path)})])).add_sockets([socket])
+        HTTPServer(Application([(r"/(.*)", Guards(Rules()).before(StaticFileHandler), {"path": str(tmp_path)})])).add_sockets([socket])
         loops[0].add_callback(started.set)
         loops[0].start()
 

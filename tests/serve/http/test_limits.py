@@ -23,8 +23,8 @@ from app.curve.sweep import CURVES_SHARED
 from app.dashboard.main_picture import PICTURES_SHARED
 from app.pages.analysis import questions
 from app.serve.computing.worker_pools import LONG
-from app.serve.http import frames, guarded_socket, message_rules
-from app.serve.http.frames import FRAME_BURST, FRAME_RATE, FRAME_UNIT
+from app.serve.http import frame_rate, guarded_socket, message_rules
+from app.serve.http.frame_rate import FRAME_BURST, FRAME_RATE, FRAME_UNIT
 from app.serve.http.limits import LARGEST_UPLOAD, MOST_UPLOADED_POINTS
 from app.serve.http.message_rules import LARGEST_PLAIN_CONTENT, UPLOAD
 from app.serve.monitoring.metrics import METRICS
@@ -185,8 +185,8 @@ FLOODS = {
 @pytest.mark.parametrize("kind", FLOODS)
 def test_a_flood_of_frames_closes_the_connection(kind: str, dashboard: Listening, monkeypatch: pytest.MonkeyPatch) -> None:
     """Over a raw socket, since Tornado hands over whole messages only. The bucket gets no refill here."""
-    monkeypatch.setattr(frames, "FRAME_RATE", 0.0)
-    monkeypatch.setattr(frames, "FRAME_BURST", 60.0)
+    monkeypatch.setattr(frame_rate, "FRAME_RATE", 0.0)
+    monkeypatch.setattr(frame_rate, "FRAME_BURST", 60.0)
     refused = METRICS.counted["refused_messages"]
     status, flooding = dashboard.open(dashboard.token())
     assert status == 101
@@ -204,8 +204,8 @@ def test_a_flood_of_frames_closes_the_connection(kind: str, dashboard: Listening
 def test_as_many_frames_as_are_allowed_at_once_are_taken(kind: str, dashboard: Listening, monkeypatch: pytest.MonkeyPatch) -> None:
     """One more closes the connection with the code of a refusal."""
     first, repeated = FLOODS[kind]
-    monkeypatch.setattr(frames, "FRAME_RATE", 0.0)
-    monkeypatch.setattr(frames, "FRAME_BURST", 200.5)
+    monkeypatch.setattr(frame_rate, "FRAME_RATE", 0.0)
+    monkeypatch.setattr(frame_rate, "FRAME_BURST", 200.5)
     status, sending = dashboard.open(dashboard.token())
     assert status == 101
     with sending:
@@ -218,8 +218,8 @@ def test_as_many_frames_as_are_allowed_at_once_are_taken(kind: str, dashboard: L
 def test_a_page_that_does_not_read_is_closed(monkeypatch: pytest.MonkeyPatch) -> None:
     """It may answer pings meanwhile. Its frames are within all limits, and their answers would fill the memory."""
     monkeypatch.setattr(guarded_socket, "MOST_UNREAD", 100_000)
-    monkeypatch.setattr(frames, "FRAME_RATE", 1e6)
-    monkeypatch.setattr(frames, "FRAME_BURST", 1e6)
+    monkeypatch.setattr(frame_rate, "FRAME_RATE", 1e6)
+    monkeypatch.setattr(frame_rate, "FRAME_BURST", 1e6)
     one = Listening(Access(secret=SECRET))
     try:
         refused = METRICS.counted["refused_messages"]

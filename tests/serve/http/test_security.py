@@ -19,8 +19,8 @@ from tornado.routing import ReversibleRuleRouter
 from tornado.web import HTTPError, RequestHandler
 
 from app.serve.compiling.compiler import Compiler
+from app.serve.http.health import MetricsHandler
 from app.serve.http.rules import Rules
-from app.serve.monitoring.metrics import MetricsHandler
 from app.server import Access
 
 

@@ -11,7 +11,7 @@ import waiting
 
 from app import server
 from app.serve.computing.cpu_time import CpuTime
-from app.serve.computing.turns import FairScheduler
+from app.serve.computing.turns import Turns
 from app.serve.computing.worker_pools import (
     COMPILATIONS,
     COMPUTING,
@@ -40,7 +40,8 @@ def test_every_count_of_every_thread_is_kept() -> None:
 
 
 @pytest.mark.parametrize(("value", "written"), [
-    (0, "0"), (1_234_567, "1234567"), (2**53 + 1, str(2**53 + 1)), (123_456_789.0, "123456789"), (0.1, "0.1"), (1234.5678901, "1234.5678901")])
+    (0, "0"), (1_234_567, "1234567"), (2**53 + 1, str(2**53 + 1)), (123_456_789.0, "123456789"), (0.1, "0.1"), (1234.5678901, "1234.5678901"),
+    (float("inf"), "+Inf"), (float("nan"), "NaN")])
 def test_numbers_are_written_with_all_digits(value: float, written: str) -> None:
     """A counter rounded to six digits would stand still and then jump."""
     metrics = Metrics()
@@ -65,7 +66,7 @@ def test_names_and_kinds_are_those_of_prometheus() -> None:
         assert isinstance(metric.read(), dict) == bool(metric.label), metric
 
 
-def waits_beside_another(turns: FairScheduler, now: list[float], seconds: float, is_new: bool = True) -> None:
+def waits_beside_another(turns: Turns, now: list[float], seconds: float, is_new: bool = True) -> None:
     """A computation has a turn at once, and another one after it has waited so long."""
     first = turns.begin(CpuTime(), Stop())
     thread = threading.Thread(target=turns.begin, args=(CpuTime(), Stop(), is_new))
@@ -79,7 +80,7 @@ def waits_beside_another(turns: FairScheduler, now: list[float], seconds: float,
 
 def test_the_wait_before_computations_begin_is_averaged_over_ten_seconds() -> None:
     now = [0.0]
-    turns = FairScheduler(1, lambda: now[0])
+    turns = Turns(1, lambda: now[0])
     assert turns.wait == 0.0
     waits_beside_another(turns, now, 1.5)
     assert turns.wait == 0.75  # the other did not wait
@@ -91,9 +92,20 @@ def test_the_wait_before_computations_begin_is_averaged_over_ten_seconds() -> No
 
 def test_the_wait_of_a_refinement_is_not_counted() -> None:
     now = [0.0]
-    turns = FairScheduler(1, lambda: now[0])
+    turns = Turns(1, lambda: now[0])
     waits_beside_another(turns, now, 1.5, is_new=False)
     assert turns.wait == 0.0
+
+
+def test_one_stall_is_seen_although_the_mean_hides_it() -> None:
+    metrics = Metrics()
+    for lag in (*(0.0 for _ in range(39)), 5.0):
+        metrics.lagged(lag)
+    assert metrics.event_loop_lag < 0.3 and metrics.busy
+    assert "\ngranchain_event_loop_lag_max_seconds 5\n" in metrics.text()
+    for _ in range(40):
+        metrics.lagged(0.2)
+    assert not metrics.busy
 
 
 def shown(name: str) -> float:
@@ -130,7 +142,7 @@ def test_pools_whose_threads_wait_for_others_do_not_count_as_computing() -> None
 
 def test_long_work_is_computing_and_what_its_owner_has_beyond_its_limit_waits(monkeypatch: pytest.MonkeyPatch) -> None:
     pool, go_on, owner = WorkerPool("long", 8, per_owner_limit=2), threading.Event(), object()
-    for name, value in (("POOLS", (pool,)), ("COMPUTING", (pool,)), ("TURNS", FairScheduler(2))):
+    for name, value in (("POOLS", (pool,)), ("COMPUTING", (pool,)), ("TURNS", Turns(2))):
         monkeypatch.setattr(server, name, value)
     ended = [pool.submit(go_on.wait, 120, owner=owner) for _ in range(3)]
     assert (shown("computing"), shown("queue")) == (2, 1)
@@ -141,7 +153,7 @@ def test_long_work_is_computing_and_what_its_owner_has_beyond_its_limit_waits(mo
 
 
 def test_a_picture_that_waits_for_a_turn_waits_and_is_not_computing(monkeypatch: pytest.MonkeyPatch) -> None:
-    turns, pool, stop = FairScheduler(2, lambda: 0.0), WorkerPool("pictures", 8), Stop()
+    turns, pool, stop = Turns(2, lambda: 0.0), WorkerPool("pictures", 8), Stop()
     for name, value in (("POOLS", (pool,)), ("COMPUTING", ()), ("TURNS", turns)):
         monkeypatch.setattr(server, name, value)
     for _ in range(2):

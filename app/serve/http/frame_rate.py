@@ -1,34 +1,34 @@
 """The rate of websocket frames.
 
-Tornado hands over whole messages. It answers pings itself, and joins the frames of a message that comes in pieces, so
-that a client could send any number of either unseen. Frames are therefore counted in the bytes that Tornado reads, by
-the format of RFC 6455, section 5.2.
+Tornado passes on whole messages. It answers pings itself, and joins the frames of a fragmented message. A client could
+send any number of pings and fragments, and no handler would see them. Frames are therefore counted in the bytes that
+Tornado reads, by the format of RFC 6455, section 5.2.
 """
 
 from __future__ import annotations
 
-#: Frames that a visitor may send, over a long time [1/s]: the rate at which the token bucket of a connection is filled.
-#: A drag sends 60 messages a second, each in three frames.
+#: Sustained rate of frames [1/s], at which the token bucket of a connection is filled. A drag sends 60 messages a
+#: second, each in three frames.
 FRAME_RATE = 600.0
-#: Frames that a visitor may send at once: what the bucket holds.
+#: Burst: the number of frames for which the bucket holds tokens.
 FRAME_BURST = 3000.0
-#: A frame counts once more for every so many of its bytes: 6 MB/s over a long time, eleven large uploads at once.
+#: Bytes of a frame that cost one more token: a sustained rate of 6 MB/s, a burst of eleven large uploads.
 FRAME_UNIT = 10_000
 
 
 class FrameBucket:
-    """The token bucket of a connection, from which each frame is paid."""
+    """The token bucket of a connection; each frame consumes tokens."""
 
     def __init__(self, now: float) -> None:
         self._tokens = FRAME_BURST
         self._refilled_at = now
-        #: What has come of the head of a frame.
+        #: The bytes of a frame's header that have come so far.
         self._head = b""
         #: Bytes of the payload that are still to come.
         self._left = 0
 
-    def pay(self, data: bytes, now: float) -> bool:
-        """Pay for the frames that begin in the next bytes; False if there are too many.
+    def consume(self, data: bytes, now: float) -> bool:
+        """Consume tokens for the frames that begin in the next bytes; False if the bucket is empty.
 
         `now` is the present time [s].
         """
@@ -51,7 +51,7 @@ class FrameBucket:
 
 
 def _length_of_head(head: bytes) -> int:
-    """The number of bytes before the payload, from the first two of them."""
+    """The length of a frame's header, by its first two bytes."""
     return 2 + {126: 2, 127: 8}.get(head[1] & 0x7F, 0) + (4 if head[1] & 0x80 else 0)
 
 

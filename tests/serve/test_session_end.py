@@ -21,7 +21,7 @@ from waiting import until
 from app.dashboard.controller import Controller
 from app.dashboard.layout import Views
 from app.serve.computing.worker_pools import PICTURES, SESSION_WORK
-from app.serve.document import leaving
+from app.serve.connection import leaving
 from app.serve.monitoring.metrics import METRICS
 from app.server import Access
 from granchain_core import OverBudget, scene

@@ -1,4 +1,4 @@
-"""What happens when a session ends: the page is notified at once, and Bokeh is asked to drop its own session."""
+"""The end of a connection: the page is notified at once, and Bokeh is asked to drop the session."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ INTERNALS = internals(
              "for it"),
 )
 
-#: What a page does when its session ends.
+#: By document: the method to be called when the session ends.
 _PAGES: weakref.WeakKeyDictionary[Document, weakref.WeakMethod[Callable[[], None]]] = weakref.WeakKeyDictionary()
 
 
 def when_left(document: Document, close: Callable[[], None]) -> None:
-    """Let a method, which is not kept alive, be called when the session of this document ends."""
+    """Call a method when the session of this document ends; the object of the method is not kept alive."""
     _PAGES[document] = weakref.WeakMethod(close)
 
 
 def leave(session: Any) -> None:
-    """End a session of Bokeh's, whose page has left; no other page can connect to it."""
+    """End a session of Bokeh's whose page has left: no other page can connect to the session."""
     close = _PAGES[session.document]() if session.document in _PAGES else None
     if close is not None:
         close()

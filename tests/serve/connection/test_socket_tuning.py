@@ -13,7 +13,7 @@ from missing_attribute import hide
 from tornado.iostream import IOStream
 from tornado.websocket import WebSocketProtocol
 
-from app.serve.document import socket_tuning
+from app.serve.connection import socket_tuning
 
 #: Every undocumented attribute on the way to a stream, and whose it is.
 ATTRIBUTES: list[tuple[type, str]] = [

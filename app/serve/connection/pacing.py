@@ -1,4 +1,8 @@
-"""Sending pictures at the pace of the browser: at most two are in transit until one is acknowledged."""
+"""Flow control of pictures: a window of two, and what waits is conflated.
+
+At most two pictures are in flight until the browser acknowledges one. Of the pictures that wait only the newest is
+sent. So the browser sets the pace (*backpressure*).
+"""
 
 from __future__ import annotations
 
@@ -8,19 +12,19 @@ from typing import Generic, TypeVar
 Picture = TypeVar("Picture")
 
 
-#: Pictures in transit at once: one being painted, one travelling. Live mode keeps as many on their way. Measured there
-#: with `live_figures` of tests/benchmarks/browser_latency.py, 2026-11-26, two cores with other work, a round trip of
-#: 50 ms added on the way: 14 pictures a second with one, 26 with two; without it 54 and 69, and a median lag of 14 and
-#: 17 ms.
-_MOST_IN_TRANSIT = 2
+#: Pictures in flight at once: one that is being painted, one that travels. Live mode keeps as many in flight. Measured
+#: there with `live_figures` of tests/benchmarks/browser_latency.py, 2026-11-26, two cores with other work. With an
+#: added round trip of 50 ms: 14 pictures a second with one in flight, 26 with two. Without it: 54 and 69 pictures a
+#: second, and a median lag of 14 and 17 ms.
+_MOST_IN_FLIGHT = 2
 
 
 class PicturePacer(Generic[Picture]):
-    """Passes pictures to the browser; of those that wait, only the latest is sent.
+    """Passes pictures to the browser at its pace.
 
     Without acknowledgements, a server that computes faster than the browser paints would fill the websocket, and the
-    picture would lag a second behind the knob. `on_idle` is called when the browser has acknowledged a picture and none
-    waits.
+    picture would lag a second behind the knob. `on_idle` is called when the browser has acknowledged a picture and no
+    other waits.
     """
 
     def __init__(self, send: Callable[[int, Picture], None], on_idle: Callable[[], None]) -> None:
@@ -32,11 +36,11 @@ class PicturePacer(Generic[Picture]):
 
     @property
     def is_full(self) -> bool:
-        """Whether as many pictures are in transit as may be."""
-        return self._sent - self._painted >= _MOST_IN_TRANSIT
+        """Whether no further picture may be sent before an acknowledgement."""
+        return self._sent - self._painted >= _MOST_IN_FLIGHT
 
     def offer(self, picture: Picture) -> None:
-        """Send `picture` now, or as soon as the browser is ready, unless a newer one is offered before."""
+        """Send `picture` now or as soon as the browser is ready; a newer picture takes the place of one that waits."""
         if self.is_full:
             self._waiting = picture
             return
@@ -52,7 +56,7 @@ class PicturePacer(Generic[Picture]):
         self._go_on()
 
     def restart(self) -> None:
-        """Forget acknowledgements that will never come: the window was hidden, and a hidden window paints nothing."""
+        """Expect no more acknowledgements of pictures in flight: the window was hidden, and then it paints nothing."""
         self._painted = self._sent
         self._go_on()
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.serve.http.frames import FRAME_BURST, FRAME_RATE, FRAME_UNIT, FrameBucket
+from app.serve.http.frame_rate import FRAME_BURST, FRAME_RATE, FRAME_UNIT, FrameBucket
 
 pytestmark = pytest.mark.quick
 
@@ -27,28 +27,28 @@ def test_frames_are_counted_however_their_bytes_are_cut(cut: int, masked: bool) 
     data = b"".join(frame(size, masked) for size in sizes)
     bucket = FrameBucket(0.0)
     for at in range(0, len(data), cut):
-        assert bucket.pay(data[at:at + cut], 0.0)
+        assert bucket.consume(data[at:at + cut], 0.0)
     assert FRAME_BURST - bucket._tokens == pytest.approx(len(sizes) + sum(sizes) / FRAME_UNIT)
 
 
 def test_a_bucket_is_filled_again_and_holds_no_more_than_a_burst() -> None:
     bucket, empty = FrameBucket(0.0), frame(0)
-    assert bucket.pay(empty * int(FRAME_BURST), 0.0)
-    assert not bucket.pay(empty, 0.0)
-    assert bucket.pay(empty * int(FRAME_RATE - 1.0), 1.0)
-    assert not bucket.pay(empty, 1.0)
-    assert bucket.pay(empty * int(FRAME_BURST), 1000.0)
-    assert not bucket.pay(empty, 1000.0)
+    assert bucket.consume(empty * int(FRAME_BURST), 0.0)
+    assert not bucket.consume(empty, 0.0)
+    assert bucket.consume(empty * int(FRAME_RATE - 1.0), 1.0)
+    assert not bucket.consume(empty, 1.0)
+    assert bucket.consume(empty * int(FRAME_BURST), 1000.0)
+    assert not bucket.consume(empty, 1000.0)
 
 
 def test_a_thousand_frames_a_second_empty_the_bucket() -> None:
     bucket, passed = FrameBucket(0.0), 0
-    while bucket.pay(frame(0), 1e-3 * passed):
+    while bucket.consume(frame(0), 1e-3 * passed):
         passed += 1
     assert passed == pytest.approx(FRAME_BURST / (1.0 - 1e-3 * FRAME_RATE), rel=1e-3)
 
 
 def test_eleven_of_the_largest_uploads_may_come_at_once() -> None:
     bucket = FrameBucket(0.0)
-    assert all(bucket.pay(frame(2_667_000), 0.0) for _ in range(11))
-    assert not bucket.pay(frame(2_667_000), 0.0)
+    assert all(bucket.consume(frame(2_667_000), 0.0) for _ in range(11))
+    assert not bucket.consume(frame(2_667_000), 0.0)

@@ -1,4 +1,4 @@
-"""One session's document and the event loop: several actions at a time run with the document locked.
+"""Callbacks with a document locked: all callbacks that wait run together.
 
 Bokeh creates, wraps, stores, announces and removes its callbacks one by one, which takes longer than most actions.
 """
@@ -36,24 +36,24 @@ INTERNALS = internals(
     Internal("panel.io.state", ("set_curdoc",), _WITHOUT),
 )
 
-#: Writes of Bokeh that are not finished. Nothing else keeps these tasks alive: the loop has only weak references.
+#: Writes of Bokeh that are not finished. This set keeps the tasks alive: the loop has only weak references.
 _FINISHING: set[asyncio.Future[None]] = set()
 
 
 def can_lock(session: Any) -> bool:
-    """Whether this is a Bokeh session that can be locked here."""
+    """Whether `run_locked` can lock this session."""
     there = set_curdoc is not None and isinstance(getattr(session, "_lock", None), Lock)
     return there and hasattr(session, "_pending_writes")
 
 
 def session_of(document: Document) -> Any:
-    """Bokeh's session of a page, None where there is none, or none that can be locked here."""
+    """Bokeh's session of a page; None if there is none that `run_locked` can lock."""
     session = getattr(getattr(document, "session_context", None), "session", None)
     return session if can_lock(session) else None
 
 
 def run_locked(session: Any, actions: list[Callable[[], None]]) -> None:
-    """Run the actions as soon as the session's document is locked: at once, if nothing else has it."""
+    """Run the actions as soon as the session's document can be locked: at once, if its lock is free."""
     lock: Any = session._lock.acquire()
     if lock.done():
         _with_lock(session, actions, lock)
@@ -78,7 +78,7 @@ def _with_lock(session: Any, actions: list[Callable[[], None]], lock: Any) -> No
 
 
 def _act(session: Any, actions: list[Callable[[], None]]) -> list[Any]:
-    """Run actions with the lock held; return what Bokeh still has to write."""
+    """Run actions with the lock held; return the writes that Bokeh has to finish."""
     session._pending_writes = []
     try:
         with set_curdoc(session.document), batched_changes(session.document):
@@ -99,8 +99,11 @@ async def _finish(pending: list[Any], release: Any) -> None:
             await write
 
 
-class Channel:
-    """Calls actions with a document locked. Where a release of Bokeh cannot be locked like this, Bokeh calls them."""
+class LockedCallbacks:
+    """Calls actions with a document locked, in place of Bokeh's `add_next_tick_callback` and `add_timeout_callback`.
+
+    Bokeh calls the actions itself if `run_locked` cannot lock the sessions of its release.
+    """
 
     def __init__(self, document: Document) -> None:
         self._document = document
@@ -112,7 +115,7 @@ class Channel:
         self._timers: set[asyncio.TimerHandle] = set()
 
     def close(self) -> None:
-        """The session has ended: nothing is called any more, and what was to be called later is forgotten."""
+        """The session has ended: call no further action, and forget those that wait."""
         with self._lock:
             self._closed = True
             self._waiting.clear()
@@ -153,11 +156,11 @@ class Channel:
         self._timers.add(timer)
 
     def _note_session(self) -> None:
-        """Note whether the document has a session; it has none yet while the page is made."""
+        """Note whether the document has a session; while the page is made, there is none."""
         self._served = self._served or session_of(self._document) is not None
 
     def _is_destroyed(self) -> bool:
-        """Whether Bokeh has taken the document apart, which it does before it notifies that the session has ended."""
+        """Whether Bokeh has destroyed the document; it does so before it calls `on_session_destroyed`."""
         return self._served and session_of(self._document) is None
 
     def _run(self) -> None:

@@ -1,7 +1,7 @@
-"""Makes a page's sockets write at once.
+"""A page's sockets, which send every message at once.
 
-Tornado and Bokeh have no public way to a page's streams. Where a release has none of these attributes, messages leave
-as the library sends them.
+Tornado and Bokeh have no public way to a page's streams. If a release lacks one of the attributes, messages leave as
+the libraries send them.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ INTERNALS = internals(
 
 
 def _streams(document: Document) -> list[IOStream]:
-    """The streams behind this page's websockets; empty if a release keeps them elsewhere."""
+    """The streams of this page's websockets; empty if a release keeps them elsewhere."""
     session = getattr(document.session_context, "session", None)
     connections = getattr(session, "_subscribed_connections", ())
     ws_connections = [getattr(getattr(connection, "_socket", None), "ws_connection", None)

@@ -1,0 +1,52 @@
+"""Addresses for operators: `/liveness`, `/readiness` and `/metrics`."""
+
+from __future__ import annotations
+
+import ipaddress
+import random
+
+from tornado.web import HTTPError, RequestHandler
+
+from ..monitoring.metrics import METRICS
+from .limits import RETRY_AFTER
+from .rules import Rules
+
+#: Tornado's address of an unknown client. `ipaddress` calls it private, so it is refused by name.
+_UNKNOWN = "0.0.0.0"
+
+
+class Liveness(RequestHandler):
+    """`/liveness`: answers while the event loop runs. Panel's own handler would make a page for each request."""
+
+    def get(self) -> None:
+        """Answer `{"/liveness": true}`."""
+        self.write({"/liveness": True})
+
+
+class Readiness(RequestHandler):
+    """`/readiness`: whether one more page can be opened. A full server is no failure, and nothing is logged."""
+
+    rules: Rules
+
+    def get(self) -> None:
+        """Answer `{"/readiness": true}`, or false with status 503."""
+        full = self.rules.sessions.full
+        if full:
+            self.set_status(503)
+            self.set_header("Retry-After", random.randint(*RETRY_AFTER))
+        self.write({"/readiness": not full})
+
+
+class MetricsHandler(RequestHandler):
+    """`/metrics`: the text for Prometheus."""
+
+    def get(self) -> None:
+        """Answer this machine and private networks with the metrics."""
+        asking = ipaddress.ip_address(self.request.remote_ip or _UNKNOWN)
+        if asking.is_unspecified or not asking.is_private:
+            raise HTTPError(403, "metrics are for private addresses")
+        self.set_header("Content-Type", "text/plain; version=0.0.4; charset=utf-8")
+        self.write(METRICS.text())
+
+
+HANDLERS = (Liveness, Readiness, MetricsHandler)
