@@ -28,7 +28,7 @@ _SMALL = ["sec2", "--set", "N=2", "--set", "f=2000"]
 #: One command line for each table, and one more for each option that adds keys; the files are made by `files`.
 EXAMPLES = {
     "run": ["run", *_SMALL, "--periods", "2", "--record", "1", "--samples", "8"],
-    "run --drive": ["run", *_SMALL, "--drive", "burst=2000:2:0.002"],
+    "run --drive": ["run", *_SMALL, "--drive", "shaker.csv"],
     "curve": ["curve", *_SMALL, "--from", "1900", "--to", "2000", "--points", "2"],
     "curve, amplitude": ["curve", *_SMALL, "--from", "1900", "--to", "2000", "--points", "2",
                          "--amplitude", "constant-velocity=3e-3"],
@@ -62,11 +62,15 @@ EXAMPLES = {
 
 @pytest.fixture()
 def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A measured force with an output, a measured curve, hard cases that take no time, and settings that run once."""
+    """Measured: a force with an output, a drive with both forces, a curve. Hard cases that take no time, and settings
+    that run once.
+    """
     monkeypatch.chdir(tmp_path)
     time = np.linspace(0.0, 1e-3, 51)
     rows = "".join(f"{t:.6e},{max(0.0, np.sin(2e3 * np.pi * t)):.6e},0.1\n" for t in time)
     Path("force.csv").write_text("time_s,input_force_N,output_force_N\n" + rows, encoding="utf-8")
+    rows = "".join(f"{t:.6e},{1e-3 * np.sin(2e3 * np.pi * t):.6e},0.1,0.1\n" for t in time)
+    Path("shaker.csv").write_text("time_s,velocity (m/s),input_force_N,output_force_N\n" + rows, encoding="utf-8")
     Path("curve.csv").write_text("frequency_Hz,max_output_force_N\n1900,0.1\n1950,0.1\n2000,0.1\n", encoding="utf-8")
 
     def rows_at_once(quick: bool, workers: int | None = None):  # type: ignore[no-untyped-def]
