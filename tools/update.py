@@ -4,8 +4,9 @@
 
 - tables in the docs: thresholds (docs/regimes.md, rotation-number.md, orbits.md, branches.md, accuracy.md), methods
   (docs/method.md), knobs (docs/model.md), scenes and the list of commands with pictures (README.md), drives by a
-  formula (docs/scenes.md), what is used of libraries (docs/libraries.md), metrics (docs/deployment.md), the dashboard's
-  pages in the map of the code (docs/design.md) and its messages (docs/dashboard.md);
+  formula (docs/scenes.md), marks of the figures (docs/marks.md), what is used of libraries (docs/libraries.md), metrics
+  (docs/deployment.md), the dashboard's pages in the map of the code (docs/design.md) and its messages
+  (docs/dashboard.md);
 - a row for every new scene in the test of share links (tools/links.py);
 - for every new or changed scene the largest values that its pictures are drawn to (tools/scales.py) and its picture in
   the gallery (tools/gallery.py).
@@ -34,6 +35,12 @@ from tools.lists import (
     table_of_orders,
     table_of_scenes,
 )
+from tools.marks import (
+    table_of_lines_over_a_knob,
+    table_of_lines_over_time,
+    table_of_regime_marks,
+    table_of_special_points,
+)
 from tools.thresholds import (
     table_of_branches,
     table_of_deciding,
@@ -59,6 +66,10 @@ _TABLES = (
     ("README.md", "scenes", table_of_scenes),
     ("README.md", "commands with pictures", commands_with_pictures),
     ("docs/scenes.md", "drives", table_of_drives),
+    ("docs/marks.md", "lines over a knob", table_of_lines_over_a_knob),
+    ("docs/marks.md", "special points", table_of_special_points),
+    ("docs/marks.md", "marks of regimes", table_of_regime_marks),
+    ("docs/marks.md", "lines over time", table_of_lines_over_time),
     ("docs/libraries.md", "libraries", table_of_libraries),
     ("docs/deployment.md", "metrics", table_of_metrics),
     ("docs/design.md", "pages of the dashboard", table_of_pages),
