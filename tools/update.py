@@ -3,10 +3,10 @@
     python -m tools.update
 
 - tables in the docs: thresholds (docs/regimes.md, rotation-number.md, orbits.md, branches.md, accuracy.md), methods
-  (docs/method.md), knobs (docs/model.md), scenes and the list of commands with pictures (README.md), drives by a
-  formula (docs/scenes.md), marks of the figures (docs/marks.md), what is used of libraries (docs/libraries.md), metrics
-  (docs/deployment.md), the dashboard's pages in the map of the code (docs/design.md) and its messages
-  (docs/dashboard.md);
+  (docs/method.md), knobs (docs/model.md), equations and scenes (README.md), commands (README.md, docs/command-line.md),
+  drives by a formula (docs/scenes.md), marks of the figures (docs/marks.md), what is used of libraries
+  (docs/libraries.md), metrics (docs/deployment.md), the dashboard's pages in the map of the code (docs/design.md) and
+  its messages (docs/dashboard.md);
 - a row for every new scene in the test of share links (tools/links.py);
 - for every new or changed scene the largest values that its pictures are drawn to (tools/scales.py) and its picture in
   the gallery (tools/gallery.py).
@@ -19,6 +19,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from tools import gallery, links, scales
+from tools.command_tables import commands_with_pictures, table_of_commands, table_of_json
 from tools.dashboard_tables import (
     table_of_messages_of_the_browser,
     table_of_messages_of_the_server,
@@ -26,7 +27,7 @@ from tools.dashboard_tables import (
 )
 from tools.generated import with_part
 from tools.lists import (
-    commands_with_pictures,
+    equations,
     list_of_methods,
     table_of_drives,
     table_of_knobs,
@@ -63,7 +64,10 @@ _TABLES = (
     ("docs/method.md", "methods", list_of_methods),
     ("docs/method.md", "orders", table_of_orders),
     ("docs/model.md", "knobs", table_of_knobs),
+    ("README.md", "equations", equations),
     ("README.md", "scenes", table_of_scenes),
+    ("README.md", "commands", table_of_commands),
+    ("docs/command-line.md", "commands", table_of_json),
     ("README.md", "commands with pictures", commands_with_pictures),
     ("docs/scenes.md", "drives", table_of_drives),
     ("docs/marks.md", "lines over a knob", table_of_lines_over_a_knob),
