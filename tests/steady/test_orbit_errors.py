@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from granchain_core import scene
-from granchain_core.integrate import Engine, Setting, dop853_setting
+from granchain_core.integrate import Engine, MethodSetting, dop853_setting
 from granchain_core.results.regime import Regime
 from granchain_core.steady.orbit_errors import errors_of_map, errors_of_two_orbits
 from granchain_core.steady.settling import recording, single_chain
@@ -36,7 +36,7 @@ def test_an_error_of_the_map_moves_its_fixed_point_by_more(monkeypatch: pytest.M
     e.
     """
     settling = run_until_settled(scene("sec2"), None, None)
-    engine = Engine(settling.scene, Setting("rk4-split"), 16)
+    engine = Engine(settling.scene, MethodSetting("rk4-split"), 16)
     engine.start(settling.engine.state)
     monkeypatch.setattr(recording, "refined_orbit", called_as(recording.refined_orbit, (engine, 0.0)))
     stated = []
