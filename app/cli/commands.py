@@ -7,11 +7,14 @@ a sentence and what is known. Progress goes to stderr.
 from __future__ import annotations
 
 import argparse
+import difflib
+import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib import import_module
-from typing import NoReturn
+from types import MappingProxyType
+from typing import Any, NoReturn
 
 from granchain_core import BadInput, Cancelled, ComputationError
 from granchain_core.errors import OverBudget, outcome_of
@@ -30,6 +33,20 @@ FAILED = 3
 
 class _Parser(argparse.ArgumentParser):
     """A parser whose errors are `BadInput`: one sentence, no usage text."""
+
+    #: The parsers of the commands by name, of the parser of all.
+    commands: Mapping[str, argparse.ArgumentParser] = MappingProxyType({})
+
+    def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """The words in a namespace; words that the command does not know are refused with the nearest option."""
+        parsed, left = self.parse_known_args(args, namespace)
+        if left:
+            command = self.commands[parsed.command]
+            options = re.findall(r"--[a-z][\w-]*", command.format_help())
+            near = difflib.get_close_matches(left[0], options, n=1) if left[0].startswith("-") else []
+            raise BadInput(f"{command.prog}: unrecognized arguments: {' '.join(left)}"
+                           f"{f'; the nearest option is {near[0]}' if near else ''}; see '{command.prog} --help'.")
+        return parsed
 
     def error(self, message: str) -> NoReturn:
         raise BadInput(f"{self.prog}: {message}; see '{self.prog} --help'.")
@@ -112,6 +129,10 @@ COMMANDS = {
 }
 
 
+#: Words that ask for the list of commands.
+_HELP = ("-h", "--help")
+
+
 def parser_for(words: Sequence[str]) -> _Parser:
     """The parser, with the options of the command in `words`."""
     asked_for = next((word for word in words if not word.startswith("-")), None)
@@ -125,14 +146,18 @@ def parser_for(words: Sequence[str]) -> _Parser:
             module = import_module(f".{name}", __package__)
             module.add_options(command)
             command.set_defaults(do=module.do)
+    parser.commands = known.choices
     return parser
 
 
 def do(words: list[str]) -> int:
     """Run one command; returns the exit status."""
     try:
-        if words and not words[0].startswith("-") and words[0] not in COMMANDS:
-            raise unknown_name("command", words[0], COMMANDS)
+        if not words:
+            raise BadInput("granchain needs a command, for example 'granchain serve'; 'granchain --help' lists them.")
+        if words[0] not in COMMANDS and words[0] not in _HELP:
+            raise unknown_name(*(("option", words[0], _HELP) if words[0].startswith("-") else
+                                 ("command", words[0], COMMANDS)))
         parsed = parser_for(words).parse_args(words)
         return parsed.do(parsed) or DONE
     except (BadInput, ComputationError) as problem:

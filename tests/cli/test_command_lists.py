@@ -21,10 +21,7 @@ def test_a_command_has_an_example(command: str, capsys: pytest.CaptureFixture[st
 @pytest.mark.parametrize("command", COMMANDS)
 def test_what_a_command_needs_is_in_its_form(command: str) -> None:
     """The words that every call has stand in the table of README.md."""
-    with pytest.raises(SystemExit):
-        parser_for([command]).parse_args([command, "--help"])
-    (actions,) = [one._name_parser_map[command]._actions for one in parser_for([command])._actions if hasattr(one, "_name_parser_map")]
-    for action in actions:
+    for action in parser_for([command]).commands[command]._actions:
         if action.required and action.nargs != "*":
             assert (action.option_strings or [action.metavar])[0] in COMMANDS[command].form.split(), action.dest
 
