@@ -281,4 +281,5 @@ class CurveFigure:
                 sources[start] = self._line(start, grey=sources is self._grey_sources)
         if start in sources:
             ordered = sorted(points, key=lambda point: point.frequency)
-            set_properties(sources[start], data=curve_columns(ordered, self._scale[0], SWEEPS[start].larger))
+            larger = SWEEPS[start].larger // 2  # the figure is small, and its points are close to each other
+            set_properties(sources[start], data=curve_columns(ordered, self._scale[0], larger))
