@@ -30,10 +30,10 @@ def figure(result: Any, theme: str = "light", width: int | None = None, height: 
         A further figure of the result: of a run or a settled motion "displacement", "velocity", "forces", "phase",
         "spectrum" (those of one `bead`, the last by default) and "contacts", as on the page Probe.
     **options
-        Of some figures: `elastic` and `measured` of a curve (a measurement that `read_experiment` of
-        granchain_core.experiment has read), `shown` ("force", "regime" or "both") and `curves` (what
-        `bifurcation_curves` found) of a parameter map, `bead` of a bifurcation diagram, `asked` (an accuracy) of a
-        work-precision diagram, `now` (a value of the knob) of a branch, `rank` of an orbit.
+        Of some figures: `elastic` of a curve, `measured` of a curve and of a driven motion (a measurement that
+        `read_experiment` of granchain_core.experiment has read), `shown` ("force", "regime" or "both") and `curves`
+        (what `bifurcation_curves` found) of a parameter map, `bead` of a bifurcation diagram, `asked` (an accuracy) of
+        a work-precision diagram, `now` (a value of the knob) of a branch, `rank` of an orbit.
 
     Returns
     -------

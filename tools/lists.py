@@ -1,17 +1,16 @@
-"""Lists that follow from tables in the code: knobs (docs/model.md), methods (docs/method.md), scenes and commands that
-draw (README.md), drives by a formula (docs/scenes.md), what is used of libraries (docs/libraries.md), and metrics
+"""Lists that follow from tables in the code: knobs (docs/model.md), methods (docs/method.md), equations and
+scenes (README.md), drives by a formula (docs/scenes.md), what is used of libraries (docs/libraries.md), and metrics
 (docs/deployment.md).
 """
 
 from __future__ import annotations
 
-import argparse
 import math
+import re
 import textwrap
-from importlib import import_module
+from pathlib import Path
 
 from app import library_internals
-from app.cli.commands import COMMANDS
 from app.serve.monitoring.metrics import FORMER_NAMES, HISTOGRAM, HISTOGRAM_HELP, METRICS
 from app.server import add_shared_metrics
 from granchain_core import scene, scene_names
@@ -19,6 +18,8 @@ from granchain_core.integrate import METHODS
 from granchain_core.prescribed_drive.formulas import FORMULAS
 from granchain_core.scene.quantities import QUANTITIES, Quantity
 from tools.thresholds import printed
+
+ROOT = Path(__file__).resolve().parents[1]
 
 
 def table_of_knobs() -> str:
@@ -61,23 +62,18 @@ def table_of_drives() -> str:
                       "there; what files are read is in [data.md](data.md) |"])
 
 
+def equations() -> str:
+    """The equations of README.md: the first block of docs/model.md below its heading “Equations”."""
+    _, _, below = (ROOT / "docs" / "model.md").read_text(encoding="utf-8").partition("\n## Equations\n")
+    block = re.search(r"\n\n((?:    .+\n)+)", below)
+    assert block is not None
+    return block[1].rstrip("\n")
+
+
 def table_of_scenes() -> str:
     """The table of README.md: every scene with its title, in teaching order."""
     rows = [f"| `{name}` | {scene(name).title} |" for name in scene_names()]
     return "\n".join(["| scene | what it is |", "|---|---|", *rows])
-
-
-def commands_with_pictures() -> str:
-    """The list of README.md: every command that has the option --picture, in the order of `granchain --help`."""
-    drawing = [f"`{name}`" for name in COMMANDS if "--picture" in _help(name)]
-    return "\n".join(textwrap.wrap(f"{', '.join(drawing[:-1])} and {drawing[-1]}.", 120))
-
-
-def _help(command: str) -> str:
-    """What `granchain COMMAND --help` says of its options."""
-    parser = argparse.ArgumentParser()
-    import_module(f"app.cli.{command}").add_options(parser)
-    return parser.format_help()
 
 
 def table_of_libraries() -> str:

@@ -3,9 +3,10 @@
     python -m tools.update
 
 - tables in the docs: thresholds (docs/regimes.md, rotation-number.md, orbits.md, branches.md, accuracy.md), methods
-  (docs/method.md), knobs (docs/model.md), scenes and the list of commands with pictures (README.md), drives by a
-  formula (docs/scenes.md), what is used of libraries (docs/libraries.md), metrics (docs/deployment.md), the dashboard's
-  pages in the map of the code (docs/design.md) and its messages (docs/dashboard.md);
+  (docs/method.md), knobs (docs/model.md), equations and scenes (README.md), commands (README.md, docs/command-line.md),
+  drives by a formula (docs/scenes.md), marks of the figures (docs/marks.md), what is used of libraries
+  (docs/libraries.md), metrics (docs/deployment.md), the dashboard's pages in the map of the code (docs/design.md) and
+  its messages (docs/dashboard.md);
 - a row for every new scene in the test of share links (tools/links.py);
 - for every new or changed scene the largest values that its pictures are drawn to (tools/scales.py) and its picture in
   the gallery (tools/gallery.py).
@@ -18,6 +19,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from tools import gallery, links, scales
+from tools.command_tables import commands_with_pictures, table_of_commands, table_of_json
 from tools.dashboard_tables import (
     table_of_messages_of_the_browser,
     table_of_messages_of_the_server,
@@ -25,7 +27,7 @@ from tools.dashboard_tables import (
 )
 from tools.generated import with_part
 from tools.lists import (
-    commands_with_pictures,
+    equations,
     list_of_methods,
     table_of_drives,
     table_of_knobs,
@@ -33,6 +35,12 @@ from tools.lists import (
     table_of_metrics,
     table_of_orders,
     table_of_scenes,
+)
+from tools.marks import (
+    table_of_lines_over_a_knob,
+    table_of_lines_over_time,
+    table_of_regime_marks,
+    table_of_special_points,
 )
 from tools.thresholds import (
     table_of_branches,
@@ -56,9 +64,16 @@ _TABLES = (
     ("docs/method.md", "methods", list_of_methods),
     ("docs/method.md", "orders", table_of_orders),
     ("docs/model.md", "knobs", table_of_knobs),
+    ("README.md", "equations", equations),
     ("README.md", "scenes", table_of_scenes),
+    ("README.md", "commands", table_of_commands),
+    ("docs/command-line.md", "commands", table_of_json),
     ("README.md", "commands with pictures", commands_with_pictures),
     ("docs/scenes.md", "drives", table_of_drives),
+    ("docs/marks.md", "lines over a knob", table_of_lines_over_a_knob),
+    ("docs/marks.md", "special points", table_of_special_points),
+    ("docs/marks.md", "marks of regimes", table_of_regime_marks),
+    ("docs/marks.md", "lines over time", table_of_lines_over_time),
     ("docs/libraries.md", "libraries", table_of_libraries),
     ("docs/deployment.md", "metrics", table_of_metrics),
     ("docs/design.md", "pages of the dashboard", table_of_pages),

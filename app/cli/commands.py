@@ -7,10 +7,14 @@ a sentence and what is known. Progress goes to stderr.
 from __future__ import annotations
 
 import argparse
+import difflib
+import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from importlib import import_module
-from typing import NoReturn
+from types import MappingProxyType
+from typing import Any, NoReturn
 
 from granchain_core import BadInput, Cancelled, ComputationError
 from granchain_core.errors import OverBudget, outcome_of
@@ -30,37 +34,103 @@ FAILED = 3
 class _Parser(argparse.ArgumentParser):
     """A parser whose errors are `BadInput`: one sentence, no usage text."""
 
+    #: The parsers of the commands by name, of the parser of all.
+    commands: Mapping[str, argparse.ArgumentParser] = MappingProxyType({})
+
+    def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """The words in a namespace; words that the command does not know are refused with the nearest option."""
+        parsed, left = self.parse_known_args(args, namespace)
+        if left:
+            command = self.commands[parsed.command]
+            options = re.findall(r"--[a-z][\w-]*", command.format_help())
+            near = difflib.get_close_matches(left[0], options, n=1) if left[0].startswith("-") else []
+            raise BadInput(f"{command.prog}: unrecognized arguments: {' '.join(left)}"
+                           f"{f'; the nearest option is {near[0]}' if near else ''}; see '{command.prog} --help'.")
+        return parsed
+
     def error(self, message: str) -> NoReturn:
         raise BadInput(f"{self.prog}: {message}; see '{self.prog} --help'.")
 
 
-#: What each command is for, in the order of `granchain --help`. The module of its name has its options, `add_options`,
-#: and does it, `do`; only the one that is asked for is imported, because some need what takes a second to load.
+@dataclass(frozen=True)
+class Command:
+    """A command: a row of `COMMANDS`.
+
+    Attributes
+    ----------
+    form : str
+        What has to follow its name, and what often does.
+    about : str
+        What it does, for `--help` and the tables of README.md and docs/command-line.md.
+    example : str
+        What follows its name in an example that takes seconds; `--help` shows it.
+    page : str
+        The page of docs about it, with a heading if need be.
+    """
+
+    form: str
+    about: str
+    example: str
+    page: str = ""
+
+
+#: Every command, in the order of `granchain --help`. The module of its name has its options, `add_options`, and does
+#: it, `do`; only the one that is asked for is imported, because some need what takes a second to load. After a change
+#: run `python -m tools.update`.
 COMMANDS = {
-    "serve": "open the dashboard",
-    "scenes": "list the scenes and what to look at",
-    "warm": "compile the kernels of the paper's scenes, or of those named, ahead of time",
-    "run": "run a scene and record it",
-    "orbit": "periodic orbit and Floquet multipliers",
-    "branch": "branch of periodic orbits and its special points",
-    "accuracy": "what accuracy costs: error against time for every method",
-    "observe": "push a scene's chain by a measured force",
-    "check": "the hard cases: value, limit and verdict of each; status 3 if one fails",
-    "curve": "resonance curve: largest forces over frequency",
-    "map": "parameter map: regime and largest forces over two knobs",
-    "spectrum": "lines of a force, and the transfer from input to output",
-    "lyapunov": "all Lyapunov exponents, and the dimension of the attractor",
-    "rotation": "rotation number and second frequency of a quasi-periodic motion",
-    "strobes": "bifurcation diagram: strobes over one knob",
-    "attractors": "the steady states that coexist at one setting, and the share of random starts that lead to each",
-    "basins": "to which steady state each start of a plane leads",
-    "pulse": "the first pulse along a chain: its force, speed and width at every contact",
-    "bands": "pass bands of a precompressed chain: cut-off and band edges",
-    "virtual": "what the sensors of a rig would record of a scene: a virtual experiment, as CSV",
-    "fit": "parameters of a scene from a measurement, with intervals and a verdict",
-    "figure": "a figure of the paper with our numbers",
-    "cite": "what to cite for the effects of a scene",
+    "serve": Command("[--port P] [--address A]", "open the dashboard", "--port 5007", "deployment.md"),
+    "scenes": Command("", "list the scenes and what to look at", "--json", "scenes.md"),
+    "run": Command(
+        "SCENE", "run a scene: regime, largest forces, error reached, energy residual, cost; with --drive under a "
+        "chirp, a burst, two tones, noise or a measured motion", "sec2 --set f=1130 --periods 300",
+        "scenes.md#drives-other-than-the-harmonic-one"),
+    "curve": Command(
+        "SCENE --from F --to F --points n", "resonance curve: largest forces over the drive frequency, with --data "
+        "beside a measured curve", "sec2 --from 300 --to 400 --points 11 --picture curve.html", "regimes.md"),
+    "orbit": Command("SCENE", "periodic orbit by Newton's method and its Floquet multipliers", "sec2 --set f=1130",
+                     "orbits.md"),
+    "branch": Command(
+        "SCENE --knob f --from a --to b", "branch of periodic orbits over a knob: folds, period doublings, "
+        "Neimark–Sacker points, grazings", "sec2 --set N=2 --knob f --from 2000 --to 700", "branches.md"),
+    "spectrum": Command("SCENE", "lines of a force, and the transfer from input to output force", "sec2",
+                        "analysis.md"),
+    "lyapunov": Command("SCENE", "all Lyapunov exponents, and the dimension of the attractor",
+                        "sec2 --set f=1130 --periods 100", "analysis.md#lyapunov-spectrum-and-dimension"),
+    "rotation": Command("SCENE", "rotation number and second frequency of a quasi-periodic motion",
+                        "sec2 --set f=1700", "analysis.md#rotation-number"),
+    "strobes": Command("SCENE --over KNOB=a:b:n", "bifurcation diagram: strobes over one knob",
+                       "sec2 --over f=1900:2000:21 --picture strobes.html", "analysis.md#bifurcation-diagram"),
+    "basins": Command("SCENE --x u1=a:b:n --y v1=a:b:n", "to which steady state each start of a plane leads",
+                      "sec2 --set N=2 --x u1=0:2e-7:9 --y v1=0:1e-3:9", "analysis.md#basins"),
+    "map": Command(
+        "SCENE --x f=a:b:n --y A0=a:b:n --out FILE", "parameter map: regime and largest forces over two knobs, with "
+        "--bifurcations curves of folds, period doublings and Neimark–Sacker points",
+        "sec2 --set N=3 --x f=1700:2100:24 --y A0=2e-7:9e-7:16 --out map.h5 --picture map.html", "parameter-map.md"),
+    "attractors": Command(
+        "SCENE", "the steady states that coexist at one setting, and the share of random starts that lead to each",
+        "sec2 --set f=900 --random-states 20", "parameter-map.md#all-attractors-of-one-setting"),
+    "observe": Command("SCENE --input FILE", "push a scene's chain by a measured force", "sec2 --input force.csv",
+                       "observers.md"),
+    "pulse": Command("SCENE", "the first pulse along a chain after an impact: its force, speed and width at every "
+                     "contact", "impact", "scenes.md"),
+    "bands": Command("SCENE", "pass bands of a precompressed chain: cut-off and band edges", "precompressed",
+                     "scenes.md"),
+    "virtual": Command("SCENE", "virtual experiment: what the sensors of a rig would record of a scene, as CSV",
+                       "fig12-60 --noise 0.2 --periods 12 --out virtual.csv", "data.md#a-virtual-experiment"),
+    "fit": Command("SCENE --data FILE --free D=50:200", "parameters of a scene from a measurement, with 95 % intervals "
+                   "and a verdict", "sec2 --data curve.csv --free D=50:200", "fit.md"),
+    "figure": Command("N", "a figure of the paper with our numbers, with --data beside a measurement", "6", "paper.md"),
+    "cite": Command("SCENE", "what to cite for the effects of a scene", "sec2", "references.md"),
+    "accuracy": Command("SCENE", "what accuracy costs: error against time for every method", "sec2", "accuracy.md"),
+    "check": Command("[--quick]", "cases in which solvers fail silently: value, limit and verdict of each; status 3 if "
+                     "one fails", "--quick", "hard-cases.md"),
+    "warm": Command("[SCENE …]", "compile the kernels of the paper's scenes, or of those named, ahead of time", "sec2",
+                    "compiling.md"),
 }
+
+
+#: Words that ask for the list of commands.
+_HELP = ("-h", "--help")
 
 
 def parser_for(words: Sequence[str]) -> _Parser:
@@ -69,20 +139,25 @@ def parser_for(words: Sequence[str]) -> _Parser:
     parser = _Parser(prog="granchain", description="Driven granular chains: simulate, sweep, show.",
                      allow_abbrev=False)
     known = parser.add_subparsers(dest="command", parser_class=_Parser, metavar="COMMAND", required=True)
-    for name, about in COMMANDS.items():
-        command = known.add_parser(name, help=about, description=about, allow_abbrev=False)
+    for name, row in COMMANDS.items():
+        command = known.add_parser(name, help=row.about.replace("%", "%%"), description=f"{row.about}.",
+                                   epilog=f"Example: granchain {name} {row.example}", allow_abbrev=False)
         if name == asked_for:
             module = import_module(f".{name}", __package__)
             module.add_options(command)
             command.set_defaults(do=module.do)
+    parser.commands = known.choices
     return parser
 
 
 def do(words: list[str]) -> int:
     """Run one command; returns the exit status."""
     try:
-        if words and not words[0].startswith("-") and words[0] not in COMMANDS:
-            raise unknown_name("command", words[0], COMMANDS)
+        if not words:
+            raise BadInput("granchain needs a command, for example 'granchain serve'; 'granchain --help' lists them.")
+        if words[0] not in COMMANDS and words[0] not in _HELP:
+            raise unknown_name(*(("option", words[0], _HELP) if words[0].startswith("-") else
+                                 ("command", words[0], COMMANDS)))
         parsed = parser_for(words).parse_args(words)
         return parsed.do(parsed) or DONE
     except (BadInput, ComputationError) as problem:

@@ -15,22 +15,23 @@ from .picture import write_picture
 
 if TYPE_CHECKING:
     from granchain_core import Driven, Signal
-    from granchain_core.experiment import Answers
+    from granchain_core.experiment import Answers, ForceDifference, Series
 
 #: Options of `run` that count drive periods, or choose among methods, with the values they have if they are not given.
-_PERIODIC = {"periods": 100, "record": 20, "samples": 96, "method": None, "resume": False, "explain": False}
+PERIODIC = {"periods": 100, "record": 20, "samples": 96, "method": None, "resume": False, "explain": False}
 
 
 def do_driven(arguments: argparse.Namespace, chosen: Scene) -> None:
     """Run a scene with the signal of --drive in place of its own drive."""
     from granchain_core import drive
+    from granchain_core.experiment import compared_forces
     from granchain_core.store import check_writable
 
-    for option, usual in _PERIODIC.items():
+    for option, usual in PERIODIC.items():
         if getattr(arguments, option) != usual:
             raise BadInput(f"--{option} is for a harmonic drive; with --drive the motion goes from the start to the "
                            "end of the signal, by the method with split steps.")
-    signal = chosen_signal(arguments, chosen)
+    signal, series = chosen_signal(arguments, chosen)
     if arguments.out:
         check_writable(arguments.out)
     say(f"The driver moves by {signal.words}: {len(signal.time)} knots, {signal.time[-1] - signal.time[0]:.4g} s.")
@@ -42,16 +43,17 @@ def do_driven(arguments: argparse.Namespace, chosen: Scene) -> None:
         from granchain_core.store import save
 
         with unbroken(arguments.out):
-            save(found, arguments.out)
-    write_picture(arguments.picture, f"A driven motion of {chosen.name}", found)
+            save(found, arguments.out, series)
+    write_picture(arguments.picture, f"A driven motion of {chosen.name}", found, measured=series)
+    differences = {} if series is None else compared_forces(series, found)
     if arguments.json:
-        show_json(_json(found))
+        show_json(_json(found, series, differences))
     else:
-        _show(found)
+        _show(found, differences)
 
 
-def chosen_signal(arguments: argparse.Namespace, chosen: Scene) -> Signal:
-    """The signal that --drive names: a formula with the scene's A0, or a file."""
+def chosen_signal(arguments: argparse.Namespace, chosen: Scene) -> tuple[Signal, Series | None]:
+    """The signal that --drive names, a formula with the scene's A0 or a file, and the series in that file."""
     from granchain_core.prescribed_drive.formulas import formula_signal
 
     if not chosen.is_driven:
@@ -59,9 +61,12 @@ def chosen_signal(arguments: argparse.Namespace, chosen: Scene) -> Signal:
                        "value is --set drive=harmonic.")
     found = formula_signal(arguments.drive, chosen.A0)
     if found is None:
-        return with_answers(arguments, lambda given: _measured(arguments.drive, given, arguments.gap))
+        signal, series = with_answers(arguments, lambda given: _measured(arguments.drive, given, arguments.gap))
+        say(f"{series.understood}.")
+        say(_uses(series))
+        return signal, series
     check_no_gap(arguments)
-    return found
+    return found, None
 
 
 def check_no_gap(arguments: argparse.Namespace) -> None:
@@ -70,8 +75,8 @@ def check_no_gap(arguments: argparse.Namespace) -> None:
         raise BadInput("--gap is for --drive FILE, the samples of a measured motion.")
 
 
-def _measured(path: str, answers: Answers, gap: str) -> Signal:
-    """The signal in a file: its velocity if that was measured, else its displacement."""
+def _measured(path: str, answers: Answers, gap: str) -> tuple[Signal, Series]:
+    """The signal in a file, its velocity if that was measured, else its displacement; and all that is in the file."""
     from granchain_core import Signal
     from granchain_core.experiment.reader import read_experiment
     from granchain_core.experiment.series import Series
@@ -84,11 +89,26 @@ def _measured(path: str, answers: Answers, gap: str) -> Signal:
         return f"Line {lines[index]}"
 
     if series.velocity is not None:
-        return Signal.from_velocity(series.time, series.velocity, f"the velocity in {source}", gap=gap, place=place)
+        return Signal.from_velocity(series.time, series.velocity, f"the velocity in {source}", gap=gap,
+                                    place=place), series
     if series.displacement is not None:
         return Signal.from_displacement(series.time, series.displacement, f"the displacement in {source}", gap=gap,
-                                        place=place)
+                                        place=place), series
     raise BadInput(f"{path} has neither velocity nor displacement of the driver; a force is for granchain observe.")
+
+
+def _uses(series: Series) -> str:
+    """What is done with each column of a series."""
+    from granchain_core.experiment.compare_forces import FORCES
+
+    moves = "velocity" if series.velocity is not None else "displacement"
+    unused = " The displacement is not used." if moves == "velocity" and series.displacement is not None else ""
+    ends = [name.removesuffix("_force") for name in FORCES if getattr(series, name) is not None]
+    if not ends:
+        return f"The {moves} moves the driver; the file has no force to compare.{unused}"
+    verb, ones = ("are", "ones") if len(ends) > 1 else ("is", "one")
+    return (f"The {moves} moves the driver; the measured {' and '.join(ends)} force {verb} compared with the computed "
+            f"{ones}. No offset of a sensor is subtracted.{unused}")
 
 
 def _limited_by_samples(found: Driven) -> str:
@@ -100,15 +120,29 @@ def _limited_by_samples(found: Driven) -> str:
             f"{steps:.1e}.")
 
 
-def _json(found: Driven) -> dict[str, Any]:
+def _json(found: Driven, series: Series | None, differences: dict[str, ForceDifference]) -> dict[str, Any]:
     """A driven motion as one JSON object."""
+    from granchain_core.experiment.compare_forces import FORCES
+
     return {**scene_json(found.scene), "drive": found.signal.words,
             "duration": float(found.time[-1] - found.time[0]), "status": found.status, **forces_json(found),
-            **errors_json(found), "interpolation_error": found.interpolation_error, "cost": asdict(found.cost)}
+            **errors_json(found), "interpolation_error": found.interpolation_error,
+            "understood": None if series is None else series.understood,
+            **{f"residual_{name.removesuffix('_force')}": _residual_json(differences.get(name)) for name in FORCES},
+            "cost": asdict(found.cost)}
 
 
-def _show(found: Driven) -> None:
+def _residual_json(found: ForceDifference | None) -> dict[str, Any] | None:
+    """How far a computed force is from the measured one; None where none was measured."""
+    if found is None:
+        return None
+    return {name: value for name, value in asdict(found).items() if name not in ("force", "word")}
+
+
+def _show(found: Driven, differences: dict[str, ForceDifference]) -> None:
     """A driven motion in a few lines."""
     print(f"{found.scene.name}: {found.signal.words}; {status_in_words(found.status)}")
     print(forces_in_words(found))
     print(errors_in_words(found))
+    for difference in differences.values():
+        print(difference.sentence)

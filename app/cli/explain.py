@@ -18,13 +18,13 @@ def explanation(scene: Scene, method: str | None, samples: int) -> str:
     setting = method_for(scene.accuracy, scene.cuts_tension) if method is None else setting_of(method, scene.accuracy)
     chosen = METHODS[setting.method]
     why = "asked for by --method" if method else f"chosen for an accuracy of {scene.accuracy:g}"
-    fineness = (f"tolerance per step {setting.tolerance:.1e}" if chosen.error_control
+    resolution = (f"tolerance per step {setting.tolerance:.1e}" if chosen.error_control
                 else f"{setting.steps_per_period(scaled, samples)} steps a period")
     return "\n".join((
         f"compiled in: {', '.join(present)}",
         f"absent, with no code and no array: {', '.join(absent) if absent else 'nothing'}",
         f"structure: {structure(scene)}",
-        f"method: {chosen.title}, {why}; first {fineness}, then finer until two computations agree to that accuracy",
+        f"method: {chosen.title}, {why}; first {resolution}, then finer until two computations agree to that accuracy",
         f"restrictions: {chosen.restrictions}; reference: {chosen.reference}",
         f"machine: {machine()}",
     ))

@@ -18,7 +18,7 @@ from granchain_core.run.budget import BUDGET
 from .common import chosen_scene, in_background, show_json, show_percent, unbroken
 from .compiling import compiling_beside
 from .data_options import add_answers
-from .driven import check_no_gap, do_driven
+from .driven import PERIODIC, check_no_gap, do_driven
 from .forces import errors_in_words, errors_json, forces_in_words, forces_json, scene_json, status_in_words, warn
 from .keeping import add_resume, finished, keeping
 from .options import add_result, number, whole
@@ -29,9 +29,10 @@ from .picture import check_picture, write_picture
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `run`."""
     add_result(parser)
-    parser.add_argument("--periods", type=whole, default=100, metavar="P", help="periods run and discarded")
-    parser.add_argument("--record", type=whole, default=20, metavar="R", help="periods recorded")
-    parser.add_argument("--samples", type=whole, default=96, metavar="S", help="samples a period")
+    parser.add_argument("--periods", type=whole, default=PERIODIC["periods"], metavar="P",
+                        help="periods run and discarded")
+    parser.add_argument("--record", type=whole, default=PERIODIC["record"], metavar="R", help="periods recorded")
+    parser.add_argument("--samples", type=whole, default=PERIODIC["samples"], metavar="S", help="samples a period")
     parser.add_argument("--method", metavar="M", help="integration method instead of the one accuracy chooses")
     parser.add_argument("--budget", type=number, default=BUDGET, metavar="SECONDS",
                         help="refuse what would take longer")
@@ -39,7 +40,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--drive", metavar="SIGNAL",
                         help="another motion of the driver from the start to its end: "
                              f"{', '.join(f'{name}={one.form}' for name, one in FORMULAS.items())} with A0, or a FILE "
-                             "of its velocity or displacement over time")
+                             "of its velocity or displacement over time; measured forces in the file are compared "
+                             "with the computed ones")
     parser.add_argument("--gap", default="refuse", metavar="refuse|zero|interpolate",
                         help="what to do where samples of --drive FILE are missing")
     add_answers(parser)

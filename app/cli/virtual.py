@@ -11,7 +11,7 @@ import numpy as np
 
 from granchain_core import BadInput
 
-from .common import chosen_scene, in_background
+from .common import check_points, chosen_scene, in_background, show_percent
 from .options import add_scene, number, whole
 
 
@@ -39,9 +39,12 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def do(arguments: argparse.Namespace) -> None:
     """Compute the motion and write what the sensors make of it."""
+    from granchain_core.store import check_writable
     from granchain_core.virtual_experiment import Sensors, virtual_curve_csv, virtual_series_csv
 
     chosen = chosen_scene(arguments)
+    if arguments.out is not None:
+        check_writable(arguments.out)
     if arguments.kind not in ("series", "curve"):
         raise BadInput(f"--kind {arguments.kind[:40]} is neither series nor curve.")
     sensors = Sensors(arguments.noise, arguments.velocity_noise, arguments.bandwidth, arguments.tip_mass,
@@ -54,12 +57,15 @@ def do(arguments: argparse.Namespace) -> None:
     else:
         if arguments.low is None or arguments.high is None:
             raise BadInput("A curve needs --from and --to, the first and the last frequency in Hz.")
-        if not 1 <= arguments.points <= 1000:
-            raise BadInput(f"--points {arguments.points} is outside 1 to 1000.")
-        frequencies = np.linspace(arguments.low, arguments.high, arguments.points)
+        check_points(arguments.points, 1, 1000)
+        low, high = chosen.evolve(f=arguments.low).f, chosen.evolve(f=arguments.high).f
+        if low > high:
+            raise BadInput(f"--from {low:g} is above --to {high:g}; exchange them.")
+        frequencies = np.linspace(low, high, arguments.points)
+        progress = _progress if sys.stderr.isatty() else None
         text = in_background(lambda stop: virtual_curve_csv(
             chosen, frequencies, sensors, arguments.repeats, arguments.scatter, arguments.periods, arguments.seed,
-            stop))
+            stop, progress), reports=True)
     if arguments.out is None:
         sys.stdout.write(text)
         return
@@ -68,3 +74,8 @@ def do(arguments: argparse.Namespace) -> None:
     except OSError as problem:
         raise BadInput(f"Cannot write {arguments.out[:200]}: {problem.strerror or problem}.") from None
     print(f"{arguments.out}: {text.count(chr(10)) - 3} rows of a virtual experiment with {chosen.name}")
+
+
+def _progress(done: int, count: int) -> None:
+    """Show how many of the records there are."""
+    show_percent(done / count)

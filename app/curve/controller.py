@@ -12,7 +12,7 @@ from granchain_core.precompile.pieces import CURVE_KERNELS
 from granchain_core.steady.curve.order import CURVE_STARTS
 from granchain_core.steady.curve.resonance_curve import draft_curve
 
-from ..plots.curve import WORDS
+from ..plots.curve import SWEEPS
 from ..serve.compiling.compiler import COMPILER, PICTURE_PIECES, Requests
 from ..serve.computing.latest_wins import LatestWins
 from ..serve.computing.turns import TurnFlag
@@ -203,7 +203,7 @@ class CurveController:
         """Name, state and detail of the curve of every start, as it is at this moment."""
         found = []
         for name in CURVE_STARTS:
-            title = f"resonance curve, {WORDS[name]}"
+            title = f"resonance curve, {SWEEPS[name].words}"
             if not self._wanted[name]:
                 found.append((title, OFF, "not selected"))
             elif self._complete_for.get(name) is not None and self._complete_for.get(name) == self._begun_for:

@@ -8,14 +8,12 @@ from typing import Any
 from granchain_core.steady.curve.resonance import STRONG_FRACTION
 
 from ..parts.toolkit.component import Component, text
-from ..plots.curve import LABELS
+from ..plots.curve import SWEEPS
 from ..plots.regimes import REGIME_MARKS, SYMBOLS
 from ..scripts import module
 
-_MEANINGS = {"rest": "Every frequency started from rest.", "up": "Frequency rising, the state carried along.",
-             "down": "Frequency falling, the state carried along."}
 #: What may be shown: name, label and meaning.
-CHOICES = (*((name, label, _MEANINGS[name]) for name, label in LABELS.items()),
+CHOICES = (*((name, style.label, f"{style.meaning.capitalize()}.") for name, style in SWEEPS.items()),
            ("features", "paper’s features ┊", "Frequencies the paper states for its rig; it gives no forces."))
 #: Every mark that a curve may have, for the key and for the tab “regimes”.
 KINDS = [{"name": name, "symbol": SYMBOLS[marker], "colour": colour}

@@ -16,7 +16,7 @@ from ..format import prefixed
 from ..frames import round_up
 from ..parts.figures.figure_style import bare_axis, bare_plot
 from ..plots.axes import knob_scale
-from ..plots.curve import DASHES, curve_columns, curve_line, curve_marks, curve_tooltips
+from ..plots.curve import SWEEPS, curve_columns, curve_line, curve_marks, curve_tooltips
 from ..plots.measured import COLUMNS, TOOLTIPS, measured_columns
 from ..plots.theme import GREY, OUTPUT_COLOUR
 from ..plots.themed import themed
@@ -32,8 +32,8 @@ class CurveFigure:
     """
 
     def __init__(self, choose: Callable[[object], None]) -> None:
-        self._points: dict[str, list[CurvePoint]] = {name: [] for name in DASHES}
-        self._grey_points: dict[str, list[CurvePoint]] = {name: [] for name in DASHES}
+        self._points: dict[str, list[CurvePoint]] = {name: [] for name in SWEEPS}
+        self._grey_points: dict[str, list[CurvePoint]] = {name: [] for name in SWEEPS}
         self._scale = (1.0, "")
         self._whole = False
         #: Whether a curve from rest is being computed or will be, without being asked for.
@@ -45,8 +45,8 @@ class CurveFigure:
         self._measured = ColumnDataSource({name: [] for name in COLUMNS})
         self._features = ColumnDataSource({name: [] for name in ("frequency", "top", "label", "source")})
         self._measurement: Measured | None = None
-        self._renderers: dict[str, list[GlyphRenderer]] = {name: [] for name in DASHES}
-        self._visible = set(DASHES)
+        self._renderers: dict[str, list[GlyphRenderer]] = {name: [] for name in SWEEPS}
+        self._visible = set(SWEEPS)
         self.figure = self._frame(choose)
         self._pinned = PinnedCurves(self.figure)
         self._grey_sources: dict[str, ColumnDataSource] = {}
@@ -69,8 +69,9 @@ class CurveFigure:
 
     def _line(self, start: str, grey: bool) -> ColumnDataSource:
         source = ColumnDataSource(curve_columns([], 1.0))
+        style, last = SWEEPS[start], {"line_color": GREY, "line_width": 1.8, "line_alpha": 0.45} if grey else {}
         renderers = [self.figure.add_glyph(source, Line(
-            **curve_line(start), line_color=GREY if grey else OUTPUT_COLOUR, line_alpha=0.45 if grey else 0.9))]
+            **{**curve_line(start), "line_color": style.colour, **last}), level=style.level)]
         if not grey:
             marks = self.figure.add_glyph(source, Scatter(**curve_marks(start)))
             renderers.append(marks)
@@ -126,7 +127,7 @@ class CurveFigure:
     def begin(self, starts: list[str]) -> None:
         """Make the present curves of these starts grey, because new ones will come."""
         self._whole = self._whole and "rest" not in starts
-        for name in DASHES:
+        for name in SWEEPS:
             if name in starts:
                 self._grey_points[name] = self._points[name] or self._grey_points[name]
                 self._points[name] = []
@@ -195,7 +196,7 @@ class CurveFigure:
     def clear(self) -> None:
         """Remove all curves, because another scene was opened."""
         self._whole = False
-        for name in DASHES:
+        for name in SWEEPS:
             self._points[name], self._grey_points[name] = [], []
             self._draw(name)
             self._draw_grey(name)
@@ -253,7 +254,7 @@ class CurveFigure:
         scale = prefixed(high)
         if scale != self._scale:
             self._scale = scale
-            for name in DASHES:
+            for name in SWEEPS:
                 self._draw(name)
                 self._draw_grey(name)
             self.mark_motion(*self._shown)
@@ -280,4 +281,5 @@ class CurveFigure:
                 sources[start] = self._line(start, grey=sources is self._grey_sources)
         if start in sources:
             ordered = sorted(points, key=lambda point: point.frequency)
-            set_properties(sources[start], data=curve_columns(ordered, self._scale[0]))
+            larger = SWEEPS[start].larger // 2  # the figure is small, and its points are close to each other
+            set_properties(sources[start], data=curve_columns(ordered, self._scale[0], larger))

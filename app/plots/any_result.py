@@ -52,7 +52,7 @@ from .curve import curve
 from .diagram import diagram
 from .fit import fit
 from .lyapunov import lyapunov
-from .motion import motion
+from .motion import driven, motion
 from .multipliers import multipliers
 from .observation import observation
 from .paper import paper_figure, size_of
@@ -117,7 +117,7 @@ def _bead(name: str, found: Run | Settled, theme: Theme, bead: int | None = None
 
 #: The function that draws each class of results.
 DRAWERS: dict[type, Callable[..., LayoutDOM]] = {
-    Run: motion, Settled: _settled, Driven: motion, Pulse: _pulse, Curve: _curve, Orbit: multipliers, Branch: _branch,
+    Run: motion, Settled: _settled, Driven: driven, Pulse: _pulse, Curve: _curve, Orbit: multipliers, Branch: _branch,
     ParameterMap: both_maps, Observation: observation, WorkPrecision: measured_accuracy, Fit: fit, Spectrum: spectrum,
     Transfer: transfer, LyapunovSpectrum: lyapunov, RotationNumber: rotation, StrobeDiagram: _strobes,
     Basins: basins, Attractors: attractors,

@@ -22,7 +22,8 @@ from .themed import apply_theme, empty_figure, themed
 
 SPECIAL = {"fold": "fold", "period_doubling": "period doubling", "neimark_sacker": "Neimark–Sacker (torus)",
            "grazing": "grazing"}
-_STYLES: dict[str, dict[str, Any]] = {
+#: Marks of special points, on branches and on the bifurcation curves of a map.
+SPECIAL_STYLES: dict[str, dict[str, Any]] = {
     "fold": {"marker": "inverted_triangle", "size": 14, "colour": AMBER, "filled": True},
     "period_doubling": {"marker": "hex", "size": 14, "colour": VIOLET, "filled": True},
     "neimark_sacker": {"marker": "circle", "size": 12, "colour": TEAL, "filled": False},
@@ -31,7 +32,7 @@ _STYLES: dict[str, dict[str, Any]] = {
 #: What begins at a bifurcation that is sub- or supercritical.
 _BORN = {"period_doubling": "an orbit of twice the period", "neimark_sacker": "a closed curve of the map"}
 #: Width and dash.
-_LINES = {"stable": (2.6, "solid"), "unstable": (1.8, [6, 4])}
+LINES = {"stable": (2.6, "solid"), "unstable": (1.8, [6, 4])}
 _ORBIT = ("x", "y", "tooltip", "elastic", "output", "input", "period", "motion", "residual", "stable", "target", "arm",
           "place")
 _MARK = ("x", "y", "tooltip", "criticality", "place")
@@ -57,7 +58,7 @@ class BranchRows:
         self._force = None if largest is None else force_scale(_TITLE, largest)
         self._knob: Scale | None = None
         self._last: dict[int, tuple[str, int]] = {}
-        self._pieces = dict.fromkeys(_LINES, 0)
+        self._pieces = dict.fromkeys(LINES, 0)
         self._models: dict[str, dict[str, Any]] = {}
         self._curve_shown = False
         self.orbits: dict[int, list[BranchPoint]] = {}
@@ -142,7 +143,7 @@ def branches(found: Sequence[Branch], theme: Theme, now: float | None = None, co
     one row for each orbit, the kinds of special points one for each point; `BranchRows` says what one more orbit adds.
     """
     rows = BranchRows(max((p.max_output_force_elastic for one in found for p in one.points), default=1e-3))
-    data: Columns = {**{name: {"x": [], "y": []} for name in (_CURVE, _CURVE_LINE, *_LINES)},
+    data: Columns = {**{name: {"x": [], "y": []} for name in (_CURVE, _CURVE_LINE, *LINES)},
                      "orbits": _columns(_ORBIT, []), **{kind: _columns(_MARK, []) for kind in SPECIAL}}
     models: dict[str, Any] = {}
     number = 0
@@ -183,7 +184,7 @@ def _drawn(data: Columns, theme: Theme, compact: bool) -> figure:
     grey = [plot.multi_line("x", "y", source=sources[_CURVE_LINE], line_width=1.2, line_color=GREY, line_alpha=0.8),
             plot.scatter("x", "y", source=sources[_CURVE], size=2.5, line_color=None, fill_color=GREY, fill_alpha=0.8)]
     items = [LegendItem(name=f"legend of {_CURVE}", label="resonance curve, from rest", renderers=grey, visible=False)]
-    for name, (width, dash) in _LINES.items():
+    for name, (width, dash) in LINES.items():
         line = plot.multi_line("x", "y", source=sources[name], line_dash=dash, line_join="round")
         items.append(LegendItem(label=name, renderers=[themed(line, line_color="output", line_width=width)]))
     dots = plot.scatter("x", "y", source=sources["orbits"], size=1 if compact else 4.5, line_color=None)
@@ -209,7 +210,7 @@ def _drawn(data: Columns, theme: Theme, compact: bool) -> figure:
 def _marks(plot: figure, sources: dict[str, ColumnDataSource], compact: bool) -> dict[str, Any]:
     """Special points; grazings are too many for a small figure."""
     made = {}
-    for kind, style in _STYLES.items():
+    for kind, style in SPECIAL_STYLES.items():
         one = plot.scatter("x", "y", source=sources[kind], marker=style["marker"], line_color=style["colour"],
                            fill_color=style["colour"], size=0.75 * style["size"] if compact else style["size"],
                            visible=not (compact and kind == "grazing"))

@@ -5,9 +5,10 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
-from bokeh.models import ColumnDataSource, DataRange1d, HoverTool
+from bokeh.models import ColumnDataSource, DataRange1d, HoverTool, Legend, LegendItem
 from bokeh.plotting import figure
 
 from granchain_core import Curve, CurvePoint
@@ -21,18 +22,67 @@ from .regimes import REGIME_MARKS, regime_key
 from .theme import Theme
 from .themed import apply_theme, empty_figure, themed
 
-#: Dashes of the line by the start of a sweep.
-DASHES: dict[str, list[int]] = {"rest": [], "up": [8, 4], "down": [2, 3]}
-#: The same in words.
-WORDS = {"rest": "from rest", "up": "sweep up", "down": "sweep down"}
-#: The same for a choice beside the curve, with a piece of the line.
-LABELS = {"rest": "from rest ─", "up": "sweep up ╌", "down": "sweep down ┈○"}
-#: What the dashes mean, in a sentence.
-KEY = "Solid line: from rest; dashed: frequency rising; dotted, with hollow marks: frequency falling."
-#: Filling of the marks by the start of a curve: a column, or none, so that one sees where the two sweeps differ.
-FILLS: dict[str, str | None] = {"rest": "colour", "up": "colour", "down": None}
-#: Width of the line through a curve [px].
-LINE_WIDTH = 1.8
+
+@dataclass(frozen=True)
+class SweepStyle:
+    """How a curve is drawn by its start: no dashes, which on branches mean unstable.
+
+    Attributes
+    ----------
+    words : str
+        The start in words.
+    label : str
+        The same for a choice beside the curve, with a piece of the line.
+    role : str
+        The role in a theme of the line's colour, which is the same in every theme.
+    colour_word : str
+        That colour in a word.
+    width, alpha : float
+        Width [px] and opacity of the line.
+    level : str
+        Bokeh's level of the line: the broad line lies below the others, so that all are seen where they coincide.
+    filled : bool
+        Whether the marks are filled.
+    larger : int
+        By how much the marks are larger [px]: hollow ones surround the filled ones of another curve.
+    meaning : str
+        How the points were computed.
+    """
+
+    words: str
+    label: str
+    role: str
+    colour_word: str
+    width: float
+    alpha: float
+    level: str
+    filled: bool
+    larger: int
+    meaning: str
+
+    @property
+    def colour(self) -> str:
+        """The line's colour."""
+        return str(getattr(Theme, self.role))
+
+    @property
+    def line_words(self) -> str:
+        """The line and the marks in words."""
+        width = "broad " if self.width > SWEEPS["rest"].width else "thin " if self.width < SWEEPS["rest"].width else ""
+        return f"{width}{self.colour_word} line{'' if self.filled else ' with hollow marks'}"
+
+
+#: The style of a curve by its start.
+SWEEPS = {
+    "rest": SweepStyle("from rest", "from rest ─", "output", "green", 2.2, 0.9, "glyph", True, 0,
+                       "every frequency started from rest"),
+    "up": SweepStyle("sweep up", "sweep up ━", "naive", "amber", 7.0, 0.65, "underlay", True, 0,
+                     "frequency rising, the state carried along"),
+    "down": SweepStyle("sweep down", "sweep down ─○", "second", "violet", 1.4, 0.9, "glyph", False, 6,
+                       "frequency falling, the state carried along"),
+}
+#: What the lines mean, in a sentence.
+KEY = "; ".join(f"{style.line_words}: {style.words}" for style in SWEEPS.values()).capitalize() + "."
 #: A tooltip's lines for the columns of `forces_in_words`.
 FORCES = [("largest output force", "@total"), ("its elastic part", "@elastic"), ("largest input force", "@input")]
 
@@ -50,32 +100,43 @@ def curve(found: Sequence[Curve], theme: Theme, elastic: bool = False, measured:
         largest = max(largest, float(measured.bars[1].max()))
     scale = force_scale("largest elastic output force" if elastic else "largest output force", largest)
     plot = empty_figure(name="curve", min_border=4, y_range=DataRange1d(start=0, range_padding=0.06))
+    lines: dict[str, LegendItem] = {}
+    regimes: dict[str, LegendItem] = {}
     for one in found:
         points = [p for p in one.points if math.isfinite(p.max_output_force)]
-        source = ColumnDataSource(name=one.start, data=curve_columns(points, scale.factor, 3, drawn))
-        line = plot.line(**curve_line(one.start), source=source)
-        marks = plot.scatter(**curve_marks(one.start), source=source, legend_group="regime")
-        themed(line, line_color="output", line_width=LINE_WIDTH)
+        style, columns = SWEEPS[one.start], curve_columns(points, scale.factor, 3 + SWEEPS[one.start].larger, drawn)
+        source = ColumnDataSource(name=one.start, data=columns)
+        line = plot.line(**curve_line(one.start), source=source, level=style.level)
+        marks = plot.scatter(**curve_marks(one.start), source=source)
+        themed(line, line_color=style.role, line_width=style.width)
         plot.add_tools(HoverTool(renderers=[marks], tooltips=curve_tooltips(one.start)))
+        lines.setdefault(one.start, LegendItem(label=f"{style.words}: {style.line_words}", renderers=[line]))
+        for row, name in enumerate(columns["regime"]):
+            regimes.setdefault(name, LegendItem(label=name, renderers=[marks], index=row))
     if measured is not None:
         measured_over(plot, measured, scale.factor)
     plot.xaxis.axis_label, plot.yaxis.axis_label = knob_scale("f").label, scale.label
-    for legend in plot.legend:
-        legend.update(orientation="horizontal", padding=0, margin=2, ncols=4)
-    if plot.legend:
-        plot.add_layout(plot.legend[0], "below")
+    shown = [regimes[name] for name in REGIME_MARKS if name in regimes]
+    items = [*(lines[start] for start in SWEEPS if start in lines), *(plot.legend[0].items if plot.legend else ())]
+    for legend in list(plot.legend):
+        plot.center.remove(legend)
+    for name, some in (("lines", items), ("regimes", shown)):
+        if some:
+            plot.add_layout(Legend(name=name, items=some, orientation="horizontal", location="left", padding=0,
+                                   margin=2, spacing=14, ncols=len(some) if len(some) < 7 else 4), "below")
     return apply_theme(plot, theme)
 
 
 def curve_line(start: str) -> dict[str, Any]:
     """The properties of the line through a curve, here and on the page."""
-    return {"x": "frequency", "y": "force", "line_dash": DASHES[start] or "solid", "line_width": LINE_WIDTH}
+    style = SWEEPS[start]
+    return {"x": "frequency", "y": "force", "line_width": style.width, "line_alpha": style.alpha}
 
 
 def curve_marks(start: str) -> dict[str, Any]:
     """The properties of a curve's marks, here and on the page."""
     return {"x": "frequency", "y": "force", "marker": "marker", "size": "size", "line_color": "colour",
-            "line_width": 1.5, "fill_color": FILLS[start]}
+            "line_width": 1.5, "fill_color": "colour" if SWEEPS[start].filled else None}
 
 
 def line_pieces(points: Sequence[CurvePoint]) -> list[list[int]]:
@@ -118,7 +179,7 @@ def curve_columns(points: Sequence[CurvePoint], factor: float, larger: int = 0,
 
 def curve_tooltips(start: str) -> list[tuple[str, str]]:
     """The lines of a tooltip over `curve_columns`."""
-    return [("drive frequency", "@frequency{0.0} Hz"), *FORCES, ("motion", "@sentence"), ("start", WORDS[start])]
+    return [("drive frequency", "@frequency{0.0} Hz"), *FORCES, ("motion", "@sentence"), ("start", SWEEPS[start].words)]
 
 
 def forces_in_words(points: Sequence[CurvePoint]) -> dict[str, list[str]]:

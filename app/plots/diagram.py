@@ -14,6 +14,7 @@ from bokeh.models import (
     FixedTicker,
     GroupFilter,
     HoverTool,
+    IndexFilter,
     Legend,
     LegendItem,
     LogColorMapper,
@@ -32,6 +33,7 @@ from granchain_core.results.regime import exponent_words
 
 from ..format import figures_of, in_words, short_error
 from .axes import Scale, knob_scale
+from .branches import SPECIAL, SPECIAL_STYLES
 from .regimes import REGIME_MARKS, regime_key
 from .theme import BROWN, GREY, MARK_COLOUR, MARK_EDGE, Theme
 from .themed import apply_theme, empty_figure, themed
@@ -40,7 +42,8 @@ from .themed import apply_theme, empty_figure, themed
 CATEGORIES = (*REGIME_MARKS, "failed")
 COLOURS = [REGIME_MARKS[name][1] if name in REGIME_MARKS else BROWN for name in CATEGORIES]
 _HATCHES = (" ", "/", "-", "|", "+", "\\", "x", ".", "o")
-_DASHES = {"fold": "solid", "period_doubling": "dashed", "neimark_sacker": "dotted"}
+#: Marks on a bifurcation curve: at most so many, and their width [px].
+_MOST_MARKS, _MARK_SIZE = 9, 11
 #: Most cells that a browser shows smoothly.
 MOST_DRAWN_CELLS = 40_000
 _CELL = ("left", "right", "bottom", "top", "x", "y", "force", "regime", "tooltip", "spacing",
@@ -116,17 +119,29 @@ def shown_models(shown: str) -> dict[str, dict[str, Any]]:
 
 
 def _draw_curves(plot: figure, grid: Grid, curves: Sequence[BifurcationCurve]) -> None:
-    """Bifurcation curves, black on white, so that they are seen on every colour; the dash says of which kind."""
+    """Bifurcation curves, black on white, so that they are seen on every colour.
+
+    The marks on them say of which kind they are; they are those of the special points of a branch.
+    """
     across, up = _scales(grid)
+    kinds: dict[str, LegendItem] = {}
     for curve in curves:
         source = ColumnDataSource({
             "x": [point.x / across.factor for point in curve.points],
             "y": [point.y / up.factor for point in curve.points],
             "tooltip": [curve.sentence(grid.x.knob, grid.y.knob)] * len(curve.points)}, name="bifurcation curve")
         plot.line("x", "y", source=source, line_color=MARK_EDGE, line_width=5)
-        line = plot.line("x", "y", source=source, line_color=MARK_COLOUR, line_width=2, line_dash=_DASHES[curve.kind])
-        ends = plot.scatter("x", "y", source=source, size=5, fill_color=MARK_COLOUR, line_color=MARK_EDGE)
-        plot.add_tools(HoverTool(renderers=[line, ends], tooltips=[("", "@tooltip")], line_policy="nearest"))
+        line = plot.line("x", "y", source=source, line_color=MARK_COLOUR, line_width=2)
+        places = np.unique(np.linspace(0, len(curve.points) - 1, _MOST_MARKS).round().astype(int))
+        style, marked = SPECIAL_STYLES[curve.kind], CDSView(filter=IndexFilter(places.tolist()))
+        marks = plot.scatter("x", "y", source=source, view=marked, marker=style["marker"], size=_MARK_SIZE,
+                             fill_color=style["colour"] if style["filled"] else MARK_EDGE,
+                             line_color=MARK_COLOUR, line_width=1.5)
+        kinds.setdefault(curve.kind, LegendItem(label=SPECIAL[curve.kind], renderers=[line, marks]))
+        plot.add_tools(HoverTool(renderers=[line, marks], tooltips=[("", "@tooltip")], line_policy="nearest"))
+    if kinds:
+        plot.add_layout(Legend(name="bifurcations", items=list(kinds.values()), orientation="horizontal", padding=0,
+                               margin=2), "below")
 
 
 def _marks(plot: figure, now: dict[str, Any]) -> None:

@@ -26,7 +26,7 @@ class LineStyle:
 
     @property
     def colour(self) -> str:
-        """The line's colour, which is the same in every theme."""
+        """The line's colour, which is the same in every theme (not of the role `ink`)."""
         return str(getattr(Theme, self.role))
 
     def label(self, unit: str, compact: bool = False) -> str:
@@ -38,6 +38,8 @@ DRIVE = LineStyle("drive u₀", "drive", "drive", 2.0)
 INPUT = LineStyle("input force", "in", "input", 2.5)
 ELASTIC = LineStyle("elastic output force", "elastic", "output", 2.0, (5, 4))
 OUTPUT = LineStyle("output force", "out", "output", 2.5)
+#: A measured force or displacement over the computed one.
+MEASURED = LineStyle("measured", "measured", "ink", 1.4)
 
 
 def columns(time: np.ndarray, **lines: tuple[np.ndarray, float]) -> dict[str, np.ndarray]:

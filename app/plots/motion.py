@@ -25,12 +25,13 @@ from bokeh.models import (
 from bokeh.plotting import figure
 
 from granchain_core import Driven, Run
+from granchain_core.experiment import Series, compared_forces
 
 from ..format import prefixed
 from .energies import bead_interval, energy_bar, energy_hover, energy_mapper
-from .force_lines import DRIVE, ELASTIC, INPUT, OUTPUT, LineStyle, columns, force_columns
+from .force_lines import DRIVE, ELASTIC, INPUT, MEASURED, OUTPUT, LineStyle, columns, force_columns
 from .theme import Theme
-from .themed import apply_theme, empty_figure, themed
+from .themed import apply_theme, empty_figure, follow_theme, themed
 
 #: Most rows of the energy map, and most points of a line.
 _MOST_ROWS = 2000
@@ -65,12 +66,41 @@ class Units:
 
 def motion(run: Recorded, theme: Theme) -> LayoutDOM:
     """A recorded motion, arranged as on the page; a long one is thinned out evenly."""
+    return row(_panels(run, theme), sizing_mode="stretch_both")
+
+
+def driven(found: Driven, theme: Theme, measured: Series | None = None) -> LayoutDOM:
+    """A driven motion with the measured forces of its series over the computed ones, as thin lines."""
+    panels = _panels(found, theme)
+    if measured is None:
+        return row(panels, sizing_mode="stretch_both")
+    differences, units = compared_forces(measured, found), Units.of(found)
+    for name, plot in (("input_force", panels[0]), ("output_force", panels[2])):
+        if name in differences:
+            _measured_over(plot, measured, getattr(measured, name), units)
+            words = f"thin: {measured.word}"
+            plot.title.text = f"{plot.title.text}\n{words}" if plot.title.text else words
+            follow_theme(plot, theme)
+    return row(panels, sizing_mode="stretch_both")
+
+
+def _panels(run: Recorded, theme: Theme) -> list[figure]:
+    """The drive with the input force, the energies, and the output force."""
     units, index = Units.of(run), np.arange(0, len(run.time), max(1, -(-len(run.time) // _MOST_ROWS)))
     seconds = run.time[index]
     time = Range1d(float(seconds[-1]) / units.time[0], float(seconds[0]) / units.time[0])
-    panels = [drive_panel(run, index, seconds, time, units, theme, jumps=True),
-              energy_panel(run, index, time, units, theme), _output_panel(run, index, time, units, theme)]
-    return row(panels, sizing_mode="stretch_both")
+    return [drive_panel(run, index, seconds, time, units, theme, jumps=True),
+            energy_panel(run, index, time, units, theme), _output_panel(run, index, time, units, theme)]
+
+
+def _measured_over(plot: figure, measured: Series, force: np.ndarray, units: Units) -> None:
+    """Draw a measured force in front of a computed one, and make room for it."""
+    (second, _), (newton, _) = units.time, units.force
+    data = columns(measured.time / second, force=(force, newton))
+    _line(plot, MEASURED, ColumnDataSource(data, name=f"{measured.word} {plot.name}"), level="overlay")
+    low, high, axis = float(force.min()) / newton, float(force.max()) / newton, plot.x_range
+    margin = 0.05 * max(high - low, axis.end - axis.start)
+    axis.update(start=min(axis.start, low - margin), end=max(axis.end, high + margin))
 
 
 def drive_panel(run: Recorded, index: np.ndarray, seconds: np.ndarray, time: Range1d, units: Units, theme: Theme,

@@ -10,6 +10,7 @@ from granchain_core.observe import Observation
 
 from ..format import prefixed
 from .axes import force_scale
+from .force_lines import INPUT, MEASURED, OUTPUT
 from .theme import Theme
 from .themed import apply_theme, empty_figure, themed
 
@@ -22,14 +23,13 @@ def observation(found: Observation, theme: Theme) -> figure:
     second, letter = prefixed(float(np.abs(found.time).max()))
     plot = empty_figure(name="observation", min_border=4)
     columns = {"time": found.time / second, "input": forces[0] / scale.factor, "output": forces[1] / scale.factor}
-    lines: list[tuple[str, str, str, float, list[int]]] = [
-        ("input", "input force, given", "input", 1.8, []), ("output", "output force, computed", "output", 2.4, [])]
+    lines = [("input", "input force, given", INPUT.role, 1.8), ("output", "output force, computed", OUTPUT.role, 2.4)]
     if measured is not None:
         columns["measured"] = measured / scale.factor
-        lines.append(("measured", "output force, measured", "ink", 1.8, [5, 4]))
+        lines.append(("measured", "output force, measured", MEASURED.role, MEASURED.width))
     source = ColumnDataSource(columns, name="forces")
-    for name, words, role, width, dash in lines:
-        line = plot.line("time", name, source=source, line_dash=dash or "solid", legend_label=words)
+    for name, words, role, width in lines:
+        line = plot.line("time", name, source=source, legend_label=words)
         themed(line, line_color=role, line_width=width)
         plot.add_tools(HoverTool(renderers=[line], mode="vline", tooltips=[
             ("time", f"@time{{0.0000}} {letter}s"), (words, f"@{name}{{0.0000}} {scale.unit}")]))

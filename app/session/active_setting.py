@@ -10,7 +10,7 @@ import numpy as np
 from granchain_core import Scene, Settled
 from granchain_core.accuracy import Row
 from granchain_core.accuracy.compared_methods import label
-from granchain_core.integrate import METHODS, Setting, method_for
+from granchain_core.integrate import METHODS, MethodSetting, method_for
 from granchain_core.run.live import LIVE_SETTING
 from granchain_core.steady.settling.refine_orbit import orbit_setting
 
@@ -25,18 +25,18 @@ class PlacedSetting:
     wall_s: float
 
 
-def shown_setting(scene: Scene, settled: Settled | None, live: bool) -> Setting:
+def shown_setting(scene: Scene, settled: Settled | None, live: bool) -> MethodSetting:
     """The setting of the last computation of the picture, by the rule of steady/settling/refine_orbit.py."""
     if live:
         return LIVE_SETTING
     if settled is None:
         return method_for(scene.accuracy, scene.cuts_tension)
     if settled.preview or settled.regime.name != "periodic":
-        return Setting(settled.run.cost.method)
+        return MethodSetting(settled.run.cost.method)
     return orbit_setting(scene, scene.accuracy, settled.regime.assumed_contraction).finer()
 
 
-def locate(setting: Setting, rows: Sequence[Row]) -> PlacedSetting | None:
+def locate(setting: MethodSetting, rows: Sequence[Row]) -> PlacedSetting | None:
     """The place of `setting` on the measured line of its method; None until the line has two points."""
     value = setting.tolerance if METHODS[setting.method].error_control else float(setting.refine)
     known = sorted((row.value, row.error, row.wall_s) for row in rows

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from ..integrate import METHODS, Setting
+from ..integrate import METHODS, MethodSetting
 from .scipy_methods import SOLVERS
 
 #: Settings of fixed-step methods: factors on the fixed-step method's number of steps.
@@ -37,7 +37,7 @@ class MeasuredSetting:
     method: str
     label: str
     value: float
-    setting: Setting | None
+    setting: MethodSetting | None
 
 
 def compared_methods() -> dict[str, MeasuredMethod]:
@@ -49,7 +49,7 @@ def compared_methods() -> dict[str, MeasuredMethod]:
     return {method.name: method for method in (*own, *others)}
 
 
-def label(setting: Setting) -> str:
+def label(setting: MethodSetting) -> str:
     """A setting in words."""
     if METHODS[setting.method].error_control:
         return f"tolerance {setting.tolerance:.2g}"
@@ -61,8 +61,8 @@ def measured_settings() -> Iterator[MeasuredSetting]:
     for method in METHODS.values():
         values = _TOLERANCES if method.error_control else _REFINES
         for value in values:
-            setting = (Setting(method.name, tolerance=value) if method.error_control
-                       else Setting(method.name, refine=int(value)))
+            setting = (MethodSetting(method.name, tolerance=value) if method.error_control
+                       else MethodSetting(method.name, refine=int(value)))
             yield MeasuredSetting(method.name, label(setting), float(value), setting)
     for solver in SOLVERS:
         for tolerance in _SCIPY_TOLERANCES:

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..errors import Cancelled
 from ..execution.stop import Stop
-from ..integrate import Engine, Setting
+from ..integrate import Engine, MethodSetting
 from ..integrate.methods import RK4_SPLIT
 from ..scene import Scene
 
@@ -91,7 +91,7 @@ class _Stepper:
     """A chain in motion that can be timed for a short while."""
 
     def __init__(self, variant: Variant, method: str, stop: Stop) -> None:
-        self._engine = Engine(variant.scene, Setting(method), 1, account=variant.account, stop=stop)
+        self._engine = Engine(variant.scene, MethodSetting(method), 1, account=variant.account, stop=stop)
         self._engine.periods(_BEFORE)
         self._periods = 1
         self._periods = max(1, int(_RUN / max(self._seconds(), 1e-7)))

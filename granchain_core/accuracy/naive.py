@@ -11,7 +11,7 @@ import numpy as np
 
 from ..errors import ComputationError
 from ..execution.stop import Stop
-from ..integrate import METHODS, Engine, Setting, dop853_setting
+from ..integrate import METHODS, Engine, MethodSetting, dop853_setting
 from ..integrate.scaling import ScaledChain
 from ..scene import Scene
 
@@ -28,7 +28,7 @@ _TRUE = dop853_setting(1e-11)
 
 
 @dataclass(frozen=True)
-class PlainSteps(Setting):
+class PlainSteps(MethodSetting):
     """A fixed-step setting by the number of steps in a drive period."""
 
     steps: int = 0
@@ -83,7 +83,7 @@ def lesson(scene: Scene, stop: Stop) -> Lesson:
     return found
 
 
-def output_force(scene: Scene, setting: Setting, stop: Stop) -> np.ndarray:
+def output_force(scene: Scene, setting: MethodSetting, stop: Stop) -> np.ndarray:
     """Total force on the wall from rest [N], both ends of every sample."""
     engine = Engine(scene, setting, _SAMPLES, stop=stop)
     return engine.record((_RUN if scene.is_driven else 1) * _SAMPLES).force[:, -1] * engine.scaled.scales.force

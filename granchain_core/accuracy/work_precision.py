@@ -15,7 +15,7 @@ import numpy as np
 
 from ..errors import BadInput, Cancelled, ComputationError
 from ..execution.stop import Stop
-from ..integrate import METHODS, Engine, Setting, dop853_setting
+from ..integrate import METHODS, Engine, MethodSetting, dop853_setting
 from ..integrate.stated import relative_difference
 from ..scene import Scene
 from .compared_methods import SCIPY, MeasuredSetting, measured_settings
@@ -138,7 +138,7 @@ def compile_methods(scene: Scene) -> None:
     """Compile every method's kernels for the scene's structure, or load them from the cache, by a short run."""
     for name in METHODS:
         with contextlib.suppress(BadInput):  # a method that does not know this chain has rows that say so
-            Engine(scene, Setting(name, tolerance=1e-3), 2).record(2)
+            Engine(scene, MethodSetting(name, tolerance=1e-3), 2).record(2)
 
 
 def _row(scene: Scene, choice: MeasuredSetting, exact: np.ndarray, stop: Stop) -> Row:
@@ -190,7 +190,7 @@ def _periods(scene: Scene) -> int:
     return PERIODS if scene.is_driven else 1
 
 
-def _ours(scene: Scene, setting: Setting, stop: Stop) -> Computed:
+def _ours(scene: Scene, setting: MethodSetting, stop: Stop) -> Computed:
     """The motion by one of granchain's methods, and the processor time that it took."""
     engine = Engine(scene, setting, SAMPLES, stop=stop)
     began = time.thread_time()

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..errors import BadInput, ComputationError
-from ..integrate import Engine, Setting, dop853_setting, following_setting
+from ..integrate import Engine, MethodSetting, dop853_setting, following_setting
 from ..integrate.scaling import scale_chain
 from ..orbits import Orbit, periodic_orbit
 from ..orbits.search import least_period_of
@@ -74,7 +74,7 @@ def found(result: SteadyState) -> Found:
                  else _section(result, _STATES_OF_SECTION[0]))
 
 
-def _setting(result: SteadyState) -> Setting:
+def _setting(result: SteadyState) -> MethodSetting:
     """The setting that takes the section of a result."""
     return following_setting(result.scene.cuts_tension)
 
@@ -87,7 +87,7 @@ def _section(result: SteadyState, states: int) -> np.ndarray:
     return engine.periods(states)[0][1:]
 
 
-def _strobes(scene: Scene, state: State, periods: int, setting: Setting) -> np.ndarray:
+def _strobes(scene: Scene, state: State, periods: int, setting: MethodSetting) -> np.ndarray:
     """The next `periods` stroboscopic states of displacement and w, scaled, (periods, 2, N)."""
     engine, scaled = Engine(scene, setting, 1), scale_chain(scene)
     engine.start(state)

@@ -2,6 +2,7 @@
 
 from .columns import Convention
 from .compare import Difference, compared, model_minus_measured
+from .compare_forces import ForceDifference, compared_forces
 from .drive import read_amplitude
 from .features import Feature, stated_features
 from .measured import Measured
@@ -9,6 +10,6 @@ from .question import Answers, Question, Unclear, answers_of
 from .reader import read_data, read_experiment
 from .series import Series, Shaker
 
-__all__ = ["Answers", "Convention", "Difference", "Feature", "Measured", "Question", "Series", "Shaker", "Unclear",
-           "answers_of", "compared", "model_minus_measured", "read_amplitude", "read_data", "read_experiment",
-           "stated_features"]
+__all__ = ["Answers", "Convention", "Difference", "Feature", "ForceDifference", "Measured", "Question", "Series",
+           "Shaker", "Unclear", "answers_of", "compared", "compared_forces", "model_minus_measured", "read_amplitude",
+           "read_data", "read_experiment", "stated_features"]

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..integrate import Engine, Setting, dop853_setting
+from ..integrate import Engine, MethodSetting, dop853_setting
 from ..integrate.methods import DOP853
 from ..kernels.effects.contact import Chain
 from ..kernels.effects.dissipation import LinearDashpot
@@ -41,7 +41,7 @@ class Bench:
                  tolerance: float = 1e-13, refine: float = 1.0) -> None:
         base: Scene = scene("sec2").evolve(N=beads)
         phi = Engine(base, dop853_setting(1e-3)).scaled.scales.phi
-        self.engine = Engine(base.evolve(f=phi / time), Setting(method, refine, tolerance), samples)
+        self.engine = Engine(base.evolve(f=phi / time), MethodSetting(method, refine, tolerance), samples)
         scaled = self.engine.scaled
         masses = np.zeros(beads + 2)
         masses[1:-1] = 1.0 if inverse_mass is None else inverse_mass

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..errors import ComputationError
-from ..integrate import Engine, Setting, dop853_setting
+from ..integrate import Engine, MethodSetting, dop853_setting
 from ..run.to_accuracy import run
 from ..scene import Scene, scene
 from ..scene.laws import LAWS
@@ -38,7 +38,7 @@ def strong_damping_picture() -> Picture:
     """First bead at 10^4 times the rig's damping: ours, and plain RK4 with two and a half times our step."""
     chosen, samples = overdamped(1e4), 100
     ours = run(chosen, periods=0, record=1, samples=samples).displacement[:, 0] / chosen.A0
-    naive, kept = Engine(chosen, Setting("rk4-naive", 0.4), samples), np.full(samples + 1, np.nan)
+    naive, kept = Engine(chosen, MethodSetting("rk4-naive", 0.4), samples), np.full(samples + 1, np.nan)
     for row in range(samples):
         try:
             kept[row : row + 2] = naive.record(1).displacement[:, 0]

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..integrate import Engine, Setting, dop853_setting, fixed_step_setting
+from ..integrate import Engine, MethodSetting, dop853_setting, fixed_step_setting
 from ..kernels.effects.dissipation import LinearDashpot
 from ..kernels.effects.driver import Harmonic
 from ..run.to_accuracy import run
@@ -17,7 +17,7 @@ from .naive_solvers import plain_slope, rk4
 from .oracle import PlainChain, solved
 
 
-def scaled_difference(frequency: float, setting: Setting, times: tuple[float, ...]) -> float:
+def scaled_difference(frequency: float, setting: MethodSetting, times: tuple[float, ...]) -> float:
     """How far scaled motions of (sA0, s^{1/4} f, s^{1/4} D) are from that of s = 1, over the largest displacement."""
     base = scene("sec2").evolve(A0=1e-8, N=5, kappa=0.002, f=frequency)
     true = Engine(base, setting, 16).record(16).displacement

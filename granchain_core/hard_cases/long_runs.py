@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..integrate import METHODS, Engine, Setting, fixed_step_setting
+from ..integrate import METHODS, Engine, MethodSetting, fixed_step_setting
 from ..integrate.checkpoint import Checkpoint, checkpoint, resumed
 from ..scene import scene
 from .case import Measurement, Picture, Trace
@@ -19,7 +19,7 @@ def cut_and_gone_on(method: str, periods: int, cuts: int, seed: int = 1) -> floa
     those with error control at whole periods.
     """
     chosen = scene("sec2").evolve(f=1130.0, N=5)
-    setting = Setting(method, 1.0, 1e-9 if METHODS[method].error_control else 0.0)
+    setting = MethodSetting(method, 1.0, 1e-9 if METHODS[method].error_control else 0.0)
     total = periods * _SAMPLES
     unit = _SAMPLES if METHODS[method].error_control else 1
     rng = np.random.default_rng(seed)
@@ -43,7 +43,7 @@ def whole_part(engine: Engine, count: int) -> np.ndarray:
 def uninterrupted(method: str, periods: int, cuts: int) -> float:
     """How many numbers of the final state differ between one call over all periods and many cut ones."""
     chosen = scene("sec2").evolve(f=1130.0, N=5)
-    setting = Setting(method, 1.0, 1e-9 if METHODS[method].error_control else 0.0)
+    setting = MethodSetting(method, 1.0, 1e-9 if METHODS[method].error_control else 0.0)
     whole, pieces = Engine(chosen, setting, 1), Engine(chosen, setting, 1)
     whole.periods(periods, watch=False)
     where = np.sort(np.random.default_rng(2).choice(np.arange(1, periods), min(cuts, periods - 1), replace=False))

@@ -7,7 +7,7 @@ import time
 import numpy as np
 
 from ..errors import ComputationError
-from ..integrate import METHODS, Engine, Setting
+from ..integrate import METHODS, Engine, MethodSetting
 from ..integrate.methods import DOP853, RK4_SPLIT
 from ..scene import scene
 from .case import Measurement, Picture, Trace
@@ -22,7 +22,7 @@ class Injector:
 
     def __init__(self, method: str, beads: int) -> None:
         self.method, self.beads = method, beads
-        setting = Setting(method, 1.0, 1e-6 if METHODS[method].error_control else 0.0)
+        setting = MethodSetting(method, 1.0, 1e-6 if METHODS[method].error_control else 0.0)
         self.engine = Engine(scene("sec2").evolve(N=beads, f=1130.0), setting, _SAMPLES)
         self.engine.record(3 * _SAMPLES)
         engine = self.engine
@@ -109,7 +109,7 @@ def converging(method: str, beads: int, rounds: int) -> float:
     chosen = scene("sec2").evolve(N=beads, f=3000.0, k=1e4)
     for _ in range(rounds):
         for i, last in enumerate((-310.0, -280.0)):
-            engine = Engine(chosen, Setting(method, 1.0, 1e-6), 1)
+            engine = Engine(chosen, MethodSetting(method, 1.0, 1e-6), 1)
             row = engine.scaled.bodies
             engine.y[1 : row - 1] = -10.0 ** np.maximum(np.linspace(0.0, 2.0 * last, beads), last)
             engine.evaluate()
@@ -133,7 +133,7 @@ def bad_numbers(quick: bool) -> list[Measurement]:
 def bad_numbers_picture() -> Picture:
     """A NaN in bead 6 in a solver whose contacts test `if overlap > 0`: the other beads go on regardless."""
     chosen = scene("sec2").evolve(N=11)
-    engine = Engine(chosen, Setting("rk4", 1.0), 100)
+    engine = Engine(chosen, MethodSetting("rk4", 1.0), 100)
     ours = np.full(201, np.nan)
     ours[:101] = engine.record(100).force[:, -1]
     naive, h = np.zeros(201), chosen.period / 200.0

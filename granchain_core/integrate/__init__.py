@@ -5,12 +5,13 @@ from .engine import Engine
 from .methods import (
     METHODS,
     Method,
-    Setting,
+    MethodSetting,
     dop853_setting,
     fixed_step_setting,
     following_setting,
     method_for,
 )
+from .methods import Setting as Setting
 
-__all__ = ["METHODS", "Counts", "Engine", "Method", "Setting", "dop853_setting", "fixed_step_setting",
+__all__ = ["METHODS", "Counts", "Engine", "Method", "MethodSetting", "dop853_setting", "fixed_step_setting",
            "following_setting", "method_for"]

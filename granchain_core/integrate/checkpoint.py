@@ -15,7 +15,7 @@ from ..errors import BadInput
 from ..execution.stop import Stop
 from ..scene import Scene
 from .engine import Engine
-from .methods import METHODS, Setting
+from .methods import METHODS, MethodSetting
 from .stepper import ErrorControl
 
 
@@ -79,7 +79,7 @@ def resumed(scene: Scene, kept: Checkpoint, stop: Stop | None = None) -> Engine:
         raise BadInput(f"This checkpoint belongs to scene {kept.digest}, not to {scene.digest} ({scene.name}); "
                        f"go on with the scene it was taken from.")
     row = scene.N + 2
-    engine = Engine(scene, Setting(kept.method, kept.refine, kept.tolerance), kept.samples,
+    engine = Engine(scene, MethodSetting(kept.method, kept.refine, kept.tolerance), kept.samples,
                     account=len(kept.y) > 2 * row, stop=stop)
     engine.y[:], engine.stepper.slope[:] = kept.y, kept.slope
     if len(kept.control):

@@ -17,7 +17,7 @@ from ..scene.state import State, rest
 from .counts import Counts
 from .failure import Failure
 from .flushed import flushed
-from .methods import METHODS, Setting
+from .methods import METHODS, MethodSetting
 from .scaling import ScaledChain, scale_chain
 from .stepper import CallStart, empty_samples
 
@@ -37,7 +37,7 @@ class Engine:
     it had seen.
     """
 
-    def __init__(self, scene: Scene, setting: Setting, samples: int = 1, account: bool = False,
+    def __init__(self, scene: Scene, setting: MethodSetting, samples: int = 1, account: bool = False,
                  stop: Stop | None = None, scaled: ScaledChain | None = None) -> None:
         method = METHODS[setting.method]
         ready = (scale_chain(scene, account and method.has_account) if scaled is None else scaled).own()

@@ -47,24 +47,25 @@ _FINEST_REFINEMENT = 256
 
 
 @dataclass(frozen=True)
-class Setting:
-    """A method with its fineness: `refine` times the fixed-step method's steps, or a relative tolerance per step."""
+class MethodSetting:
+    """A method and its resolution: `refine` times the fixed-step method's steps, or a relative tolerance per step."""
 
     method: str
     refine: float = 1
     tolerance: float = 0.0
 
-    def finer(self) -> Setting:
+    def finer(self) -> MethodSetting:
         """The next finer setting: half the step, or a tolerance small enough that the error is smaller in practice.
 
         With error control the error does not fall evenly with the tolerance: an eighth of it sometimes left the error
         unchanged, so the next tolerance is a sixty-fourth.
         """
         if METHODS[self.method].error_control:
-            return Setting(self.method, 1, min(max(self.tolerance / 64.0, _SMALLEST_TOLERANCE), self.tolerance / 8.0))
-        return Setting(self.method, 2 * self.refine)
+            finer = min(max(self.tolerance / 64.0, _SMALLEST_TOLERANCE), self.tolerance / 8.0)
+            return MethodSetting(self.method, 1, finer)
+        return MethodSetting(self.method, 2 * self.refine)
 
-    def finer_than(self, scaled: ScaledChain, samples: int) -> Setting:
+    def finer_than(self, scaled: ScaledChain, samples: int) -> MethodSetting:
         """The next finer setting that really has more steps: they are rounded up to a multiple of the samples."""
         finer = self.finer()
         if not METHODS[self.method].error_control:
@@ -86,6 +87,10 @@ class Setting:
     def step(self, scaled: ScaledChain, samples: int) -> float:
         """The step of a fixed-step method, in scaled units."""
         return scaled.period / self.steps_per_period(scaled, samples)
+
+
+#: Older name of `MethodSetting`, which still works.
+Setting = MethodSetting
 
 
 @dataclass(frozen=True)
@@ -150,7 +155,7 @@ class Method:
     symplectic: bool
     restrictions: str
     reference: str
-    stepper: Callable[[Setting, ScaledChain, int], Stepper]
+    stepper: Callable[[MethodSetting, ScaledChain, int], Stepper]
     cost: StepCost
     usual_error: float = 0.0
     converges_regularly: bool = False
@@ -159,19 +164,19 @@ class Method:
     has_account: bool = True
 
 
-def _fixed(kind: Any, simd: bool = False) -> Callable[[Setting, ScaledChain, int], Stepper]:
+def _fixed(kind: Any, simd: bool = False) -> Callable[[MethodSetting, ScaledChain, int], Stepper]:
     """What makes the stepper of a method with fixed steps in (u, w)."""
     return lambda setting, scaled, samples: FixedStep(kind(setting.steps_per_period(scaled, samples)), scaled,
                                                        samples, simd)
 
 
-def _in_velocity(kind: Any) -> Callable[[Setting, ScaledChain, int], Stepper]:
+def _in_velocity(kind: Any) -> Callable[[MethodSetting, ScaledChain, int], Stepper]:
     """What makes the stepper of a method with fixed steps in (u, v)."""
     return lambda setting, scaled, samples: FixedStepInVelocity(kind(setting.steps_per_period(scaled, samples)),
                                                                  scaled, samples)
 
 
-def _error_controlled(kind: Any) -> Callable[[Setting, ScaledChain, int], Stepper]:
+def _error_controlled(kind: Any) -> Callable[[MethodSetting, ScaledChain, int], Stepper]:
     """What makes the stepper of a method with error control."""
     return lambda setting, scaled, samples: kind(setting.tolerance, scaled, samples)
 
@@ -238,17 +243,17 @@ _JUMP_ERROR = 0.01
 _COARSEST_REFINEMENT = 0.5
 
 
-def fixed_step_setting(refine: float = 1) -> Setting:
+def fixed_step_setting(refine: float = 1) -> MethodSetting:
     """The fixed-step method with `refine` times the default steps."""
-    return Setting(RK4_SPLIT, refine)
+    return MethodSetting(RK4_SPLIT, refine)
 
 
-def dop853_setting(tolerance: float = 0.0) -> Setting:
+def dop853_setting(tolerance: float = 0.0) -> MethodSetting:
     """dop853 at a relative tolerance per step."""
-    return Setting(DOP853, tolerance=tolerance)
+    return MethodSetting(DOP853, tolerance=tolerance)
 
 
-def following_setting(tension_cut: bool) -> Setting:
+def following_setting(tension_cut: bool) -> MethodSetting:
     """The setting that follows a chain where no accuracy is asked for: to a steady state, and through sections of it.
 
     With tension cut the fixed-step method has order 1. At its default step it is wrong by about a per cent, comes to
@@ -257,7 +262,7 @@ def following_setting(tension_cut: bool) -> Setting:
     return dop853_setting(_FOLLOWING_TOLERANCE) if tension_cut else fixed_step_setting()
 
 
-def method_for(accuracy: float, tension_cut: bool = False) -> Setting:
+def method_for(accuracy: float, tension_cut: bool = False) -> MethodSetting:
     """The first setting to try for a relative error of `accuracy`."""
     if accuracy >= FIXED_STEP_IS_CHEAPER and not tension_cut:  # where tension is cut the fixed-step method has order 1
         # the order without events, 4, where `typical_error` has the observed one: a guess that halvings refine
@@ -269,7 +274,7 @@ def _first_tolerance(accuracy: float) -> float:
     return min(_LARGEST_TOLERANCE, _TOLERANCE_PER_ACCURACY * accuracy)
 
 
-def typical_error(setting: Setting) -> float:
+def typical_error(setting: MethodSetting) -> float:
     """The relative error that few scenes exceed with this setting; 0 for methods of which none is known.
 
     With fixed steps it falls by the observed order: of 80 random chains 13 to 21 exceed it at 1 to 32 times the default
@@ -281,7 +286,7 @@ def typical_error(setting: Setting) -> float:
     return _ERROR_SPREAD * method.usual_error / setting.refine**method.observed_order
 
 
-def jump_errors(setting: Setting, scaled: ScaledChain, step: float, jumps: np.ndarray,
+def jump_errors(setting: MethodSetting, scaled: ScaledChain, step: float, jumps: np.ndarray,
                 maxima: np.ndarray) -> np.ndarray:
     """What the stated relative errors (3,) of the largest forces must be at least where these are at jumps (2,).
 
@@ -302,11 +307,13 @@ def jump_errors(setting: Setting, scaled: ScaledChain, step: float, jumps: np.nd
     return least
 
 
-def setting_of(name: str, accuracy: float) -> Setting:
+def setting_of(name: str, accuracy: float) -> MethodSetting:
     """The first setting of the method called `name` for `accuracy`; `BadInput` for a method that does not exist.
 
     A method with fixed steps begins with its default steps: of most of them no usual error is known.
     """
     if name not in METHODS:
         raise unknown_name("method", name, METHODS)
-    return Setting(name, tolerance=_first_tolerance(accuracy)) if METHODS[name].error_control else Setting(name)
+    if METHODS[name].error_control:
+        return MethodSetting(name, tolerance=_first_tolerance(accuracy))
+    return MethodSetting(name)

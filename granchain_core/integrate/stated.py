@@ -1,4 +1,4 @@
-"""The stated error of a motion, from several computations of increasing fineness."""
+"""The stated error of a motion, from several computations of increasing resolution."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .methods import METHODS, Setting, jump_errors, typical_error
+from .methods import METHODS, MethodSetting, jump_errors, typical_error
 from .safety_factors import IRREGULAR, REGULAR, RUN_FORCES, RUN_FORCES_THAT_JUMP
 from .scaling import ScaledChain
 
@@ -31,7 +31,7 @@ def relative_difference(one: np.ndarray, other: np.ndarray) -> float:
     return float(np.abs(one - other).max()) / largest if largest > 0.0 else 0.0
 
 
-def least_errors(setting: Setting, scaled: ScaledChain, step: float, jumps: np.ndarray,
+def least_errors(setting: MethodSetting, scaled: ScaledChain, step: float, jumps: np.ndarray,
                  maxima: np.ndarray) -> np.ndarray:
     """Lower limits of the stated errors (4,) of a motion with this step: of displacements, then of the largest forces.
 
@@ -80,17 +80,17 @@ class Computations:
     """
 
     cuts_tension: bool
-    settings: list[Setting] = field(default_factory=list)
+    settings: list[MethodSetting] = field(default_factory=list)
     stated: np.ndarray = field(default_factory=lambda: np.zeros(0))
     rounding: float = 0.0
     growth: float = 0.0
     _before: np.ndarray | None = None
 
-    def begin(self, setting: Setting) -> None:
+    def begin(self, setting: MethodSetting) -> None:
         """The first computation."""
         self.settings.append(setting)
 
-    def add(self, setting: Setting, steps: int, differences: np.ndarray, least: np.ndarray) -> None:
+    def add(self, setting: MethodSetting, steps: int, differences: np.ndarray, least: np.ndarray) -> None:
         """Add a finer computation of `steps` steps: its relative differences from the last one, and least errors."""
         coarser = self.settings[-1]
         self._see_growth(coarser, float(differences[0]))
@@ -112,12 +112,12 @@ class Computations:
         """What is stated where no finer computation follows."""
         return self.stated if done else or_whole_motion(self.stated)
 
-    def _see_growth(self, coarser: Setting, difference: float) -> None:
+    def _see_growth(self, coarser: MethodSetting, difference: float) -> None:
         typical = typical_error(coarser)
         if typical > _ROUNDING_NEGLIGIBLE_ABOVE:
             self.growth = max(self.growth, difference / typical)
 
-    def _falls(self, coarser: Setting, finer: Setting) -> float:
+    def _falls(self, coarser: MethodSetting, finer: MethodSetting) -> float:
         """Expected ratio of the two errors, by the method's observed order, or with error control by the tolerances."""
         method = METHODS[finer.method]
         if method.error_control:

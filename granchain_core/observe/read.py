@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from ..errors import BadInput
-from ..experiment import Answers, Convention, Series, read_data
+from ..experiment import Answers, Convention, Series, Unclear, read_data
 from ..experiment.measured import MOST_BYTES, MOST_ROWS
 from ..experiment.units import UNITS, unit_named
 from ..hdf5 import SIGNATURE, File, opened
@@ -41,7 +41,12 @@ def read_force(path: str | Path, time_unit: str | None = None, force_unit: str |
         if time_unit is not None or force_unit is not None:
             raise BadInput(f"{path.name} is an HDF5 file, whose units are s and N; they are chosen for CSV only.")
         return checked(_from_hdf5(path))
-    return read_force_csv(content, time_unit, force_unit, answers)
+    try:
+        return read_force_csv(content, time_unit, force_unit, answers)
+    except Unclear as unclear:
+        raise Unclear(replace(unclear.question, reason=f"{path.name}: {unclear.question.reason}")) from None
+    except BadInput as problem:
+        raise BadInput(f"{path.name}: {problem}") from None
 
 
 def read_force_csv(text: str | bytes, time_unit: str | None = None, force_unit: str | None = None,

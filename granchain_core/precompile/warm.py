@@ -22,7 +22,7 @@ from ..accuracy.effect_cost import CODE, MOTION
 from ..accuracy.work_precision import compile_methods
 from ..execution.child_processes import pool, starting
 from ..execution.stop import Stop
-from ..integrate import Engine, Setting, dop853_setting, fixed_step_setting, following_setting
+from ..integrate import Engine, MethodSetting, dop853_setting, fixed_step_setting, following_setting
 from ..integrate.batch import Batch, can_share_batch, is_uniform
 from ..integrate.fixed import chain_width
 from ..integrate.scaling import scale_chain
@@ -65,7 +65,7 @@ def structure(shown: Scene) -> str:
     return "+".join([*law, *effects, *beads]) + f", {width}"
 
 
-def _engine(setting: Setting) -> Callable[[Scene], None]:
+def _engine(setting: MethodSetting) -> Callable[[Scene], None]:
     """A piece: whole periods and samples with one method."""
 
     def compile_engine(short: Scene) -> None:
@@ -132,7 +132,7 @@ def _cost(account: bool) -> Callable[[Scene], None]:
 
     def compile_cost(short: Scene) -> None:
         for name in (CODE, MOTION):
-            Engine(short, Setting(name), 1, account=account).periods(1)
+            Engine(short, MethodSetting(name), 1, account=account).periods(1)
 
     return compile_cost
 

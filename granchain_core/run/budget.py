@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import OverBudget
-from ..integrate import METHODS, Setting, fixed_step_setting, method_for
+from ..integrate import METHODS, MethodSetting, fixed_step_setting, method_for
 from ..integrate.scaling import ScaledChain, scale_chain
 from ..scene import Scene
 from ..scene.quantities import QUANTITIES
@@ -49,12 +49,12 @@ def machine_factor() -> float:
     return best / _REFERENCE_SPEED
 
 
-def estimate(scene: Scene, setting: Setting, periods: int, samples: int, record: int) -> Estimate:
+def estimate(scene: Scene, setting: MethodSetting, periods: int, samples: int, record: int) -> Estimate:
     """The cost of a run whose first setting is `setting`, with the finer one that it is compared with."""
     return _estimate(scale_chain(scene), setting, periods, samples, record)
 
 
-def _estimate(scaled: ScaledChain, setting: Setting, periods: int, samples: int, record: int) -> Estimate:
+def _estimate(scaled: ScaledChain, setting: MethodSetting, periods: int, samples: int, record: int) -> Estimate:
     beads, steps, seconds = scaled.beads, 0.0, 0.0
     finer = setting.finer_than(scaled, samples)
     twice = _relative_cost(setting) + _relative_cost(finer)
@@ -102,14 +102,15 @@ def refuse_long_picture(scene: Scene, periods: int, samples: int, budget: float)
                      f"is {_in_words(budget)}: {remedy}.", seconds, budget)
 
 
-def _relative_cost(setting: Setting) -> float:
+def _relative_cost(setting: MethodSetting) -> float:
     """Relative cost of a computation among those of the same run."""
     if METHODS[setting.method].error_control:
         return float(max(setting.tolerance, 1e-16) ** -METHODS[setting.method].cost.power)
     return setting.refine
 
 
-def check_budget(scene: Scene, setting: Setting, periods: int, record: int, samples: int, budget: float) -> Estimate:
+def check_budget(scene: Scene, setting: MethodSetting, periods: int, record: int, samples: int,
+                 budget: float) -> Estimate:
     """The estimate of a run of `periods` discarded and `record` recorded periods; `OverBudget` if it does not fit."""
     total, scaled = periods + record, scale_chain(scene)
     found = _estimate(scaled, setting, total, samples, record)

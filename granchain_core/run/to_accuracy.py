@@ -15,7 +15,7 @@ from ..errors import BadInput
 from ..execution.stop import Stop
 from ..execution.stopwatch import Stopwatch
 from ..inputs.checks import seconds_allowed, whole_number
-from ..integrate import Counts, Engine, Setting, following_setting, method_for
+from ..integrate import Counts, Engine, MethodSetting, following_setting, method_for
 from ..integrate.methods import setting_of
 from ..integrate.stated import Computations, force_differences, least_errors, relative_difference
 from ..kernels.samples import Samples
@@ -128,7 +128,7 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
 
     number = itertools.count(1)
 
-    def attempt(finer: Setting) -> _Attempt:
+    def attempt(finer: MethodSetting) -> _Attempt:
         engine = Engine(scene, finer, samples, account=True, stop=stop)
         engine.start(begin)
         reached = kept.begin(next(number), engine) if kept is not None else None
@@ -144,7 +144,7 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
                     force_errors=np.array(forces), start=start_words(scene, start))
 
 
-def _refined(attempt: Callable[[Setting], _Attempt], scene: Scene, setting: Setting, samples: int,
+def _refined(attempt: Callable[[MethodSetting], _Attempt], scene: Scene, setting: MethodSetting, samples: int,
              budget: float) -> tuple[_Attempt, str, np.ndarray]:
     """Compute the motion with `setting`, then ever finer: the last computation, the run's status, the errors (4,).
 
@@ -225,7 +225,7 @@ def _differences(now: _Attempt, before: _Attempt) -> np.ndarray:
                      *force_differences(now.engine.maxima, before.engine.maxima, jumps)])
 
 
-def _least(now: _Attempt, setting: Setting) -> np.ndarray:
+def _least(now: _Attempt, setting: MethodSetting) -> np.ndarray:
     """Lower limits of the stated errors (4,)."""
     engine = now.engine
     step = setting.step(engine.scaled, engine.samples)

@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from ..integrate import Setting
+from ..integrate import MethodSetting
 from ..integrate.batch import change_workspace
 from ..kernels.strobes import periodicity
 from ..kernels.strobes.periodicity import LONGEST_PERIOD, ROUNDING, SETTLED_DISTANCE
@@ -93,7 +93,7 @@ def find_period(strobes: np.ndarray, longest: int = LONGEST_LOCKED_PERIOD, round
                   distance=float(distance), periods_run=periods_run)
 
 
-def rounding_of(setting: Setting) -> float:
+def rounding_of(setting: MethodSetting) -> float:
     """Changes of strobes up to which count as none: rounding, or with error control the tolerance of a step."""
     return max(ROUNDING, setting.tolerance)
 

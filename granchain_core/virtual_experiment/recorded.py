@@ -45,6 +45,8 @@ MOST_RECORDS = 10_000
 MOST_VALUES = 20_000_000
 #: Most drive periods of a record.
 MOST_PERIODS = 10_000
+#: Largest seed.
+_LARGEST_SEED = 2**63 - 1
 
 
 def virtual_series_csv(scene: Scene, periods: int, sensors: Sensors, seed: int = 0, stop: Stop | None = None) -> str:
@@ -89,7 +91,7 @@ def virtual_series_csv(scene: Scene, periods: int, sensors: Sensors, seed: int =
     periods = whole_number("periods =", periods, 1, MOST_PERIODS)
     count = round(periods * sensors.rate / scene.f)
     check_range("samples (periods · rate / f) =", count, 8, MOST_SAMPLES)
-    random = np.random.default_rng(seed)
+    random = np.random.default_rng(whole_number("seed =", seed, 0, _LARGEST_SEED))
     times, velocity, forces = _recorded(scene, count, sensors, random, stop)
     rows = "\n".join(f"{t:.9g},{v:.7g},{i:.7g},{o:.7g}" for t, v, i, o in zip(times, velocity, *forces, strict=True))
     return (f"{_head(scene, sensors, seed)}time (s),velocity (m/s),input force (N),output force (N)\n{rows}\n")
@@ -151,7 +153,7 @@ def virtual_curve_csv(scene: Scene, frequencies: Sequence[float] | np.ndarray, s
     periods = whole_number("periods =", periods, 1, MOST_PERIODS)
     count = len(frequencies) * repeats
     check_range("records (frequencies · repeats) =", count, 1, MOST_RECORDS)
-    random, rows = np.random.default_rng(seed), []
+    random, rows = np.random.default_rng(whole_number("seed =", seed, 0, _LARGEST_SEED)), []
     for frequency in frequencies:
         for _ in range(repeats):
             amplitude = scene.A0 * max(0.01, 1.0 + scatter * random.standard_normal())

@@ -9,7 +9,7 @@ import numpy as np
 
 from granchain_core import scene
 from granchain_core.execution.stop import Stop
-from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate import Engine, MethodSetting
 from granchain_core.integrate.batch import Batch
 from granchain_core.kernels.batch.run import batch_steps
 from granchain_core.kernels.batch_size import BATCH_SIZE
@@ -43,7 +43,7 @@ def stirred(y: np.ndarray, beads: int) -> None:
 
 def along(beads: int, evaluations: float) -> float:
     """Contact evaluations a second of one chain by the fixed-step method."""
-    engine = Engine(scene("sec2").evolve(N=beads, f=problem.FREQUENCY), Setting("rk4-split"), 16)
+    engine = Engine(scene("sec2").evolve(N=beads, f=problem.FREQUENCY), MethodSetting("rk4-split"), 16)
     engine.record(1)
     rows = max(1, round(evaluations / (4 * (beads + 1) * engine.grid / 16)))
     began, before = time.perf_counter(), engine.counts.rhs

@@ -1,9 +1,6 @@
-"""Where the commands are listed, each of them is: in the readme, and in the hostile command lines."""
+"""Every command has an example that its parser takes and its help shows, and a hostile command line."""
 
 from __future__ import annotations
-
-import re
-from pathlib import Path
 
 import pytest
 
@@ -11,14 +8,22 @@ from app.cli.commands import COMMANDS, parser_for
 from granchain_core import BadInput
 from tools.hostile.commands import BASES
 
-README = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_a_command_has_an_example(command: str, capsys: pytest.CaptureFixture[str]) -> None:
+    row = COMMANDS[command]
+    parser_for([command]).parse_args([command, *row.example.split()])
+    with pytest.raises(SystemExit):
+        parser_for([command]).parse_args([command, "--help"])
+    assert f"Example: granchain {command} {row.example}" in " ".join(capsys.readouterr().out.split())
 
 
-def test_the_readmes_table_has_every_command() -> None:
-    """A row begins with `granchain NAME …`, and may go on with more names in backquotes."""
-    rows = re.findall(r"^\| (`granchain \w.*?) \| ", README, re.MULTILINE)
-    named = [re.sub("^granchain ", "", words).split()[0] for row in rows for words in re.findall("`(.+?)`", row)]
-    assert sorted(named) == sorted(COMMANDS)
+@pytest.mark.parametrize("command", COMMANDS)
+def test_what_a_command_needs_is_in_its_form(command: str) -> None:
+    """The words that every call has stand in the table of README.md."""
+    for action in parser_for([command]).commands[command]._actions:
+        if action.required and action.nargs != "*":
+            assert (action.option_strings or [action.metavar])[0] in COMMANDS[command].form.split(), action.dest
 
 
 @pytest.mark.parametrize("command", COMMANDS)

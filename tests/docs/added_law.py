@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from granchain_core import LiveChain, resonance_curve, run, scene, settle
-from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate import Engine, MethodSetting
 from granchain_core.kernels.error_control.force_kinks import scaled_force
 from granchain_core.orbits.stroboscopic_map import StroboscopicMap
 from granchain_core.scene.laws import LAWS
@@ -29,7 +29,7 @@ def test_energy_is_accounted_for() -> None:
     assert run(CHAIN, periods=0, record=10).energy_residual < 1e-4
 
 
-def motion(f: float, setting: Setting) -> np.ndarray:
+def motion(f: float, setting: MethodSetting) -> np.ndarray:
     """Displacements over three periods from rest, eight a period; six beads fit the vectors of the chain above."""
     return Engine(scene("sec2").evolve(N=6, f=f, dissipation="three-quarters"), setting, 8).record(24).displacement
 
@@ -39,8 +39,8 @@ def test_split_steps_keep_their_order_across_contact_events(method: str, least: 
     """3.5, because the error of Simpson's rule in G is known and subtracted; steps across events have 2.5."""
     errors = []
     for f in (340.0, 615.0, 1130.0):
-        true = motion(f, Setting("dop853", tolerance=1e-13))
-        errors.append([np.abs(motion(f, Setting(method, refine=r)) - true).max() for r in REFINED])
+        true = motion(f, MethodSetting("dop853", tolerance=1e-13))
+        errors.append([np.abs(motion(f, MethodSetting(method, refine=r)) - true).max() for r in REFINED])
     assert least < -np.polyfit(np.log(REFINED), np.log(errors).mean(axis=0), 1)[0] < most
 
 

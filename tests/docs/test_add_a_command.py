@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from documents import ROOT, blocks
-from edited_tree import edited_copy, files_of, follow
+from edited_tree import copied, edited_copy, files_of, follow
 
 PAGE = ROOT / "docs" / "add-a-command.md"
 
@@ -18,10 +18,10 @@ def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return edited_copy(PAGE, tmp_path_factory.mktemp("command") / "tree")
 
 
-def test_the_page_edits_five_files_and_writes_one() -> None:
+def test_the_page_edits_two_files_and_writes_one() -> None:
     edits, new = files_of(PAGE, until="## Add an option\n")
-    assert (len(edits), len(new)) == (5, 1)
-    assert PAGE.read_text(encoding="utf-8").splitlines()[0] == "# Add a command: edit 5 files, write 1"
+    assert (len(edits), len(new)) == (2, 1)
+    assert PAGE.read_text(encoding="utf-8").splitlines()[0] == "# Add a command: edit 2 files, write 1"
 
 
 def test_an_option_edits_four_files_and_writes_one() -> None:
@@ -43,7 +43,7 @@ def test_the_new_command_prints_its_result(tree: Path) -> None:
     assert len(follow(tree, "-m", "app.cli", "beads", "sec2", "--set", "N=2").splitlines()) == 3
 
 
-_LISTS = ("tests/cli/test_command_lists.py::test_the_readmes_table_has_every_command",
+_LISTS = ("tests/cli/test_command_lists.py::test_a_command_has_an_example[beads]",
           "tests/cli/test_command_lists.py::test_a_hostile_base_of_every_command_gets_past_the_parser[beads]",
           "tests/cli/test_json_keys.py::test_every_command_has_a_table_or_no_json")
 
@@ -54,12 +54,20 @@ def test_the_tests_that_know_every_command_know_the_new_one(tree: Path) -> None:
     assert printed.startswith("....") and "F" not in printed
 
 
+def test_the_tables_of_commands_get_the_new_one(tree: Path) -> None:
+    """As `python -m tools.update` writes them."""
+    copied("tools/command_tables.py", tree)
+    code = "from tools.command_tables import table_of_commands, table_of_json; print(table_of_commands(), table_of_json())"
+    printed = follow(tree, "-c", code)
+    assert "| `granchain beads SCENE` | mass and radius of every bead of a scene ([docs/scenes.md](docs/scenes.md)) |" in printed
+    assert "| `granchain beads sec2 --set N=2` | [beads](#beads) |" in printed
+
+
 @pytest.mark.parametrize(("file", "words", "test"), [
-    ("README.md", "granchain beads SCENE", _LISTS[0]), ("tools/hostile/commands.py", "beads sec2", _LISTS[1]),
-    ("docs/command-line.md", "## beads", _LISTS[2])])
+    ("app/cli/commands.py", '"sec2 --set N=2", "scenes.md"', _LISTS[0]), ("docs/command-line.md", "## beads", _LISTS[2])])
 def test_a_list_without_the_command_is_named(file: str, words: str, test: str, tree: Path) -> None:
     right = (tree / file).read_text(encoding="utf-8")
-    (tree / file).write_text(right.replace(words, words.replace("beads", "bonds")), encoding="utf-8")
+    (tree / file).write_text(right.replace(words, words.replace("beads", "bonds").replace("sec2", "--sec2")), encoding="utf-8")
     try:
         printed = follow(tree, "-c", f"import pytest; print(int(pytest.main(['-p', 'no:cacheprovider', {test!r}])))")
     finally:

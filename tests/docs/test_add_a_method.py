@@ -31,11 +31,11 @@ def test_the_new_method_has_its_order_and_its_row(tree: Path) -> None:
 import numpy as np
 from granchain_core import scene
 from granchain_core.accuracy.compared_methods import compared_methods
-from granchain_core.integrate import Engine, Setting, method_for
+from granchain_core.integrate import Engine, MethodSetting, method_for
 for knobs in ({"F0": 5.0}, {}):
     chain = scene("sec2").evolve(N=2, f=1130.0, **knobs)
     def moved(method, refine):
-        return Engine(chain, Setting(method, refine), 8).record(16).displacement
+        return Engine(chain, MethodSetting(method, refine), 8).record(16).displacement
     true = moved("rk4", 128)
     errors = [np.abs(moved("heun", refine) - true).max() for refine in (4, 8, 16)]
     print(np.log2(errors[0] / errors[2]) / 2.0)
@@ -51,18 +51,18 @@ def test_the_method_with_error_control_keeps_to_its_tolerance_and_goes_on_from_a
     printed = follow(tree, "-c", """
 import numpy as np
 from granchain_core import run, scene
-from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate import Engine, MethodSetting
 from granchain_core.integrate.checkpoint import checkpoint, resumed
 for knobs in ({"F0": 5.0}, {}):
     chain = scene("sec2").evolve(N=2, f=1130.0, **knobs)
     def moved(method, tolerance):
-        engine = Engine(chain, Setting(method, tolerance=tolerance), 8, account=True)
+        engine = Engine(chain, MethodSetting(method, tolerance=tolerance), 8, account=True)
         return engine.record(16).displacement, engine.counts.steps
     true = moved("dop853", 1e-12)[0]
     errors, steps = zip(*[(np.abs(found - true).max() / np.abs(true).max(), count) for found, count in
                           (moved("bogacki-shampine", tolerance) for tolerance in (1e-6, 1e-8, 1e-10))])
     print(np.log(errors[0] / errors[2]) / np.log(steps[2] / steps[0]), *(e / t for e, t in zip(errors, (1e-6, 1e-8, 1e-10))))
-engine = Engine(chain, Setting("bogacki-shampine", tolerance=1e-6), 8)
+engine = Engine(chain, MethodSetting("bogacki-shampine", tolerance=1e-6), 8)
 engine.record(16)
 again = resumed(chain, checkpoint(engine))
 print((engine.record(16).force == again.record(16).force).all(), np.isfinite(engine.periods(2)[1]).all())

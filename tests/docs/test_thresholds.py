@@ -15,9 +15,11 @@ import pytest
 from documents import ROOT
 
 from granchain_core import orbit, scene
+from granchain_core.integrate.fixed import SHORT_CHAIN
 from granchain_core.kernels.batch import checks, record
 from granchain_core.observe.drift import TRANSLATION
 from granchain_core.orbits.branch import ends, newton, normal_forms, special, steps
+from granchain_core.parameter_map import scheduled
 from granchain_core.results.regime import Regime
 from granchain_core.steady import exponent_measurements, regime_criteria
 from granchain_core.steady.batch import job, threads
@@ -93,10 +95,17 @@ NUMBERS = {2: "two", 3: "three", 4: "four"}
     ("granchain_core/steady/regime_criteria.py", {
         r"After (\d+) periods a growth": regime_decisions.EXAMINED_AFTER, r"a growth of ([\d.]+) a period": regime_criteria.CLEAR_GROWTH,
         r"multiplied a distance by ([\de]+)\.": float(f"{math.exp(regime_criteria.CLEAR_GROWTH * regime_decisions.EXAMINED_AFTER):.0e}")}),
+    ("docs/cost.md", {
+        r"such a cell runs (\d+) periods or more": regime_decisions.EXAMINED_AFTER, r"exponent, (\d+) periods at a time": exponent_measurements.MEASURED_PERIODS,
+        r"up to (\d+) periods for the coarse run": regime_decisions.MOST_PERIODS, r"from rest; (\d+) points are one task": resonance_curve.POINTS_IN_TASK,
+        r"blocks of (\d+) points": resonance_curve.POINTS_IN_TASK, r"blocks of (\d+) cells": scheduled.CELLS_IN_TASK}),
+    ("docs/parameter-map.md", {r"sends blocks of (\d+) cells": scheduled.CELLS_IN_TASK}),
+    ("docs/hard-cases.md", {r"irregular run \((\d+) periods of two": exponent_measurements.MEASURED_PERIODS}),
+    ("docs/glossary.md", {r"up to (\d+) beads in one vector": SHORT_CHAIN}),
     ("granchain_core/kernels/batch/checks.py", {r"at most (\w+) times the distance that its decay": NUMBERS[int(checks.FARTHEST_EXTRAPOLATION)]}),
 ], ids=lambda given: given if isinstance(given, str) else "")
 def test_prose_has_the_values_of_the_constants(file: str, said: dict[str, float | str]) -> None:
-    """Numbers in sentences of design.md, regimes.md and docstrings, where a name in their place would not be read."""
+    """Numbers in sentences of the docs and of docstrings, where a name in their place would not be read."""
     text = " ".join((ROOT / file).read_text(encoding="utf-8").split())
     for pattern, value in said.items():
         found = re.findall(pattern, text)

@@ -16,7 +16,7 @@ from app.cli import main
 from granchain_core import BadInput, Cancelled, ComputationError, State, orbit, run, scene
 from granchain_core.errors import FAILURES, OverBudget
 from granchain_core.execution.stop import Stop
-from granchain_core.integrate import Engine, Setting, method_for
+from granchain_core.integrate import Engine, MethodSetting, method_for
 from granchain_core.integrate.checkpoint import Checkpoint, checkpoint, resumed
 from granchain_core.run import to_accuracy
 from granchain_core.run.budget import estimate
@@ -98,7 +98,7 @@ def test_a_finer_computation_that_does_not_fit_is_not_begun(monkeypatch: pytest.
 
 def test_not_finite_says_bead_time_and_step() -> None:
     chosen = scene("sec2")
-    engine = Engine(chosen, Setting("rk4"), 8)
+    engine = Engine(chosen, MethodSetting("rk4"), 8)
     engine.record(16)
     engine.y[7] = np.inf
     with pytest.raises(ComputationError, match=r"bead 7 .* in step 0 ") as caught:
@@ -109,7 +109,7 @@ def test_not_finite_says_bead_time_and_step() -> None:
 
 
 def test_a_step_in_the_middle_of_a_long_call_is_found_again() -> None:
-    engine = Engine(scene("sec2"), Setting("rk4-split"), 1)
+    engine = Engine(scene("sec2"), MethodSetting("rk4-split"), 1)
     engine.periods(3)
     step = engine.grid // 3
     engine.stepper.drive[2 * step + 2] = np.nan
@@ -120,7 +120,7 @@ def test_a_step_in_the_middle_of_a_long_call_is_found_again() -> None:
 
 def test_step_too_small() -> None:
     """A contact so stiff that no step is small enough, met on the way."""
-    engine = Engine(scene("sec2"), Setting("dop853", 1.0, 1e-6), 8)
+    engine = Engine(scene("sec2"), MethodSetting("dop853", 1.0, 1e-6), 8)
     engine.record(1)
     engine.scaled.slots.chain.stiffness[:] = 1e30
     engine.stepper.work.next_step[0] = 1e-14
@@ -131,7 +131,7 @@ def test_step_too_small() -> None:
 
 def test_endless_touches_fail_with_a_sentence() -> None:
     """One bead between a slow driver and the wall, undamped: thousands of touches in one drive period."""
-    engine = Engine(scene("sec2").evolve(N=1, dissipation="none", f=1.0), Setting("dop853", 1.0, 1e-4), 1)
+    engine = Engine(scene("sec2").evolve(N=1, dissipation="none", f=1.0), MethodSetting("dop853", 1.0, 1e-4), 1)
     engine.start(State(np.zeros(1), np.array([0.5])))
     with pytest.raises(ComputationError, match="endlessly") as caught:
         engine.periods(1)
@@ -216,7 +216,7 @@ def test_the_command_line_says_what_failed_where_and_what_it_had_cost(capsys: py
 
 
 def test_checkpoints_belong_to_their_scene_and_are_refused_inside_a_period() -> None:
-    engine = Engine(scene("sec2"), Setting("dop853", 1.0, 1e-6), 8)
+    engine = Engine(scene("sec2"), MethodSetting("dop853", 1.0, 1e-6), 8)
     engine.record(4)
     with pytest.raises(BadInput, match="whole drive periods only"):
         checkpoint(engine)

@@ -11,7 +11,7 @@ import pytest
 
 from granchain_core import Cancelled, State, run, scene
 from granchain_core.execution.stop import Stop
-from granchain_core.integrate import Engine, Setting, fixed_step_setting
+from granchain_core.integrate import Engine, MethodSetting, fixed_step_setting
 from granchain_core.integrate.batch import NEVER, Batch
 from granchain_core.integrate.scaling import scale_chain
 from granchain_core.kernels.status import STEPS_BETWEEN_STOP_CHECKS
@@ -24,7 +24,7 @@ TOLERATED = [("rk4", 2e-6), ("rk4-split", 2e-6), ("dop853", 1e-9)]
 
 def engine(method: str, samples: int = 8, **knobs) -> Engine:
     """sec2 at a fine setting of the method."""
-    return Engine(scene("sec2").evolve(**knobs), Setting(method, refine=4, tolerance=1e-11), samples)
+    return Engine(scene("sec2").evolve(**knobs), MethodSetting(method, refine=4, tolerance=1e-11), samples)
 
 
 @pytest.mark.parametrize(("method", "_"), TOLERATED)
@@ -87,7 +87,7 @@ def test_drive_phase_is_exact_after_many_periods(method):
     """Ten thousand periods later the driver is where sin(2π·whole + …) has it, to the last bit: no phase is summed up.
     """
     chain = scene("sec2").evolve(N=1, f=3000.0, D=300.0)
-    runner = Engine(chain, Setting(method, tolerance=1e-4), 4)
+    runner = Engine(chain, MethodSetting(method, tolerance=1e-4), 4)
     runner.periods(10_000, watch=False)
     kept = runner.record(8)
     assert runner.grid_index == 0
@@ -140,9 +140,9 @@ def test_stop_flag_ends_a_long_run_soon(method, recording):
     """A stop flag set by another thread ends a long period in its middle: the kernel reads the flag every
     STEPS_BETWEEN_STOP_CHECKS steps at most, so up to two such blocks of steps may follow."""
     stop = Stop()
-    quick = Engine(scene("sec2").evolve(f=1e5, N=300), Setting(method, tolerance=1e-3), 1)
+    quick = Engine(scene("sec2").evolve(f=1e5, N=300), MethodSetting(method, tolerance=1e-3), 1)
     quick.record(1) if recording else quick.periods(1)  # compiling asks no flag
-    slow = Engine(scene("sec2").evolve(f=0.5, N=300), Setting(method, refine=16, tolerance=1e-11), 1, stop=stop)
+    slow = Engine(scene("sec2").evolve(f=0.5, N=300), MethodSetting(method, refine=16, tolerance=1e-11), 1, stop=stop)
     after = steps_after_the_flag(slow, stop, lambda: slow.record(20) if recording else slow.periods(20))
     assert after <= 2 * STEPS_BETWEEN_STOP_CHECKS
 

@@ -9,7 +9,7 @@ import pytest
 from thrown_bead import thrown_by_a_touch
 
 from granchain_core import BadInput, State, run, scene
-from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate import Engine, MethodSetting
 
 #: Linear law from rest, every contact opens and closes; Tsuji's law, whose q is a fourth root; never an event; a
 #: foundation; unequal beads before a soft wall.
@@ -19,7 +19,7 @@ SCENES = {"events": {"f": 340.0}, "fourth root": {"f": 900.0, "dissipation": "ts
 
 def recorded(name: str, tolerance: float, **knobs):
     """An engine of `sec2` after three periods, and its samples; dop853 with the energy account, as in other tests."""
-    engine = Engine(scene("sec2").evolve(**knobs), Setting(name, tolerance=tolerance), 16, account=True)
+    engine = Engine(scene("sec2").evolve(**knobs), MethodSetting(name, tolerance=tolerance), 16, account=True)
     return engine, engine.record(48)
 
 
@@ -50,7 +50,7 @@ def test_it_takes_less_than_half_of_dop853s_evaluations():
 def test_a_run_in_two_parts_goes_on():
     """A call ends at its last sample inside a step; the next begins there."""
     whole = recorded("dop853-root", 1e-11, f=340.0)[1].displacement
-    engine = Engine(scene("sec2").evolve(f=340.0), Setting("dop853-root", tolerance=1e-11), 16)
+    engine = Engine(scene("sec2").evolve(f=340.0), MethodSetting("dop853-root", tolerance=1e-11), 16)
     parts = np.vstack([engine.record(21).displacement, engine.record(27).displacement[1:]])
     assert np.abs(parts - whole).max() < 1e-8 * np.abs(whole).max()
 
@@ -62,7 +62,7 @@ def test_a_brief_touch_inside_a_step_throws_the_bead(depth):
     The other beads are out of reach, and the wall pushes with no force.
     """
     chain = scene("sec2").evolve(f=500.0)
-    engine = Engine(chain, Setting("dop853-root", tolerance=1e-8), 1)
+    engine = Engine(chain, MethodSetting("dop853-root", tolerance=1e-8), 1)
     slots, beta = engine.scaled.slots, engine.scaled.beta
     stiffness = slots.chain.stiffness.copy()
     stiffness[-1] = 0.0

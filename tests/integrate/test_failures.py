@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from granchain_core import Cancelled, ComputationError, Stop, run, scene
-from granchain_core.integrate import METHODS, Engine, Setting, error_controlled, fixed
+from granchain_core.integrate import METHODS, Engine, MethodSetting, error_controlled, fixed
 from granchain_core.integrate.failure import Failure
 from granchain_core.kernels.flow import run as flow
 from granchain_core.kernels.flow.attempt import FlowProblem
@@ -25,7 +25,7 @@ LOCATED = ["rk4", "rk4-split", "dop853", "dop853-root"]
 @pytest.mark.parametrize("bead", [1, 6, 11])
 def test_no_call_begins_from_a_number_that_is_not_finite(method, row, value, bead):
     """Whatever bead and variable it is put into, the next call names the bead before a kernel runs."""
-    engine = Engine(scene("sec2"), Setting(method, tolerance=1e-6), 8)
+    engine = Engine(scene("sec2"), MethodSetting(method, tolerance=1e-6), 8)
     engine.record(12)
     engine.y[bead + (13 if row == "w" else 0)] = value
     for call in (lambda: engine.record(8), lambda: engine.periods(1)):
@@ -49,7 +49,7 @@ def break_contact(engine: Engine, contact: int) -> None:
 @pytest.mark.parametrize("contact", [0, 4, 8, 11])
 def test_the_bead_beside_a_broken_contact_is_named(method, samples, f, contact):
     """The first step from rest, and the one after 31 samples at 340 Hz, are split at contact events."""
-    engine = Engine(scene("sec2").evolve(f=f), Setting(method, tolerance=1e-6), 8)
+    engine = Engine(scene("sec2").evolve(f=f), MethodSetting(method, tolerance=1e-6), 8)
     if samples:
         engine.record(samples)
     break_contact(engine, contact)
@@ -61,7 +61,7 @@ def test_the_bead_beside_a_broken_contact_is_named(method, samples, f, contact):
 
 @pytest.mark.parametrize("method", LOCATED)
 def test_the_kernel_of_whole_periods_looks_as_well(method):
-    engine = Engine(scene("sec2"), Setting(method, tolerance=1e-6), 1)
+    engine = Engine(scene("sec2"), MethodSetting(method, tolerance=1e-6), 1)
     engine.periods(2)
     break_contact(engine, 4)
     with pytest.raises(ComputationError, match=r"bead [45] stopped being a finite number"):
@@ -73,7 +73,7 @@ def test_the_kernel_of_whole_periods_looks_as_well(method):
 def test_the_repeated_call_that_finds_the_bead_is_cancelled_as_any_other(method, periods, monkeypatch):
     """It may take as long as the call that failed; dop853 repeats none."""
     stop = Stop()
-    engine = Engine(scene("sec2"), Setting(method, tolerance=1e-6), 8, stop=stop)
+    engine = Engine(scene("sec2"), MethodSetting(method, tolerance=1e-6), 8, stop=stop)
     engine.periods(2)
     break_contact(engine, 4)
     before, flags, locate = engine.y.copy(), [], engine.stepper.locate_failure
@@ -100,7 +100,7 @@ def test_the_repeated_call_that_finds_the_bead_is_cancelled_as_any_other(method,
 @pytest.mark.parametrize("method", LOCATED)
 def test_a_bead_that_is_not_found_is_not_named(method):
     """Where every number is finite, none is called the first that failed."""
-    engine = Engine(scene("sec2"), Setting(method, tolerance=1e-6), 8)
+    engine = Engine(scene("sec2"), MethodSetting(method, tolerance=1e-6), 8)
     engine.record(8)
     assert engine.stepper.locate_failure(engine.y, None, 0.0, Stop())[0] == 0
     problem = Failure(NOT_FINITE, 1.0, 0, None, {}, scene("sec2"), method).error
@@ -110,7 +110,7 @@ def test_a_bead_that_is_not_found_is_not_named(method):
 
 def test_the_sentence_names_the_time_since_the_start():
     """After twenty periods the failure is at about twenty periods, not at the beginning of the present chunk."""
-    engine = Engine(scene("sec2"), Setting("rk4", tolerance=1e-6), 8)
+    engine = Engine(scene("sec2"), MethodSetting("rk4", tolerance=1e-6), 8)
     engine.periods(20)
     engine.y[1:12] = np.nan
     with pytest.raises(ComputationError, match=r"\(2\d(\.\d+)? drive periods\)"):

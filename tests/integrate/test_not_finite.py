@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from granchain_core import ComputationError, scene
-from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate import Engine, MethodSetting
 from granchain_core.integrate.scaling import scale_chain
 from granchain_core.kernels.samples import first_not_finite
 
@@ -27,7 +27,7 @@ def test_the_first_bead_that_is_not_finite(value: float, bead: int, row: int) ->
 @pytest.mark.parametrize("method", ["rk4", "dop853"])
 def test_a_contact_that_is_not_a_number_is_said_by_the_kernel(method: str) -> None:
     """The state is finite when the call begins; what begins in a step ends the run with its sentence."""
-    engine = Engine(scene("sec2").evolve(N=3), Setting(method, tolerance=1e-6), 4)
+    engine = Engine(scene("sec2").evolve(N=3), MethodSetting(method, tolerance=1e-6), 4)
     engine.record(8)
     engine.scaled.slots.chain.stiffness[1] = np.nan
     with pytest.raises(ComputationError, match=r"bead [12] ") as caught:
@@ -37,7 +37,7 @@ def test_a_contact_that_is_not_a_number_is_said_by_the_kernel(method: str) -> No
 
 def test_the_time_of_a_failure_inside_a_call_counts_from_the_start() -> None:
     """A drive that fails in the twenty-first period, the first one of the present call."""
-    engine = Engine(scene("sec2").evolve(N=3), Setting("rk4"), 1)
+    engine = Engine(scene("sec2").evolve(N=3), MethodSetting("rk4"), 1)
     engine.periods(20)
     engine.stepper.drive[40] = np.nan
     with pytest.raises(ComputationError, match=r"\(20 drive periods\)") as caught:
@@ -51,7 +51,7 @@ def test_an_overflow_in_velocities_is_found_by_the_equations_in_velocities() -> 
     The equations in (u, w) overflow at another bead of this state.
     """
     chain = scene("sec2").evolve(f=340.0)
-    setting = Setting("rk4-naive")
+    setting = MethodSetting("rk4-naive")
     grid = setting.steps_per_period(scale_chain(chain), 8)
     engine = Engine(chain, setting, grid)
     engine.record(31 * grid // 8)

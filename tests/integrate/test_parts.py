@@ -5,11 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from granchain_core import Cancelled, Scene, Stop, scene
-from granchain_core.integrate import METHODS, Engine, Setting, fixed, fixed_step_setting
+from granchain_core import Cancelled, Scene, Stop, integrate, scene
+from granchain_core.integrate import METHODS, Engine, MethodSetting, fixed, fixed_step_setting
 
 SHORT = scene("sec2")
 LONG = scene("sec2").evolve(N=200)
+
+
+def test_the_older_name_of_a_setting_still_works() -> None:
+    assert integrate.Setting is MethodSetting
 
 
 def motion(chain: Scene, samples: int) -> dict[str, np.ndarray]:
@@ -91,7 +95,7 @@ def test_a_cancelled_call_leaves_the_chain_where_the_call_began(method: str, cal
     stop = Second()
     stop.pauses = 2
     first = 0 if call == "periods" else 3
-    cancelled, other = (Engine(scene("sec2"), Setting(method, tolerance=1e-8), 8, stop=one) for one in (stop, Stop()))
+    cancelled, other = (Engine(scene("sec2"), MethodSetting(method, tolerance=1e-8), 8, stop=one) for one in (stop, Stop()))
     for engine in (cancelled, other):
         engine.record(8 + first)
     before, _ = cancelled.state, other.state  # to read it puts the driver in its place

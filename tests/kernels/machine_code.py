@@ -26,7 +26,7 @@ import numpy as np
 
 from granchain_core import scene
 from granchain_core.execution.stop import Stop
-from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate import Engine, MethodSetting
 from granchain_core.integrate.batch import Batch
 from granchain_core.integrate.scaling import scale_chain
 from granchain_core.kernels.batch.run import batch_steps
@@ -107,7 +107,7 @@ def flow_types(knobs: dict) -> tuple:
 def argument_types(knobs: dict) -> dict[str, tuple]:
     """Types of the arguments of both kernels for section 2's chain with these knobs."""
     chain = scene("sec2").evolve(**knobs)
-    e, block = Engine(chain, Setting("rk4-split"), 1), Batch(chain, Stop())
+    e, block = Engine(chain, MethodSetting("rk4-split"), 1), Batch(chain, Stop())
     stepper = e.stepper
     one = (stepper.work.simd, stepper.trajectory(e.y), 0, 4, KernelIO(e.log, e.counts.array, e.stop.flag))
     return {"chain": tuple(map(numba.typeof, one)), "batch": tuple(map(numba.typeof, (block.members, block.state, 4)))}

@@ -6,7 +6,7 @@ from __future__ import annotations
 import pytest
 
 from granchain_core import scene
-from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate import Engine, MethodSetting
 from granchain_core.integrate.scaling import scale_chain
 from granchain_core.kernels.equations.motion import Slots
 from granchain_core.scene.effects import ALWAYS, EFFECTS
@@ -40,7 +40,7 @@ def test_an_effect_switched_on_has_its_slot_and_its_array():
 @pytest.mark.parametrize("method", ["rk4", "rk4-split", "dop853"])
 def test_without_an_energy_account_there_is_no_array_for_it(method):
     """The account's two integrals and three columns exist only where they were asked for."""
-    with_account, without = (Engine(scene("sec2"), Setting(method, tolerance=1e-6), 4, account=b) for b in (True, False))
+    with_account, without = (Engine(scene("sec2"), MethodSetting(method, tolerance=1e-6), 4, account=b) for b in (True, False))
     assert len(with_account.y) == len(without.y) + 2
     assert without.empty_samples(3).energy is None
     assert with_account.empty_samples(3).energy.shape == (3, 3)

@@ -28,7 +28,7 @@ from machine_code import Types, types_by_case, vector_effects
 
 from granchain_core import scene
 from granchain_core.execution.stop import Stop
-from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate import Engine, MethodSetting
 from granchain_core.integrate.batch import Batch
 from granchain_core.kernels.batch_size import VARIABLE
 from granchain_core.kernels.compiling.cache_folder import CACHE_FOLDER
@@ -143,7 +143,7 @@ def test_nothing_is_multiplied_by_an_absent_effect_in_the_flow_with_tangents():
 def test_absent_effects_have_no_arrays_in_the_simd_workspaces():
     """None in place of the static overlaps, of the damping and the foundation of a batch, of unequal beads."""
     bare = scene("sec2").evolve(dissipation="none")
-    assert Engine(bare, Setting("rk4-split"), 1).stepper.work.simd.preload is None
+    assert Engine(bare, MethodSetting("rk4-split"), 1).stepper.work.simd.preload is None
     values = Batch(bare, Stop()).members
     assert set(values.slots) == {None} and values.unequal is None
     full = Batch(scene("sec2").evolve(kappa=0.001, F0=1.0), Stop()).members.slots

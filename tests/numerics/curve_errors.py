@@ -16,7 +16,7 @@ import numpy as np
 
 from granchain_core import Scene, scene
 from granchain_core.execution.stop import Stop
-from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate import Engine, MethodSetting
 from granchain_core.scene.laws import LAWS
 from granchain_core.steady.batch.jobs_in_batch import batch_results
 
@@ -50,13 +50,13 @@ def random_scene(rng: np.random.Generator, base: str) -> Scene:
 
 def true_forces(chosen: Scene, state, period: int) -> np.ndarray | None:
     """Largest input and output force (2,) on the orbit through `state`, scaled; None where it never repeats itself."""
-    engine = Engine(chosen, Setting("rk4-split", refine=16), 1)
+    engine = Engine(chosen, MethodSetting("rk4-split", refine=16), 1)
     engine.start(state)
     for _ in range(PATIENCE // (8 * period)):
         strobes, _ = engine.periods(8 * period)
         change = np.abs(strobes[-1] - strobes[-1 - period]).max(axis=1) / np.abs(strobes).max(axis=(0, 2))
         if change.max() < REPEATS:
-            exact = Engine(chosen, Setting("dop853", tolerance=1e-11), FINE)
+            exact = Engine(chosen, MethodSetting("dop853", tolerance=1e-11), FINE)
             exact.start(engine.state)
             exact.record(period * FINE)
             return exact.maxima[:2]

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from granchain_core import CurvePoint, Scene, State, iter_curve, scene
-from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate import Engine, MethodSetting
 from granchain_core.scene.state import rest
 from granchain_core.steady.lyapunov import growth_along
 
@@ -61,7 +61,7 @@ class Judged:
 
 def truth(chosen: Scene, start: State | None) -> str:
     """What becomes of the motion from a state at phase 0, None for rest."""
-    engine = Engine(chosen, Setting("rk4-split", refine=REFINE), 1)
+    engine = Engine(chosen, MethodSetting("rk4-split", refine=REFINE), 1)
     engine.start(rest(chosen) if start is None else start)
     for _ in range(PATIENCE // PERIODS):
         strobes, _ = engine.periods(PERIODS, watch=False)

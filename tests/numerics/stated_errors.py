@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from granchain_core import ComputationError, Scene, run, scene
-from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate import Engine, MethodSetting
 from granchain_core.scene.state import rest
 from tools.fuzzing.laws import with_every_law
 
@@ -75,7 +75,7 @@ def random_scene(rng: np.random.Generator, structures: list) -> Scene:
 
 def reference(chosen: Scene, tolerance: float) -> np.ndarray:
     """Displacements (T, N) in m."""
-    engine = Engine(chosen, Setting("dop853", tolerance=tolerance), SAMPLES, account=True)
+    engine = Engine(chosen, MethodSetting("dop853", tolerance=tolerance), SAMPLES, account=True)
     engine.start(rest(chosen))
     return engine.record(PERIODS * SAMPLES).displacement * engine.scaled.scales.length
 

@@ -9,7 +9,7 @@ import pytest
 from thrown_bead import thrown_by_a_touch
 
 from granchain_core import State, run, scene
-from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate import Engine, MethodSetting
 from granchain_core.kernels.dop853.tableau import STAGES
 from granchain_core.kernels.error_control.located_step import located_step
 
@@ -20,7 +20,7 @@ def grazing(depth: float, method: str, tolerance: float = 1e-9):
     The bead is thrown by a touch that lasts only while the driver is above 1 − depth.
     """
     chain = scene("sec2").evolve(N=1, f=500.0, D=100.0)
-    engine = Engine(chain, Setting(method, refine=1, tolerance=tolerance), 64)
+    engine = Engine(chain, MethodSetting(method, refine=1, tolerance=tolerance), 64)
     slots = engine.scaled.slots
     far = slots.chain._replace(stiffness=np.array([1.0, 0.0]))  # the wall pushes with no force
     engine.use(replace(engine.scaled, slots=slots._replace(chain=far, dissipation=type(slots.dissipation)(0.0))))
@@ -45,7 +45,7 @@ def test_counted_events_are_the_openings_and_closings_that_a_fine_sampling_shows
     contact at t = 0 is none, because it happens before the first sample.
     """
     chain = scene("sec2").evolve(accuracy=1e-8)
-    engine = Engine(chain, Setting("dop853", tolerance=1e-10), 4096)
+    engine = Engine(chain, MethodSetting("dop853", tolerance=1e-10), 4096)
     engine.record(4096 * 2)
     result = run(chain, periods=0, record=2, samples=4096)
     closed = result.overlap[1:] > 0.0
@@ -56,8 +56,8 @@ def test_counted_events_are_the_openings_and_closings_that_a_fine_sampling_shows
 def test_across_events_dop853_keeps_to_a_hundred_tolerances():
     """Without event location a method of order 8 has the order of the kink that it steps over."""
     chain = scene("sec2").evolve(F0=0.0)
-    true = Engine(chain, Setting("dop853", tolerance=1e-14), 8).record(16).displacement
-    found = Engine(chain, Setting("dop853", tolerance=1e-10), 8).record(16).displacement
+    true = Engine(chain, MethodSetting("dop853", tolerance=1e-14), 8).record(16).displacement
+    found = Engine(chain, MethodSetting("dop853", tolerance=1e-10), 8).record(16).displacement
     assert np.abs(found - true).max() / np.abs(true).max() < 1e-8  # a hundred tolerances
 
 
@@ -71,7 +71,7 @@ def test_a_chain_that_never_opens_has_no_events():
 def test_located_steps_end_on_the_events():
     """After a step that found a contact opening or closing its overlap is zero, to the tolerance of event location."""
     chain = scene("sec2").evolve(f=1130.0)
-    engine = Engine(chain, Setting("dop853", tolerance=1e-9), 1)
+    engine = Engine(chain, MethodSetting("dop853", tolerance=1e-9), 1)
     engine.periods(2)
     t, landed = 0.0, []
     for _ in range(400):

@@ -9,7 +9,7 @@ import pytest
 from thrown_bead import thrown_by_a_touch
 
 from granchain_core import State, scene
-from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate import Engine, MethodSetting
 from granchain_core.integrate.scaling import scale_chain
 
 
@@ -22,7 +22,7 @@ def test_a_touch_inside_a_step_throws_the_bead(depth: float, vectors: bool) -> N
     goes on to grow; for so brief a touch it exceeds the impulse itself, by at most 1e-9.
     """
     chain = scene("sec2").evolve(N=1, f=500.0, D=100.0)
-    finer = (Setting("rk4-split", refine=1.0 + 0.01 * i) for i in range(100))
+    finer = (MethodSetting("rk4-split", refine=1.0 + 0.01 * i) for i in range(100))
     engine = Engine(chain, next(s for s in finer if s.steps_per_period(scale_chain(chain), 1) % 4 == 2), 1)
     slots = engine.scaled.slots
     far = slots.chain._replace(stiffness=np.array([1.0, 0.0]))  # the wall pushes with no force

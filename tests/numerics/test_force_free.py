@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from granchain_core import Scene, State, scene
-from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate import Engine, MethodSetting
 from granchain_core.kernels.effects.dissipation import damping
 
 #: Kernels take long to compile: of the other laws the hard cases and the fuzzer see enough.
@@ -27,7 +27,7 @@ def test_a_force_free_contact_pushes_again() -> None:
     from half as many steps."""
     chain = thrown()
     found, fine, finer = (Engine(chain, setting, SAMPLES).record(SAMPLES // 8) for setting in (
-        Setting("dop853", 1.0, 1e-12), Setting("rk4", 32.0), Setting("rk4", 64.0)))
+        MethodSetting("dop853", 1.0, 1e-12), MethodSetting("rk4", 32.0), MethodSetting("rk4", 64.0)))
     largest = np.abs(finer.displacement).max()
     assert np.abs(fine.displacement - finer.displacement).max() / largest < 1e-8
     assert np.abs(found.displacement - finer.displacement).max() / largest < 1e-8
@@ -43,13 +43,13 @@ def test_a_force_free_contact_moves_as_if_it_were_open() -> None:
     """
     apart = scene("sec2").evolve(N=2, f=2000.0, A0=1e-9, F0=1e-3, D=800.0, dissipation=LAW, tension="cut")
     apart = replace(apart, start_velocity=((1, -2e-3), (2, 2e-3)))
-    engine = Engine(apart, Setting("dop853", 1.0, 1e-10), SAMPLES)
+    engine = Engine(apart, MethodSetting("dop853", 1.0, 1e-10), SAMPLES)
     kept = engine.record(SAMPLES // 64)
     assert (kept.force[1:, 1] == 0.0).all()
     static = apart.static_overlap()[1] / engine.scaled.scales.length
     overlap = kept.displacement[:, 0] - kept.displacement[:, 1] + static
     assert overlap[0] > 0.0 > overlap[-1]
-    fine = Engine(apart, Setting("rk4", 64.0), SAMPLES).record(SAMPLES // 64)
+    fine = Engine(apart, MethodSetting("rk4", 64.0), SAMPLES).record(SAMPLES // 64)
     assert np.abs(fine.displacement - kept.displacement).max() < 1e-6 * np.abs(kept.displacement).max()
 
 
@@ -58,7 +58,7 @@ def test_a_start_on_the_kink_may_be_taken_for_either_side() -> None:
     rng = np.random.default_rng(3)
     for preload in 10.0 ** rng.uniform(-3.0, 0.0, 30):
         chain = scene("sec2").evolve(N=2, f=300.0, A0=1e-9, F0=preload, D=800.0, dissipation=LAW, tension="cut")
-        engine = Engine(chain, Setting("dop853", 1.0, 1e-12), SAMPLES)
+        engine = Engine(chain, MethodSetting("dop853", 1.0, 1e-12), SAMPLES)
         scales, slots = engine.scaled.scales, engine.scaled.slots
         overlap = slots.preload.static[1]
         kink = slots.chain.stiffness[1] * overlap**1.5 / damping(slots.dissipation, overlap)

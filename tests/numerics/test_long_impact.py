@@ -9,7 +9,7 @@ import pytest
 
 from app.cli.forces import warn
 from granchain_core import run, scene
-from granchain_core.integrate import Engine, Setting, method_for
+from granchain_core.integrate import Engine, MethodSetting, method_for
 from granchain_core.scene.state import rest
 
 SAMPLES = 500
@@ -22,7 +22,7 @@ def test_two_fine_computations_disagree_behind_the_pulse_only() -> None:
     setting = method_for(1e-6, False)
     found = []
     for refine in (32.0, 64.0):
-        engine = Engine(shown, Setting(setting.method, refine * setting.refine), SAMPLES)
+        engine = Engine(shown, MethodSetting(setting.method, refine * setting.refine), SAMPLES)
         engine.start(rest(shown))
         found.append(engine.record(SAMPLES))
     one, other = found

@@ -12,7 +12,7 @@ from chains import LAWS
 
 from granchain_core import BadInput, Scene, scene
 from granchain_core.execution.stop import Stop
-from granchain_core.integrate import METHODS, Engine, Setting
+from granchain_core.integrate import METHODS, Engine, MethodSetting
 from granchain_core.integrate.batch import NEVER, Batch, can_share_batch
 from granchain_core.integrate.dop853_root import Dop853RootStepper
 from granchain_core.integrate.methods import RK4_SPLIT
@@ -47,7 +47,7 @@ _BATCH_REFINED, _BATCH_ERROR = 12.0, 1e-6
 _PERIODS, _SAMPLES = 2, 8
 
 #: dop853 near rounding.
-_TRUE = Setting("dop853", tolerance=1e-12)
+_TRUE = MethodSetting("dop853", tolerance=1e-12)
 
 
 def chain(name: str, beads: int = BEADS) -> Scene:
@@ -56,7 +56,7 @@ def chain(name: str, beads: int = BEADS) -> Scene:
 
 
 @functools.cache
-def motion(name: str, setting: Setting, beads: int = BEADS) -> np.ndarray:
+def motion(name: str, setting: MethodSetting, beads: int = BEADS) -> np.ndarray:
     """The samples of the first periods from rest, in scaled units."""
     engine = Engine(chain(name, beads), setting, _SAMPLES, account=METHODS[setting.method].error_control)
     return engine.record(_PERIODS * _SAMPLES).displacement
@@ -67,7 +67,7 @@ def difference(found: np.ndarray, true: np.ndarray) -> float:
     return float(np.abs(found - true).max() / np.abs(true).max())
 
 
-def of_its_order(setting: Setting, one: Scene) -> float:
+def of_its_order(setting: MethodSetting, one: Scene) -> float:
     """A step to the power of the order that the method's row states for such a chain, or 1 where it states none."""
     method = METHODS[setting.method]
     order = method.observed_with_cut if one.cuts_tension else method.observed_order
@@ -78,7 +78,7 @@ def of_its_order(setting: Setting, one: Scene) -> float:
 @pytest.mark.parametrize("method", [name for name in METHODS if name != "dop853"])
 @pytest.mark.parametrize("name", CHAINS)
 def test_every_method_moves_a_chain_as_dop853_does_or_refuses_it(name: str, method: str) -> None:
-    setting, true = Setting(method, refine=_REFINED, tolerance=_TOLERANCE), motion(name, _TRUE)
+    setting, true = MethodSetting(method, refine=_REFINED, tolerance=_TOLERANCE), motion(name, _TRUE)
     try:
         error = difference(motion(name, setting), true)
     except BadInput as refusal:
@@ -93,7 +93,7 @@ def test_every_method_moves_a_chain_as_dop853_does_or_refuses_it(name: str, meth
 @pytest.mark.parametrize("name", EFFECT_NAMES)
 def test_a_long_chain_moves_with_each_effect_as_dop853_moves_it(name: str) -> None:
     """In vectors along the chain where they know the effect."""
-    setting = Setting(RK4_SPLIT, refine=_REFINED)
+    setting = MethodSetting(RK4_SPLIT, refine=_REFINED)
     engine = Engine(chain(name, LONG), setting, _SAMPLES)
     known = not unknown_slots(engine.scaled.slots, "rk4")
     assert isinstance(engine.stepper.work.simd, LongChain) == known
@@ -133,7 +133,7 @@ def test_a_method_that_left_an_effect_out_would_be_noticed(name: str, beads: int
     bare, true = motion("linear", _TRUE, beads), motion(name, _TRUE, beads)
     seen = difference(bare, true)
     print(f"{name}: {seen:.3f}")
-    assert seen > 2.0 * Setting("rk4", refine=_REFINED).step(scale_chain(chain(name, beads)), _SAMPLES)
+    assert seen > 2.0 * MethodSetting("rk4", refine=_REFINED).step(scale_chain(chain(name, beads)), _SAMPLES)
     assert difference(bare[::_SAMPLES], true[::_SAMPLES]) > 2.0 * _BATCH_ERROR
 
 

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from granchain_core import scene
-from granchain_core.integrate import METHODS, Engine, Setting
+from granchain_core.integrate import METHODS, Engine, MethodSetting
 from granchain_core.scene.laws import LAWS
 
 PERIODS = 3
@@ -52,7 +52,7 @@ LOST = {"rk4": 3.0, "rk4-naive": 2.0}
 
 
 @functools.cache
-def motion(smoothness: str, f: float, setting: Setting) -> tuple[np.ndarray, int]:
+def motion(smoothness: str, f: float, setting: MethodSetting) -> tuple[np.ndarray, int]:
     """Eight samples a period in scaled units, and the steps they took.
 
     dop853 carries the energy account along, as in a run: these kernels are compiled for other tests too.
@@ -70,7 +70,7 @@ def errors(smoothness: str, settings) -> np.ndarray:
     """(settings, scenes): largest relative displacement error, against dop853 at 1e-14 per step."""
     found = np.empty((len(settings), len(frequencies(smoothness))))
     for j, f in enumerate(frequencies(smoothness)):
-        true = motion(smoothness, f, Setting("dop853", tolerance=1e-14))[0]
+        true = motion(smoothness, f, MethodSetting("dop853", tolerance=1e-14))[0]
         for i, setting in enumerate(settings):
             found[i, j] = np.abs(motion(smoothness, f, setting)[0] - true).max() / np.abs(true).max()
     return found
@@ -81,13 +81,13 @@ def order(method: str, smoothness: str) -> float:
     """Slope of log error over log step: 1.5 decades of steps, or eight of dop853's tolerance."""
     if METHODS[method].error_control:
         return order_by_tolerance(method, smoothness)
-    found = errors(smoothness, [Setting(method, refine=r) for r in REFINED])
+    found = errors(smoothness, [MethodSetting(method, refine=r) for r in REFINED])
     return float(-np.polyfit(np.log(REFINED), np.log(found).mean(axis=1), 1)[0])
 
 
 def order_by_tolerance(method: str, smoothness: str) -> float:
     """Slope of log error over log mean step, eight decades of tolerance."""
-    settings = [Setting(method, tolerance=t) for t in TOLERANCES]
+    settings = [MethodSetting(method, tolerance=t) for t in TOLERANCES]
     steps = np.array([[motion(smoothness, f, s)[1] for f in frequencies(smoothness)] for s in settings])
     error = np.log(errors(smoothness, settings)).mean(axis=1)
     return float(-np.polyfit(np.log(steps).mean(axis=1), error, 1)[0])
@@ -135,5 +135,5 @@ def test_error_of_dop853_follows_its_tolerance(smoothness):
     """At every tolerance the error stays below a thousand times it: each of some hundred events and steps may add one
     tolerance, and the sensitivity of these motions is below 10 (reference.npz). Without damping, and where a force is
     cut, sensitivities are thousands."""
-    found = errors(smoothness, [Setting("dop853", tolerance=t) for t in TOLERANCES])
+    found = errors(smoothness, [MethodSetting("dop853", tolerance=t) for t in TOLERANCES])
     assert (found.max(axis=1) < 1000 * TOLERANCES).all()

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from granchain_core import Scene, State, orbit
-from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate import Engine, MethodSetting
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Recorded:
 def recorded(scene: Scene, samples: int, periods: int = 3) -> Recorded:
     """`periods` drive periods of the settled chain of `scene`, `samples` samples each."""
     start = orbit(scene).state
-    engine = Engine(scene, Setting("dop853", tolerance=1e-12), samples)
+    engine = Engine(scene, MethodSetting("dop853", tolerance=1e-12), samples)
     engine.start(start)
     rows, scales = engine.record(periods * samples), engine.scaled.scales
     return Recorded(np.arange(periods * samples + 1) / samples / scene.f, rows.force[:, 0] * scales.force,

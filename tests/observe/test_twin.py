@@ -94,11 +94,11 @@ def test_an_observer_that_starts_where_its_chain_is_stays_there(changes) -> None
 
 
 def test_the_chain_of_a_pair_moves_as_it_does_alone() -> None:
-    from granchain_core.integrate import Engine, Setting
+    from granchain_core.integrate import Engine, MethodSetting
 
     pair = Pair(FOUNDED, 16)
     pair.start(rest(FOUNDED), granchain_core.orbit(FOUNDED).state)
-    alone = Engine(FOUNDED, Setting("dop853", tolerance=1e-13), 16)
+    alone = Engine(FOUNDED, MethodSetting("dop853", tolerance=1e-13), 16)
     together, single = pair.engine.record(80), alone.record(80)
     # two runs of dop853 with other steps
     assert together.displacement[:, : FOUNDED.N] == pytest.approx(single.displacement, abs=1e-9)

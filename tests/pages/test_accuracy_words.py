@@ -19,7 +19,7 @@ from granchain_core import scene, settle
 from granchain_core.accuracy import Row, WorkPrecision, compared_methods
 from granchain_core.accuracy.naive import lesson
 from granchain_core.execution.stop import Stop
-from granchain_core.integrate import METHODS, Setting
+from granchain_core.integrate import METHODS, MethodSetting
 from granchain_core.steady.settling import advance, recording, refine_orbit
 
 
@@ -28,10 +28,10 @@ def test_the_setting_that_is_told_is_the_one_that_computes(accuracy: float, monk
     """The rule in app/session/active_setting.py is the one of steady/settling/refine_orbit.py: the finest engine of a
     final picture.
     """
-    used: list[Setting] = []
+    used: list[MethodSetting] = []
     engine = recording.Engine
 
-    def noting(shown: Any, setting: Setting, *rest: Any, **options: Any) -> Any:
+    def noting(shown: Any, setting: MethodSetting, *rest: Any, **options: Any) -> Any:
         used.append(setting)
         return engine(shown, setting, *rest, **options)
 
@@ -53,16 +53,16 @@ def test_the_setting_that_is_told_is_the_one_that_computes(accuracy: float, monk
 
 def test_live_and_irregular_pictures_have_the_live_method() -> None:
     shown = scene("sec2")
-    assert shown_setting(shown, None, live=True) == Setting("rk4-split", refine=2)
+    assert shown_setting(shown, None, live=True) == MethodSetting("rk4-split", refine=2)
 
 
 def test_a_setting_between_two_rows_is_found_between_them() -> None:
     rows = [Row("dop853", "", 1e-4, 0.001, 1, value=1e-4), Row("dop853", "", 1e-8, 0.003, 1, value=1e-8),
             Row("dop853", "", float("inf"), 0.0, 0, value=1e-10, failure="no")]
-    now = locate(Setting("dop853", tolerance=1e-6), rows)
+    now = locate(MethodSetting("dop853", tolerance=1e-6), rows)
     assert now is not None
     assert now.error == pytest.approx(1e-6) and now.wall_s == pytest.approx(np.sqrt(3e-6))
-    assert locate(Setting("rk4"), rows) is None
+    assert locate(MethodSetting("rk4"), rows) is None
 
 
 def test_a_measurement_belongs_to_all_knobs_but_the_accuracy() -> None:
@@ -126,4 +126,4 @@ def test_what_a_method_costs_is_the_time_of_its_own_thread(monkeypatch: pytest.M
     monkeypatch.setattr(module.time, "thread_time", lambda: next(times))
     monkeypatch.setattr(module, "Engine", lambda *_, **__: SimpleNamespace(
         record=lambda rows: SimpleNamespace(displacement=np.zeros((rows, 1))), counts=SimpleNamespace(rhs=5)))
-    assert module._ours(scene("sec2"), Setting("rk4"), Stop()).seconds == 0.25
+    assert module._ours(scene("sec2"), MethodSetting("rk4"), Stop()).seconds == 0.25

@@ -15,7 +15,7 @@ import pytest
 from chains import LAWS
 
 from granchain_core import run, scene
-from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate import Engine, MethodSetting
 from granchain_core.scene.effects import EFFECTS, Effect
 
 COMBINATIONS = [c for c in itertools.product(LAWS, ("allowed", "cut"), (0.0, 0.002), (0.0, 2.0))
@@ -55,7 +55,7 @@ def test_the_account_closes_after_discarded_periods_too(law):
 @pytest.mark.parametrize(("law", "tension", "kappa", "preload"), [("linear", "cut", 0.0, 0.0), ("tsuji", "cut", 0.002, 0.05)])
 def test_dop853s_account_of_cut_contacts_closes(law, tension, kappa, preload):
     """Kinks where a contact stops pushing, and force-free contacts, lose no energy that is not accounted for."""
-    engine = Engine(chain(law, tension, kappa, preload).evolve(D=400.0), Setting("dop853", tolerance=1e-11), 16, account=True)
+    engine = Engine(chain(law, tension, kappa, preload).evolve(D=400.0), MethodSetting("dop853", tolerance=1e-11), 16, account=True)
     stored, work, lost = engine.record(16 * 6).energy.T
     # the tolerance of a step, over some hundred kinks at which a step begins anew
     assert np.abs(stored - stored[0] - work + lost).max() < 1e-10 * np.abs(work).max()
@@ -68,7 +68,7 @@ def test_work_and_loss_are_the_integrals_of_force_times_velocity(law, tension, k
     So that the account is the energies themselves and not two numbers that happen to cancel.
     """
     shown = chain(law, tension, kappa, preload)
-    engine = Engine(shown, Setting("dop853", tolerance=1e-9), 4096, account=True)
+    engine = Engine(shown, MethodSetting("dop853", tolerance=1e-9), 4096, account=True)
     kept, scaled = engine.record(2 * 4096), engine.scaled
     theta = 2 * np.pi * np.arange(2 * 4096 + 1) / 4096
     v0 = scaled.beta * np.cos(theta)
@@ -95,7 +95,7 @@ def test_work_and_loss_are_the_integrals_of_force_times_velocity(law, tension, k
                                              ("kuwabara-kono", "rk4-split")])
 def test_damping_only_takes_energy(law, method):
     """The energy lost never decreases from sample to sample, whatever the law."""
-    engine = Engine(chain(law, "allowed", 0.0, 0.0), Setting(method, refine=4, tolerance=1e-10), 64, account=True)
+    engine = Engine(chain(law, "allowed", 0.0, 0.0), MethodSetting(method, refine=4, tolerance=1e-10), 64, account=True)
     lost = engine.record(64 * 6).energy[:, 2]
     assert lost[-1] > 0.0
     # between samples the integrals carry the method's error, relative to all that has been lost
@@ -106,7 +106,7 @@ def test_damping_only_takes_energy(law, method):
 def test_without_damping_nothing_is_lost_and_the_chain_keeps_what_the_driver_gave(knobs, method):
     """Q = 0, and E − E(0) = W."""
     engine = Engine(chain("none", "allowed", 0.0, 0.0).evolve(**knobs),
-                    Setting(method, refine=8, tolerance=1e-12), 16, account=True)
+                    MethodSetting(method, refine=8, tolerance=1e-12), 16, account=True)
     energy = engine.record(64).energy
     scale = np.abs(energy[:, :2]).max()
     assert np.abs(energy[:, 2]).max() < 1e-14 * scale  # rounding of K d^{3/2} computed twice
@@ -116,7 +116,7 @@ def test_without_damping_nothing_is_lost_and_the_chain_keeps_what_the_driver_gav
 def test_a_moving_bead_brings_its_energy_along():
     """A start velocity is stored energy before anything is driven."""
     thrown = replace(chain("linear", "allowed", 0.0, 0.0), start_velocity=((3, 0.01),))
-    engine = Engine(thrown, Setting("dop853", tolerance=1e-10), 8, account=True)
+    engine = Engine(thrown, MethodSetting("dop853", tolerance=1e-10), 8, account=True)
     energy = engine.record(8).energy * engine.scaled.scales.energy
     assert energy[0, 0] == pytest.approx(0.5 * thrown.bead(3).mass * 0.01**2, rel=1e-12)  # nothing else moves at t = 0
     stored, work, lost = energy[-1] - energy[0]
@@ -137,6 +137,6 @@ def test_an_effect_dissipates_if_its_row_says_so(effect: Effect) -> None:
     alone = scene("sec2").evolve(N=2, dissipation="none")
     if not effect.possible(alone):
         pytest.skip(effect.refusal)
-    engine = Engine(alone.evolve(**effect.usual), Setting("rk4-split"), 16, account=True)
+    engine = Engine(alone.evolve(**effect.usual), MethodSetting("rk4-split"), 16, account=True)
     _, work, lost = engine.record(16 * 2).energy.T
     assert (lost[-1] > 1e-3 * np.abs(work).max()) == effect.dissipates

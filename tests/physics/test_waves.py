@@ -9,7 +9,7 @@ import pytest
 
 from granchain_core import State, run, scene
 from granchain_core.hard_cases.chains import Bench
-from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate import Engine, MethodSetting
 from granchain_core.kernels.effects.dissipation import LinearDashpot
 from granchain_core.kernels.effects.driver import Harmonic
 from granchain_core.scene.hertz import SOLITARY_BY_FORCE, SOLITARY_BY_VELOCITY
@@ -67,7 +67,7 @@ def swing(chain, mode: int, amplitude: float) -> float:
     frequencies, shapes = linear_modes(chain)
     shape = shapes[:, mode] / np.abs(shapes[:, mode]).max()
     clock = chain.evolve(f=frequencies[mode] / 3.0)
-    engine = Engine(clock, Setting("dop853", tolerance=1e-12), 48)
+    engine = Engine(clock, MethodSetting("dop853", tolerance=1e-12), 48)
     scaled = engine.scaled
     slots = scaled.slots._replace(driver=Harmonic(0.0, scaled.beta), dissipation=LinearDashpot(0.0))
     engine.use(replace(scaled, slots=slots))

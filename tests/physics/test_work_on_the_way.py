@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from granchain_core import scene
-from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate import Engine, MethodSetting
 
 pytestmark = pytest.mark.quick
 
@@ -19,7 +19,7 @@ def test_work_and_loss_on_the_way_are_the_integrals_up_to_there() -> None:
     By the trapezoidal rule; the dashpot's force jumps some twenty times in a period, by half a spacing of it each.
     """
     shown = scene("sec2").evolve(N=5, f=900.0, kappa=0.002, F0=2.0)
-    engine = Engine(shown, Setting("dop853", tolerance=1e-9), SAMPLES, account=True)
+    engine = Engine(shown, MethodSetting("dop853", tolerance=1e-9), SAMPLES, account=True)
     kept, scaled = engine.record(SAMPLES), engine.scaled
     theta = 2 * np.pi * np.arange(SAMPLES + 1) / SAMPLES
     v0, rows = scaled.beta * np.cos(theta), np.zeros((SAMPLES + 1, 1))

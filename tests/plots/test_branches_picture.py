@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 import granchain_core
-from app.plots.branches import _STYLES, SPECIAL, BranchRows, branches, drawn_orbits, special_words
+from app.plots.branches import SPECIAL, SPECIAL_STYLES, BranchRows, branches, drawn_orbits, special_words
 from app.plots.theme import THEMES
 from granchain_core import resonance_curve, scene
 from granchain_core.orbits import Branch
@@ -26,7 +26,7 @@ def data(plot: Any, name: str) -> dict[str, list[Any]]:
 
 
 def test_every_kind_of_special_point_has_words_and_a_mark() -> None:
-    assert tuple(SPECIAL) == tuple(_STYLES) == SPECIAL_KINDS
+    assert tuple(SPECIAL) == tuple(SPECIAL_STYLES) == SPECIAL_KINDS
 
 
 def test_orbits_around_special_points_are_drawn_in_their_places(branch: Branch) -> None:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from bokeh.models import LogScale
 
+from app.plots.branches import SPECIAL_STYLES
 from app.plots.diagram import CATEGORIES, category, cell_rows, cell_words, diagram, nothing, scale_models
 from app.plots.theme import THEMES
 from granchain_core import scene
@@ -51,6 +52,18 @@ def test_bifurcation_curves_are_drawn_over_the_map_in_its_units() -> None:
     assert drawn["x"] == [1920.0, 1980.0] and drawn["y"] == pytest.approx([1.0, 10.0])  # Hz, µm
     assert drawn["tooltip"] == ["period doubling of period 1: f 1920 to 1980 Hz, A0 1e-06 to 1e-05 m, 2 points"] * 2
     assert diagram(filled(0), THEMES["light"]).select_one({"name": "bifurcation curve"}) is None
+
+
+def test_the_marks_on_bifurcation_curves_say_of_which_kind_they_are() -> None:
+    """By the marks of the special points of a branch, with a key; a long curve has few of them."""
+    points = [BifurcationPoint(1920.0 + i, 1e-6, -1.0 + 0.0j, np.zeros(4)) for i in range(60)]
+    plot = diagram(filled(0, 4), THEMES["light"], curves=[BifurcationCurve(kind, 1, points) for kind in ("fold", "neimark_sacker", "fold")])
+    legend = plot.select_one({"name": "bifurcations"})
+    assert [item.label.value for item in legend.items] == ["fold", "Neimark–Sacker (torus)"]
+    for item, kind in zip(legend.items, ("fold", "neimark_sacker"), strict=True):
+        line, marks = item.renderers
+        assert not line.glyph.line_dash and marks.glyph.marker == SPECIAL_STYLES[kind]["marker"]
+        assert marks.view.filter.indices[0] == 0 and marks.view.filter.indices[-1] == 59 and len(marks.view.filter.indices) == 9
 
 
 def test_only_what_is_computed_is_drawn() -> None:

@@ -12,7 +12,7 @@ from numba.core import event
 
 from granchain_core import run, scene
 from granchain_core.execution.stopwatch import COMPILER_CLOCK, CompilerClock, Stopwatch
-from granchain_core.integrate import METHODS, Setting
+from granchain_core.integrate import METHODS, MethodSetting
 from granchain_core.integrate.methods import typical_error
 from granchain_core.integrate.safety_factors import IRREGULAR
 from granchain_core.integrate.stated import Computations
@@ -26,9 +26,9 @@ STEPS = 10_000
 def shown(differences: list[float], refines: tuple[float, ...] = REFINES) -> Computations:
     """Computations of the fixed-step method with these differences, one after another."""
     found = Computations(False)
-    found.begin(Setting("rk4-split", refines[0]))
+    found.begin(MethodSetting("rk4-split", refines[0]))
     for refine, difference in zip(refines[1:], differences, strict=False):
-        setting = Setting("rk4-split", refine)
+        setting = MethodSetting("rk4-split", refine)
         found.add(setting, STEPS, np.array([difference]), np.array([typical_error(setting)]))
     return found
 
@@ -47,7 +47,7 @@ def test_where_the_order_is_seen_the_last_difference_decides() -> None:
 @pytest.mark.parametrize("method", METHODS)
 def test_the_difference_before_counts_with_every_method_where_tension_is_cut(method: str) -> None:
     """With the order observed there, or 1 where none is stated; with error control the ratio of the tolerances."""
-    coarse = Setting(method, 1.0, 1e-6)
+    coarse = MethodSetting(method, 1.0, 1e-6)
     fine = coarse.finer()
     found = Computations(cuts_tension=True)
     found.begin(coarse)
@@ -58,7 +58,7 @@ def test_the_difference_before_counts_with_every_method_where_tension_is_cut(met
 
 
 def test_no_less_is_stated_than_is_typical_of_the_steps() -> None:
-    setting = Setting("rk4-split", REFINES[1])
+    setting = MethodSetting("rk4-split", REFINES[1])
     assert shown([0.0]).stated[0] == typical_error(setting) > 0.0
 
 
@@ -67,16 +67,16 @@ def test_rounding_grows_as_errors_grow() -> None:
     1e-10 at least is stated however well two computations agree, and finer ones are of no use.
     """
     growth = 1e6
-    found = shown([growth * typical_error(Setting("rk4-split", r)) for r in REFINES[:-1]])
+    found = shown([growth * typical_error(MethodSetting("rk4-split", r)) for r in REFINES[:-1]])
     assert not found.rounded
-    fine = shown([growth * typical_error(Setting("rk4-split", 8.0)), 1e-15, 1e-15], (8.0, 64.0, 512.0, 4096.0))
+    fine = shown([growth * typical_error(MethodSetting("rk4-split", 8.0)), 1e-15, 1e-15], (8.0, 64.0, 512.0, 4096.0))
     assert fine.stated[0] >= growth * np.finfo(float).eps
     assert fine.rounded
 
 
 def test_a_gentle_motion_is_not_charged_with_rounding() -> None:
     """Errors that do not grow leave the rounding of 1e4 steps below 1e-12."""
-    assert shown([typical_error(Setting("rk4-split", r)) for r in REFINES[:-1]]).rounding < 1e-12
+    assert shown([typical_error(MethodSetting("rk4-split", r)) for r in REFINES[:-1]]).rounding < 1e-12
 
 
 def test_an_error_of_a_tenth_is_none_worth_the_name_unless_it_was_asked_for() -> None:
@@ -161,5 +161,5 @@ def test_kernels_that_are_compiled_on_the_way_do_not_exhaust_the_budget(monkeypa
 
 def test_typical_errors_fall_as_the_differences_are_expected_to() -> None:
     """One order for both terms of a stated error: that which is observed."""
-    coarse, fine = Setting("rk4-split", 1.0), Setting("rk4-split", 8.0)
+    coarse, fine = MethodSetting("rk4-split", 1.0), MethodSetting("rk4-split", 8.0)
     assert typical_error(coarse) / typical_error(fine) == pytest.approx(Computations(False)._falls(coarse, fine), rel=1e-12)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from granchain_core import scene
-from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate import Engine, MethodSetting
 from granchain_core.results.regime import Regime
 from granchain_core.steady.settling import regime_decisions
 from granchain_core.steady.settling.regime_decisions import Decisions, regime_without_continuing
@@ -28,7 +28,7 @@ def decided(monkeypatch: pytest.MonkeyPatch, **found: Any) -> tuple[Regime, Regi
     monkeypatch.setattr(regime_decisions, "orbit_of", lambda *words: orbit)
     monkeypatch.setattr(regime_decisions, "seen_modulus", lambda *words, **more: 0.99)
     chain = scene("sec2")
-    engine = Engine(chain, Setting("rk4-split"), 1)
+    engine = Engine(chain, MethodSetting("rk4-split"), 1)
     engine.start_scaled(np.zeros(2 * chain.N))
     strobes = np.zeros((10, 2, chain.N))
     settled = Decisions(chain, True).next(engine, strobes, CLAIM)

@@ -8,7 +8,7 @@ import pytest
 
 from granchain_core import Scene, State, scene
 from granchain_core.execution.stop import Stop
-from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate import Engine, MethodSetting
 from granchain_core.integrate.batch import Batch
 from granchain_core.integrate.scaling import ScaledChain, scale_chain
 from granchain_core.kernels.batch_size import BATCH_SIZE
@@ -54,7 +54,7 @@ def by_tangents(shown: Scene, state: State, blocks: int, block: int, count: int 
 
 def by_shadow(shown: Scene, state: State) -> list[tuple[float, float]]:
     """Mean and standard error by the one-scene shadow and by the one in a batch."""
-    engine = Engine(shown, Setting("rk4-split"), 1)
+    engine = Engine(shown, MethodSetting("rk4-split"), 1)
     engine.start(state)
     scaled = scale_chain(shown)
     (pair,) = in_pairs([(scaled, scaled.from_si(state))], Batch(shown, Stop()))

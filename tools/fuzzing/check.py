@@ -14,7 +14,7 @@ import numpy as np
 from granchain_core import BadInput, Cancelled, ComputationError, Run, Scene, run
 from granchain_core.errors import OverBudget
 from granchain_core.execution.stop import Stop
-from granchain_core.integrate import Engine, Setting, method_for
+from granchain_core.integrate import Engine, MethodSetting, method_for
 from granchain_core.scene.state import rest
 
 from . import oracle, properties
@@ -159,7 +159,7 @@ def _judge(verdict: Verdict, found: Run, stop: Stop) -> np.ndarray:
     """Compare the run with dop853 at its finest, check its energy; returns the true displacements [m]."""
     chosen, kept = found.scene, []
     for tolerance in (3e-14, 3e-15):
-        engine = Engine(chosen, Setting("dop853", tolerance=tolerance), SAMPLES, account=True, stop=stop)
+        engine = Engine(chosen, MethodSetting("dop853", tolerance=tolerance), SAMPLES, account=True, stop=stop)
         engine.start(rest(chosen))
         kept.append(engine.record(PERIODS * SAMPLES))
         verdict.steps = engine.counts.steps
@@ -218,7 +218,7 @@ def _others(verdict: Verdict, chosen: Scene, true: np.ndarray, seconds: float) -
 
     def naive() -> np.ndarray:
         with limit(seconds) as stop:
-            engine = Engine(chosen, Setting("rk4-naive", refine), SAMPLES, stop=stop)
+            engine = Engine(chosen, MethodSetting("rk4-naive", refine), SAMPLES, stop=stop)
             engine.start(rest(chosen))
             return engine.record(PERIODS * SAMPLES).displacement * chosen.A0
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from granchain_core import Scene
 from granchain_core.execution.stop import Stop
-from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate import Engine, MethodSetting
 from granchain_core.integrate.scaling import ScaledChain, scale_chain
 from granchain_core.kernels.effects.contact import Chain
 from granchain_core.kernels.effects.driver import Harmonic
@@ -17,7 +17,7 @@ from granchain_core.kernels.samples import Samples
 from granchain_core.scene.state import State, rest
 
 SAMPLES = 16
-_FIXED = Setting("rk4-split", 1.0)
+_FIXED = MethodSetting("rk4-split", 1.0)
 #: Scaled time of the mirrored motions: long enough for dozens of contacts, too short for chaos to magnify rounding.
 _TIME = 20.0
 
@@ -94,6 +94,6 @@ def _symmetric(scene: Scene) -> ScaledChain:
 
 
 def _thrown(scaled: ScaledChain, velocity: np.ndarray, tolerance: float, stop: Stop) -> np.ndarray:
-    engine = Engine(scaled.scene, Setting("dop853", tolerance=tolerance), SAMPLES, stop=stop, scaled=scaled)
+    engine = Engine(scaled.scene, MethodSetting("dop853", tolerance=tolerance), SAMPLES, stop=stop, scaled=scaled)
     engine.start(State(np.zeros(len(velocity)), velocity * scaled.scales.velocity))
     return engine.record(SAMPLES).displacement

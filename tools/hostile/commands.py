@@ -19,13 +19,14 @@ from collections import Counter
 from multiprocessing.connection import Connection
 from pathlib import Path
 
+from app.cli.commands import COMMANDS
+
 from .values import text
 
 _SMALL = "--set N=2 --set f=3000 --set accuracy=1e-3"
-#: At least one that the parser takes for each command. Each ends within seconds as it stands, and with a word less: the
-#: longest, `check`, `accuracy` and `serve`, have a word that is refused after the parser. None can harm a file outside
-#: its folder.
-BASES = tuple(line.split() for line in (
+#: Each ends within seconds as it stands, and with a word less: the longest, `check`, `accuracy` and `serve`, have a
+#: word that is refused after the parser. None can harm a file outside its folder.
+_WRITTEN = tuple(line.split() for line in (
     f"run sec2 {_SMALL} --periods 0 --record 1 --samples 4 --json",
     f"run sec2 {_SMALL} --periods 2 --record 1 --samples 8 --out run.h5 --explain",
     f"run sec2 {_SMALL} --drive burst=3000:2:0.001 --json",
@@ -50,6 +51,9 @@ BASES = tuple(line.split() for line in (
     "check --quack --quock", "accuracy sec2 --set N=zwei --set f=lots", "lyapunov sec2 --set N=0 --set D=-1",
     "basins sec2 --set N=0 --set D=-1", "serve --port 0x10 --address 256.1.1.1 --most-visitors 0",
     "--help", "run --help", "nonsense", ""))
+#: These, and the example of each command that has none among them: one at least that the parser takes for each command.
+BASES = (*_WRITTEN, *([name, *row.example.split()] for name, row in COMMANDS.items()
+                      if name not in {base[0] for base in _WRITTEN if base}))
 _OPTIONS = sorted({word for base in BASES for word in base if word.startswith("--")} | {
     "--resume", "--budget", "--method", "--period", "--observer", "--scheduler", "--threads", "--amplitude", "--picture", "--column"})
 _FILES = {

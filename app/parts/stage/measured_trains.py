@@ -1,4 +1,4 @@
-"""A measured series over the force trains and the drive: thin dashed lines in a separate colour."""
+"""A measured series over the force trains and the drive: thin lines in a separate colour."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from bokeh.models import ColumnDataSource, GlyphRenderer, Line, Plot
 
+from ...plots.force_lines import MEASURED
 from ...plots.themed import themed
 from .pinned_trains import MOST_POINTS, NO_TRAIN
 
@@ -71,10 +72,10 @@ class MeasuredTrains:
         line = self._lines.get(series)
         if line is None:
             if len(values["time"]):
-                glyph = Line(x="force", y="time", line_width=1.3, line_dash=[4, 3])
+                glyph = Line(x="force", y="time", line_width=MEASURED.width)
                 where = {"x_range_name": "drive"} if series == _DRIVE else {}
                 plot = self._plots[series % _DRIVE]  # the drive is on the left, over the input force
                 line = plot.add_glyph(ColumnDataSource(values), glyph, level="overlay", **where)
-                self._lines[series] = themed(line, plot, line_color="ink")
+                self._lines[series] = themed(line, plot, line_color=MEASURED.role)
         elif len(values["time"]) or len(line.data_source.data["time"]):
             line.data_source.data = dict(values)

@@ -12,6 +12,7 @@ from bokeh.plotting import figure
 from granchain_core.paper import Column, Trains
 from granchain_core.paper.results import SHOWN
 
+from ..force_lines import MEASURED
 from ..theme import Theme
 from ..themed import apply_theme, empty_figure, themed
 from .panels import fewer, grid, inside_legend
@@ -39,7 +40,8 @@ def trains(shown: Trains, theme: Theme) -> LayoutDOM:
                       label, [6, 3])
             measured = None if column.measured is None else getattr(column.measured, name)
             if column.measured is not None and measured is not None:
-                _line(plot, column.measured.time, unit * measured, "ink", column.measured.word, label, [4, 3], 1.2)
+                _line(plot, column.measured.time, unit * measured, MEASURED.role, column.measured.word, label,
+                      width=MEASURED.width)
             if number == 0:
                 plot.yaxis[0].axis_label = label
             if name == "output_force":

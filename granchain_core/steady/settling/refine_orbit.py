@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...integrate import Engine, Setting, method_for
+from ...integrate import Engine, MethodSetting, method_for
 from ...kernels.strobes.extrapolation import ORBITS
 from ...scene import Scene
 from ...scene.state import State
@@ -29,7 +29,7 @@ FARTHEST_FROM_ORBIT = 1e-3
 _MOST_ROUNDS = 12
 
 
-def orbit_setting(scene: Scene, accuracy: float, contraction: float) -> Setting:
+def orbit_setting(scene: Scene, accuracy: float, contraction: float) -> MethodSetting:
     """The first setting for an orbit to `accuracy`: one period's error e moves it by e/(1 − contraction).
 
     It is rk4-split with finer steps; dop853 if tension is cut, or if one period's error must be below

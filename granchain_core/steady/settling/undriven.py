@@ -6,7 +6,7 @@ import time
 from dataclasses import replace
 
 from ...execution.stop import Stop
-from ...integrate import Counts, Engine, Setting, following_setting
+from ...integrate import Counts, Engine, MethodSetting, following_setting
 from ...integrate.methods import typical_error
 from ...integrate.stated import relative_difference
 from ...kernels.samples import Samples
@@ -26,7 +26,7 @@ def undriven_motion(scene: Scene, start: State | None, samples: int, began: floa
     begin = rest(scene) if start is None else replace(checked_start(scene, start), phase=0.0)  # nothing has a phase
     setting, total = following_setting(scene.cuts_tension), Counts()
 
-    def recorded(chosen: Setting) -> tuple[Engine, Samples]:
+    def recorded(chosen: MethodSetting) -> tuple[Engine, Samples]:
         engine = Engine(scene, chosen, samples, stop=stop)
         engine.start(begin)
         rows = engine.record(samples)

@@ -11,7 +11,7 @@ import numpy as np
 from granchain_core import Scene, scene
 from granchain_core.errors import ComputationError
 from granchain_core.execution.stop import Stop
-from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate import Engine, MethodSetting
 from granchain_core.integrate.batch import NEVER, Batch
 from granchain_core.integrate.scaling import scale_chain
 from granchain_core.kernels.batch_size import BATCH_SIZE
@@ -41,12 +41,12 @@ def _scene(frequency: float = problem.FREQUENCY) -> Scene:
 
 def reference() -> Solved:
     """The trajectory by dop853 at its finest; states are displacements and velocities."""
-    samples = Engine(_scene(), Setting("dop853", tolerance=FINEST), problem.SAMPLES).record(
+    samples = Engine(_scene(), MethodSetting("dop853", tolerance=FINEST), problem.SAMPLES).record(
         problem.PERIODS * problem.SAMPLES)
     return Solved(np.hstack([samples.displacement, samples.velocity]), None)
 
 
-def _recording(setting: Setting) -> Callable[[], Solved]:
+def _recording(setting: MethodSetting) -> Callable[[], Solved]:
     """One engine is set up outside the clock and started from rest again for every run."""
     engine = Engine(_scene(), setting, problem.SAMPLES)
     start = engine.state
@@ -67,7 +67,7 @@ def reference_peaks(frequencies: np.ndarray, tolerance: float = CURVE_TOLERANCE)
     """Peaks of all points and whether each is periodic, by dop853 on all cores."""
 
     def point(frequency: float) -> tuple[float, bool]:
-        engine = Engine(_scene(frequency), Setting("dop853", tolerance=tolerance), 1)
+        engine = Engine(_scene(frequency), MethodSetting("dop853", tolerance=tolerance), 1)
         engine.periods(problem.PASSED, watch=False)
         engine.reset_peaks()
         strobes, maxima = engine.periods(problem.WATCHED)
@@ -117,9 +117,9 @@ def batch_peaks(frequencies: np.ndarray, refine: float) -> Peaks:
 
 def cases() -> list[Case]:
     """Every method of the engine that is worth it, and the batches."""
-    found = [Case(f"granchain {m}", "w", REFINES, lambda r, m=m: _recording(Setting(m, refine=r)), unit="refine")
+    found = [Case(f"granchain {m}", "w", REFINES, lambda r, m=m: _recording(MethodSetting(m, refine=r)), unit="refine")
              for m in FIXED]
-    found += [Case(f"granchain {m}", "w", rungs(1e-4, 1e-13, 4), lambda t, m=m: _recording(Setting(m, tolerance=t)))
+    found += [Case(f"granchain {m}", "w", rungs(1e-4, 1e-13, 4), lambda t, m=m: _recording(MethodSetting(m, tolerance=t)))
               for m in ADAPTIVE]
     found.append(Case("granchain batches", "w", peaks=batch_peaks, curve_ladder=CURVE_REFINES,
                       unit="refine"))

@@ -9,7 +9,7 @@ import pytest
 
 from granchain_core import scene
 from granchain_core.execution.stop import Stop
-from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate import Engine, MethodSetting
 from granchain_core.integrate.batch import NEVER, Batch
 from granchain_core.integrate.scaling import scale_chain
 from granchain_core.kernels.batch_size import BATCH_SIZE
@@ -61,7 +61,7 @@ def run_batch(scenes, refine: float) -> tuple[np.ndarray, np.ndarray]:
 def true(case: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The same by rk4-split at a 32nd of the step, whose error is 1e-9 (tests/numerics/test_orders.py), and the
     elastic output force at the very end (8,)."""
-    engines = [Engine(one, Setting("rk4-split", refine=32), 1) for one in scenes_of(case)]
+    engines = [Engine(one, MethodSetting("rk4-split", refine=32), 1) for one in scenes_of(case)]
     found = [engine.periods(PERIODS) for engine in engines]
     return (np.array([s[:, 0] for s, _ in found]), np.array([t.max(axis=0) for _, t in found]),
             np.array([engine.stepper.work.forces.e[-1] for engine in engines]))

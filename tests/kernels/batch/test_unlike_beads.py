@@ -8,7 +8,7 @@ import numpy as np
 
 from granchain_core import Scene, scene
 from granchain_core.execution.stop import Stop
-from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate import Engine, MethodSetting
 from granchain_core.integrate.batch import NEVER, Batch
 from granchain_core.integrate.scaling import scale_chain
 from granchain_core.scene.state import rest
@@ -34,7 +34,7 @@ def test_unlike_beads_in_a_batch() -> None:
     for _ in scenes:
         member, finite = batch.run()
         assert finite
-        true = Engine(scenes[member], Setting("dop853", tolerance=1e-11), 1).periods(PERIODS, watch=False)[0][:, 0]
+        true = Engine(scenes[member], MethodSetting("dop853", tolerance=1e-11), 1).periods(PERIODS, watch=False)[0][:, 0]
         found = batch.strobes(member)[: PERIODS + 1, 0]
         assert np.abs(found - true).max() < 1e-6 * np.abs(true).max()
         batch.state.return_at[member] = NEVER

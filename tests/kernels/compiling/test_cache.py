@@ -13,7 +13,7 @@ import pytest
 
 import granchain_core
 from granchain_core import scene
-from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate import Engine, MethodSetting
 
 #: Kernels of a few seconds, which any engine needs, and those of the two methods of whole runs.
 PLACE, METHODS = "engine.evaluate()", "engine.periods(1); engine.record(2)"
@@ -21,9 +21,9 @@ PROGRAM = """
 import json, sys
 from numba.core.dispatcher import Dispatcher
 from granchain_core import scene
-from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate import Engine, MethodSetting
 for method in ("rk4", "dop853"):
-    engine = Engine(scene("sec2").evolve(f=2000.0), Setting(method, tolerance=1e-3), 2)
+    engine = Engine(scene("sec2").evolve(f=2000.0), MethodSetting(method, tolerance=1e-3), 2)
     exec(sys.argv[1])
 found = [getattr(k, "dispatcher", k) for name, module in sys.modules.items() if name.startswith("granchain_core")
          for k in vars(module).values()]
@@ -138,7 +138,7 @@ def test_the_kernels_of_whole_runs_are_loaded_from_disk_too(tmp_path: Path) -> N
     """Where they have been compiled, by this process or before it; what Numba cannot keep would be compiled here again.
     """
     for method in ("rk4", "dop853"):
-        engine = Engine(scene("sec2").evolve(f=2000.0), Setting(method, tolerance=1e-3), 2)
+        engine = Engine(scene("sec2").evolve(f=2000.0), MethodSetting(method, tolerance=1e-3), 2)
         engine.periods(1)
         engine.record(2)
     hits, misses = hits_and_misses(None, touched(tmp_path / "one"), METHODS)

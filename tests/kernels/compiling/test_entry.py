@@ -14,7 +14,7 @@ from granchain_core import branch, resonance_curve, scene
 from granchain_core.execution.stop import Stop
 from granchain_core.integrate import Engine
 from granchain_core.integrate.batch import Batch
-from granchain_core.integrate.methods import METHODS, RK4_SPLIT, Setting
+from granchain_core.integrate.methods import METHODS, RK4_SPLIT, MethodSetting
 from granchain_core.kernels.compiling import entry
 from granchain_core.kernels.samples import first_not_finite
 from granchain_core.scene.state import State
@@ -33,7 +33,7 @@ def checked(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
 def advance(method: str, changes: dict, account: bool = False) -> None:
     chain = scene("sec2").evolve(f=2000.0, **changes)
-    engine = Engine(chain, Setting(method, tolerance=1e-6), 4, account)
+    engine = Engine(chain, MethodSetting(method, tolerance=1e-6), 4, account)
     engine.start(State(np.zeros(chain.N), np.full(chain.N, 0.01)))
     engine.record(6)
     engine.record(2)
@@ -54,7 +54,7 @@ def test_every_kind_of_chain(changes: dict) -> None:
 
 def test_a_workspace_of_another_type_has_a_specialization_of_its_own() -> None:
     """Tests take its vectors away from a stepper that has run with them."""
-    engine = Engine(scene("sec2"), Setting(RK4_SPLIT), 4)
+    engine = Engine(scene("sec2"), MethodSetting(RK4_SPLIT), 4)
     engine.record(2)
     engine.stepper.work = engine.stepper.work._replace(simd=None)
     assert np.isfinite(engine.record(2).force).all()

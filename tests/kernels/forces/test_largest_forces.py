@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from granchain_core import Run, Scene, resonance_curve, run, scene, settle
-from granchain_core.integrate import METHODS, Engine, Setting, dop853_setting, fixed_step_setting
+from granchain_core.integrate import METHODS, Engine, MethodSetting, dop853_setting, fixed_step_setting
 from granchain_core.integrate.methods import jump_errors
 from granchain_core.parameter_map import parameter_map
 from granchain_core.scene.state import State
@@ -68,7 +68,7 @@ def test_a_jump_is_read_where_the_overlap_vanishes(beads: int) -> None:
         assert abs(force / exact - 1.0) < least
 
 
-def jump_and_force(chain: Scene, setting: Setting, state: State) -> tuple[float, float]:
+def jump_and_force(chain: Scene, setting: MethodSetting, state: State) -> tuple[float, float]:
     """Lower bound of the relative error of the largest input force, which is at a jump, and that force [scaled]."""
     engine = Engine(chain, setting, 1)
     engine.start(state)
@@ -135,7 +135,7 @@ def test_touches_shorter_than_a_step_are_found_or_said_not_to_be_resolved(method
     parabolas: 10 %.
     """
     chain, resolves = scene("sec2").evolve(N=1, f=20_000.0, wall=1e-3), method in LOCATING
-    engine = Engine(chain, Setting(method, tolerance=1e-9), 17)
+    engine = Engine(chain, MethodSetting(method, tolerance=1e-9), 17)
     engine.start(State(np.array([chain.A0 * (1.0 - NEAR)]), np.zeros(1)))
     engine.record(8)
     touched = engine.closings[engine.closings[:, 2] == 0]

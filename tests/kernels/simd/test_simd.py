@@ -10,7 +10,7 @@ from chains import LAWS
 
 from granchain_core import Scene, iter_curve, scene
 from granchain_core.execution.stop import Stop
-from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate import Engine, MethodSetting
 from granchain_core.integrate.batch import Batch, can_share_batch
 from granchain_core.integrate.scaling import scale_chain
 from granchain_core.kernels.effects.registry import unknown_slots
@@ -65,7 +65,7 @@ def test_every_two_values_stand_together_in_a_chain() -> None:
 def test_steps_along_the_chain_are_the_scalar_steps(changes: dict[str, object]) -> None:
     shown = scene("sec2").evolve(**changes)
     # there are no vectors with the energy account, which changes nothing in the motion
-    fast, slow = (Engine(shown, Setting("rk4-split"), 8, account) for account in (False, True))
+    fast, slow = (Engine(shown, MethodSetting("rk4-split"), 8, account) for account in (False, True))
     assert fast.stepper.work.simd is not None and slow.stepper.work.simd is None
     samples = 24 if shown.has_dissipation else 16  # without damping, rounding grows tenfold in half a period
     a, b = fast.record(samples), slow.record(samples)

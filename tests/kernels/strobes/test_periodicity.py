@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from granchain_core.integrate.batch import change_workspace
+from granchain_core.kernels.strobes import periodicity
 from granchain_core.kernels.strobes.extrapolation import ORBITS, reduced_rank
 from granchain_core.kernels.strobes.periodicity import LONGEST_PERIOD, window_of
 from granchain_core.steady import regime_criteria
@@ -77,3 +78,18 @@ def test_the_limit_of_a_linear_map_with_few_modes_is_found_at_once(modes: int) -
     limit = np.zeros((2, 3))
     reduced_rank(states, np.zeros((ORBITS, 6)), np.zeros((ORBITS, ORBITS)), limit)
     np.testing.assert_allclose(limit, strobes([0.5] * modes, [0.0] * modes, 0)[0], atol=1e-9)
+
+
+@pytest.mark.quick
+def test_of_two_halves_the_slower_one_tells_the_rate() -> None:
+    """Nine changes that fall by 0.8 and then by 0.95 fall by 0.95: what is slow stays."""
+    changes = np.cumprod([1.0, *[0.8] * 4, *[0.95] * 4])
+    assert periodicity.decay_in(changes, 9, 1) == (pytest.approx(0.95, rel=1e-12), True)
+
+
+@pytest.mark.quick
+def test_the_shortest_period_is_told() -> None:
+    """States that alternate repeat after four periods too; their period is two."""
+    states = np.zeros((9, 2, 1))
+    states[1::2] = 1.0
+    assert periodicity.shortest(states, np.ones(2), 4, 1e-10, 1e-10) == 2

@@ -1,0 +1,123 @@
+"""The difference between the measured and the computed forces of a motion over time, in newtons.
+
+Equation   d(t_i) = F_model(t_i) − F_measured(t_i) at every measured time t_i of the motion,   rms = √⟨d²⟩
+Note       Both clocks begin at the first sample, so nothing is moved in time. Nothing is subtracted either: a constant
+           offset of a sensor is a part of rms and largest difference, and stands alone in the mean.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from ..errors import BadInput
+from .compare import model_minus_measured
+from .series import Series
+
+#: The forces that a series may have.
+FORCES = ("input_force", "output_force")
+
+
+class Motion(Protocol):
+    """A computed motion: times (T,) [s], and the forces of the driver and on the wall (T,) [N]."""
+
+    @property
+    def time(self) -> np.ndarray:
+        """Times (T,) [s], ascending."""
+
+    @property
+    def input_force(self) -> np.ndarray:
+        """Force of the driver (T,) [N]."""
+
+    @property
+    def output_force(self) -> np.ndarray:
+        """Force on the wall (T,) [N]."""
+
+
+@dataclass(frozen=True)
+class ForceDifference:
+    """Model − measured of one force over the measured times of a motion.
+
+    Attributes
+    ----------
+    force : str
+        "input_force" or "output_force".
+    compared, samples : int
+        Measured times of the motion, and all measured times.
+    rms, largest, mean : float
+        Root of the mean square, largest modulus, and mean [N].
+    at : float
+        Time of the largest difference [s].
+    relative : float or None
+        `rms` over that of the measured force; None if the measured force is 0 throughout.
+    word : str
+        "measured", or "virtual experiment" where nothing was measured.
+    """
+
+    force: str
+    compared: int
+    samples: int
+    rms: float
+    largest: float
+    at: float
+    mean: float
+    relative: float | None
+    word: str = "measured"
+
+    @property
+    def sentence(self) -> str:
+        """The difference in words, with its unit."""
+        share = "" if self.relative is None else f" ({100.0 * self.relative:.3g} %)"
+        return (f"{self.force.replace('_', ' ')}, model − {self.word} at {self.compared} of {self.samples} samples: "
+                f"rms {self.rms:.4g} N{share}, largest {self.largest:.4g} N at {self.at:.5g} s, "
+                f"mean {self.mean:+.4g} N")
+
+
+def compared_forces(measured: Series, motion: Motion) -> dict[str, ForceDifference]:
+    """Compare the forces of a series with those of a motion whose clock begins at the first sample.
+
+    Parameters
+    ----------
+    measured : Series
+        A series with an input force, an output force or both. It may be sampled in another way than the motion, and be
+        shorter or longer: each sample between the first and the last time of the motion counts.
+    motion : Driven or Run
+        The computed motion; between its times its forces are taken as straight lines.
+
+    Returns
+    -------
+    dict
+        A `ForceDifference` for each measured force, by its name; empty if no force was measured.
+
+    Raises
+    ------
+    BadInput
+        A measured value is not finite, or no sample lies within the motion.
+    """
+    if not isinstance(measured, Series):
+        raise BadInput("Measured forces are a series, which granchain_core.experiment.read_experiment returns for a "
+                       f"table of time and force, not a value of type {type(measured).__name__}.")
+    time, first, last = measured.time, float(motion.time[0]), float(motion.time[-1])
+    within = (time >= first) & (time <= last)
+    found = {}
+    for name in FORCES:
+        values = getattr(measured, name)
+        if values is None:
+            continue
+        words = name.replace("_", " ")
+        wrong = np.flatnonzero(~(np.isfinite(values) & np.isfinite(time)))
+        if len(wrong):
+            raise BadInput(f"Sample {wrong[0]} of the measured {words} is not a finite number; leave it out.")
+        if not within.any():
+            raise BadInput(f"No sample of the measured {words} lies within the motion: the samples are from "
+                           f"{time.min():.6g} to {time.max():.6g} s, the motion is from {first:.6g} to {last:.6g} s.")
+        there = values[within]
+        gaps = model_minus_measured(np.interp(time[within], motion.time, getattr(motion, name)), there)
+        rms, size = (float(np.sqrt(np.mean(one**2))) for one in (gaps, there))
+        at = int(np.argmax(np.abs(gaps)))
+        found[name] = ForceDifference(name, len(gaps), len(time), rms, float(np.abs(gaps[at])),
+                                      float(time[within][at]), float(gaps.mean()),
+                                      rms / size if size > 0.0 else None, measured.word)
+    return found

@@ -1,0 +1,24 @@
+"""An orbit that is refined until its distance, and not its change, is small."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from granchain_core import scene
+from granchain_core.steady.settling import refine_orbit
+from granchain_core.steady.settling.advance import run_until_settled
+
+pytestmark = pytest.mark.quick
+
+
+def test_relaxing_ends_where_the_distance_is_small_and_not_the_change(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A change c at a decay of 0.99 leaves 99 c, and that is what is returned and held against the accuracy."""
+    settling, seen = run_until_settled(scene("sec2"), None, None), []
+    real = refine_orbit.changes
+    settling.regime = replace(settling.regime, multiplier=0.99)
+    monkeypatch.setattr(refine_orbit, "changes", lambda *words: seen.append(real(*words)) or seen[-1])
+    _, bound = refine_orbit.refined_orbit(settling, 1e-6)
+    assert bound <= 0.3e-6
+    assert bound == pytest.approx(99.0 * float(seen[-1][0]), rel=1e-12)
