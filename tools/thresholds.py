@@ -13,6 +13,7 @@ import importlib
 import re
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cache
 from pathlib import Path
 
 _CORE = Path(__file__).resolve().parents[1] / "granchain_core"
@@ -45,7 +46,8 @@ class Marked:
         return f"{self.what} | {printed(self.value)} | `{self.name}` in `{self.file}` |"
 
 
-def marked_constants() -> list[Marked]:
+@cache
+def marked_constants() -> tuple[Marked, ...]:
     """All constants with a mark, file by file."""
     found = []
     for path in sorted(_CORE.rglob("*.py")):
@@ -53,7 +55,7 @@ def marked_constants() -> list[Marked]:
             first, *_ = re.split(r"(?<=\.) (?=[A-Z])", comment.replace("\n#:", "").strip())
             what = first.rstrip(".").replace("|", r"\|")
             found.append(Marked(mark, what, path.relative_to(_CORE).as_posix(), name))
-    return found
+    return tuple(found)
 
 
 def printed(value: float) -> str:

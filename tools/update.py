@@ -82,6 +82,10 @@ _TABLES = (
 )
 
 
+#: The pages with such tables.
+PAGES = tuple(dict.fromkeys(page for page, _, _ in _TABLES))
+
+
 def pages() -> dict[Path, str]:
     """The pages with a table that follows from the code, and their text as it should be now."""
     found: dict[Path, str] = {}

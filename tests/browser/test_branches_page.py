@@ -97,8 +97,8 @@ def test_a_link_to_the_page_begins_by_itself_over_the_resonance_curve(visit: Vis
     assert source(page, "branches", "curve") == curve
 
 
-def test_a_motion_that_does_not_repeat_is_said_to_lie_on_no_branch(visit: Visit) -> None:
-    page = visit("?v=1&scene=sec2&f=1750&page=branches")
+def test_a_motion_that_does_not_repeat_is_said_to_lie_on_no_branch(at: Visit) -> None:
+    page = at("?v=1&scene=sec2&f=1750&page=branches")
     sheet = page.locator('[data-overlay="branches"]')
     expect(sheet).to_contain_text("lies on no branch", timeout=COMPILED)
     expect(sheet.get_by_role("button", name="follow from here")).to_be_visible()
@@ -169,8 +169,8 @@ def test_the_page_fits_and_moved_knobs_grey_the_branch(visit: Visit) -> None:
     expect(sheet.locator(".stale")).to_have_count(0)
 
 
-def test_a_chain_without_such_an_orbit_is_told_in_a_sentence(visit: Visit) -> None:
-    page = visit("?v=1&scene=rig&f=140&k=0")
+def test_a_chain_without_such_an_orbit_is_told_in_a_sentence(at: Visit) -> None:
+    page = at("?v=1&scene=rig&f=140&k=0")
     sheet = opened(page)
     stop(sheet)
     sheet.get_by_label("period of the orbits").select_option("1")

@@ -66,14 +66,16 @@ def test_kappa_is_shown_for_every_k_and_amplitude(at: Visit) -> None:
     expect(page.locator("#knobs .aside")).to_contain_text("none")
 
 
-def test_a_knob_that_turns_nothing_says_so(visit: Visit) -> None:
+def test_a_knob_that_turns_nothing_says_so(at: Visit) -> None:
     """Without dissipation there is no D in the equation."""
-    page = visit("?v=1&scene=impact")
+    page = at("?v=1&scene=impact")
     damping = page.locator('[data-knob="D"]')
     expect(damping).to_contain_text("no effect: the law, under “more knobs”, is “none”")
-    page.locator("summary").get_by_text("more knobs", exact=True).first.click()
+    more = page.locator("summary").get_by_text("more knobs", exact=True).first
+    more.click()
     page.get_by_label("dissipation law").select_option("linear")
     expect(damping).to_contain_text("0: contacts lose no energy")
+    more.click()
 
 
 def test_wrong_values_get_their_sentence(at: Visit) -> None:
