@@ -35,7 +35,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--from", dest="start", metavar="a", help="its value where the branch begins")
     parser.add_argument("--to", dest="end", metavar="b", help="its value where it ends")
     parser.add_argument("--period", type=whole, metavar="n",
-                        help="drive periods of the orbits; by default those of the settled motion")
+                        help="drive periods of the orbits; by default those of the settled motion, 1 if it has none")
     parser.add_argument("--both", action="store_true",
                         help="begin at the scene's own value of the knob and go both ways, to a and to b")
     parser.add_argument("--points", type=whole, default=MOST_POINTS, metavar="m", help="most orbits each way")
@@ -54,6 +54,7 @@ def do(arguments: argparse.Namespace) -> None:
     write_picture(arguments.picture, f"A branch of {found.axis.scene.name}", found)
     for arm in found.arms:
         say(f"{len(arm.points)} orbits {_way(arm)}: {arm.reason or 'stopped after the number of orbits asked for'}")
+    say_if(found.period_note)
     if arguments.json:
         show_json(branch_json(found))
     else:
@@ -74,6 +75,7 @@ def branch_json(found: Branch) -> dict[str, Any]:
         **({} if found.axis.amplitude is None else
            {"drive_amplitude": [found.axis.amplitude.held(p.knob) for p in found.points]}),
         "ended": [{"how": arm.ended or "stopped", "reason": arm.reason} for arm in found.arms],
+        "period_note": found.period_note or None,
     }
 
 

@@ -9,7 +9,7 @@ the first chain without the driver's contact, so its multipliers come from the s
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from ..execution.stop import Stop
 from ..inputs.checks import whole_number
 from ..integrate.scaling import scales_of
 from ..integrate.start import at_phase_0
-from ..results.regime import modulus_words
+from ..results.regime import Regime, modulus_words
 from ..scene import Scene
 from ..scene.refusals import require_scene
 from ..scene.state import State
@@ -69,6 +69,8 @@ class Orbit(Labelled):
     monodromy, observer_monodromy : numpy.ndarray or None, shape (2N, 2N)
         Derivatives of the n-period map in scaled displacements, then w, whose eigenvalues the multipliers are; None
         with more than 100 beads.
+    period_note : str
+        Why period 1 was taken, in words, where no period was given and no motion has one; else empty.
 
     Examples
     --------
@@ -89,6 +91,7 @@ class Orbit(Labelled):
     observer_multipliers: np.ndarray | None = None
     monodromy: np.ndarray | None = None
     observer_monodromy: np.ndarray | None = None
+    period_note: str = ""
 
     @property
     def changes(self) -> np.ndarray:
@@ -186,7 +189,8 @@ class Orbit(Labelled):
         return [f"period {self.period}, {self.stability_words()}{observer}",
                 f"leading multiplier {lead.real:+.4f}{lead.imag:+.4f}i, |μ| {modulus_words(abs(lead))}"
                 + ("" if self.multiplier_errors is None else f" ± {self.multiplier_errors[0]:.0e}"),
-                f"closes to {self.residual:.1e} of its largest displacement and w"]
+                f"closes to {self.residual:.1e} of its largest displacement and w",
+                *([self.period_note] if self.period_note else [])]
 
 
 def periodic_orbit(scene: Scene, period: int | None = None, start: State | None = None, observer: bool = False,
@@ -200,7 +204,8 @@ def periodic_orbit(scene: Scene, period: int | None = None, start: State | None 
     scene : Scene
         The chain; its tension must not be cut.
     period : int, optional
-        Period in drive periods; by default that of the steady state.
+        Period in drive periods. By default that of the steady state; 1 if the steady state is not periodic, or if
+        `start` is given. `Orbit.period_note` then says why.
     start : State, optional
         Where Newton's method begins; by default the steady state reached from rest.
     observer : bool
@@ -234,17 +239,27 @@ def periodic_orbit(scene: Scene, period: int | None = None, start: State | None 
     require_scene(scene)
     n = None if period is None else whole_number("period", period, 1, LONGEST_LOCKED_PERIOD)
     refuse_cut(scene)
+    note = ""
     if start is None:
         settling = run_until_settled(scene, None, stop)
+        if n is None and settling.regime.period is None:
+            note = f"period 1 was taken, because the motion from rest is {_no_period(settling.regime)}"
         n = n or settling.regime.period or 1
         start = settling.engine.state
     else:
+        if n is None:
+            note = "period 1 was taken, because a start was given without a period"
         start = at_phase_0(scene, start, stop)
     n = n or 1
     stroboscopic_map = StroboscopicMap(scene, n, stop)
     x = stroboscopic_map.inner(stroboscopic_map.engine.scaled.from_si(start))
     x, flow, history = _newton(stroboscopic_map, x)
-    return _orbit(scene, n, stroboscopic_map, x, flow, history, observer)
+    return replace(_orbit(scene, n, stroboscopic_map, x, flow, history, observer), period_note=note)
+
+
+def _no_period(regime: Regime) -> str:
+    """The regime of a motion without a period, in words."""
+    return f"not settled after {regime.periods_run} periods" if regime.name == "unsettled" else regime.name
 
 
 def random_state(scene: Scene, seed: int) -> State:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 from linear_chain import linear_multipliers
 
 import granchain_core
+from app.cli import main
 from granchain_core import BadInput, ComputationError, scene
 from granchain_core.orbits.stroboscopic_map import StroboscopicMap
 
@@ -110,3 +113,25 @@ def test_an_orbit_whose_displacements_vanish_at_phase_0_is_found() -> None:
     found = granchain_core.orbit(chain)
     assert found.period == 1 and found.stable and found.residual < 1e-9
     assert found.liouville is not None and abs(found.liouville) < 1e-8
+
+
+def test_period_1_of_a_motion_without_a_period_is_taken_with_a_reason(capsys: pytest.CaptureFixture[str]) -> None:
+    """sec2 is quasi-periodic at 1700 Hz: the unstable orbit of period 1 is another motion than the one from rest."""
+    chain = scene("sec2").evolve(f=1700.0)
+    found = granchain_core.orbit(chain)
+    reason = "period 1 was taken, because the motion from rest is quasi-periodic"
+    assert found.period == 1 and found.period_note == reason and reason in found.summary()
+    started = granchain_core.orbit(chain, start=found.state)
+    assert started.period_note == "period 1 was taken, because a start was given without a period"
+    assert granchain_core.orbit(chain, 1, found.state).period_note == ""
+    assert main(["orbit", "sec2", "--set", "f=1700", "--json"]) == 0
+    written, said = capsys.readouterr()
+    assert json.loads(written)["period_note"] == reason and reason in said
+    assert main(["branch", "sec2", "--knob", "f", "--from", "1700", "--to", "1710", "--points", "2", "--json"]) == 0
+    written, said = capsys.readouterr()
+    assert json.loads(written)["period_note"] == reason and reason in said
+
+
+def test_the_period_of_a_settled_motion_needs_no_reason() -> None:
+    found = granchain_core.orbit(scene("sec2").evolve(N=2, f=2000.0))
+    assert found.period == 1 and found.period_note == ""

@@ -48,6 +48,9 @@ class Branch(Labelled):
         Period of its orbits in drive periods.
     arms : tuple of Arm
         One or two directions from the same seed; `ended` and `reason` say how each ended.
+    period_note : str
+        Why period 1 was taken, in words, where none was given and the steady state has none (`Orbit.period_note`); else
+        empty, as in a branch from a file.
     points : list of BranchPoint
         All orbits in their order along the branch.
     special : list of SpecialPoint
@@ -64,6 +67,7 @@ class Branch(Labelled):
     axis: KnobAxis
     period: int
     arms: tuple[Arm, ...]
+    period_note: str = ""
 
     @property
     def scene(self) -> Scene:
@@ -119,7 +123,8 @@ class Branch(Labelled):
             "without damping stable orbits have their multipliers on the unit circle: a modulus up to "
             f"1 + {ON_CIRCLE:g} counts as on it, and nothing attracts"]
         return [f"{len(self.points)} orbits of period {self.period}, {sum(p.stable for p in self.points)} stable, from "
-                f"{self.axis.text(self.axis.start)} towards {self.axis.text(self.axis.end)}", *ends, *kinds,
+                f"{self.axis.text(self.axis.start)} towards {self.axis.text(self.axis.end)}",
+                *([self.period_note] if self.period_note else []), *ends, *kinds,
                 *([f"{grazings} grazings"] if grazings else []), *undamped]
 
 
@@ -199,7 +204,8 @@ def begin_branch(scene: Scene, knob: str, start: float, end: float, period: int 
     stroboscopic_map = equations.stroboscopic_map(seed_at)
     x = stroboscopic_map.inner(stroboscopic_map.engine.scaled.from_si(orbit.state))
     _refuse_shorter(equations, x, seed_at)
-    return Branch(axis, orbit.period, arms_from(equations, x, seed_at, (1, -1) if both else (axis.direction,)))
+    return Branch(axis, orbit.period, arms_from(equations, x, seed_at, (1, -1) if both else (axis.direction,)),
+                  orbit.period_note)
 
 
 def arms_from(equations: BranchEquations, x: np.ndarray, value: float, directions: tuple[int, ...]) -> tuple[Arm, ...]:
@@ -229,7 +235,8 @@ def continue_branch(scene: Scene, knob: str, start: float, end: float, period: i
     start, end : float
         Values of the knob in SI between which the branch is followed; the first orbit is at `start`.
     period : int, optional
-        Period of the orbits in drive periods; by default that of the steady state at `start`.
+        Period of the orbits in drive periods. By default that of the steady state at `start`; 1 if that is not
+        periodic, or if `start_state` is given. `Branch.period_note` then says why.
     start_state : State, optional
         A state near the first orbit; by default the steady state reached from rest.
     both : bool
