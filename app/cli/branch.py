@@ -75,7 +75,6 @@ def branch_json(found: Branch) -> dict[str, Any]:
         **({} if found.axis.amplitude is None else
            {"drive_amplitude": [found.axis.amplitude.held(p.knob) for p in found.points]}),
         "ended": [{"how": arm.ended or "stopped", "reason": arm.reason} for arm in found.arms],
-        "period_note": found.period_note or None,
     }
 
 
@@ -83,7 +82,7 @@ def _evidence(found: SpecialPoint) -> dict[str, Any]:
     """On what the kind of a special point rests: the multiplier that passes the circle, or what a contact does."""
     passing = found.multiplier
     return {"multiplier": None if passing is None else [passing.real, passing.imag], "contact": found.contact,
-            "event": found.event}
+            "event": found.event, "gained": found.gained}
 
 
 def _normal_form(found: SpecialPoint) -> dict[str, Any] | None:
@@ -233,7 +232,7 @@ def _show(found: Branch) -> None:
     for p in found.points:
         print(f"{p.knob:14.8g}  {p.max_output_force_elastic:26.8g}  {'stable' if p.stable else 'unstable'}")
     for s in found.special:
-        more = f", contact {s.contact}: {s.event}" if s.contact is not None else normal_form_words(s)
+        more = f", contact {s.contact}: one {s.gained} more on one side" if s.contact is not None else normal_form_words(s)
         low, high = s.interval
         print(f"{s.kind} at {found.axis.knob} = {s.knob:.8g}, between {low:.9g} and {high:.9g}{more}")
 

@@ -26,16 +26,17 @@ from ..hdf5.border import entries, finite, one_of, within
 from ..hdf5.plain import Refused
 from ..orbits import Arm, Branch, BranchPoint, KnobAxis, SpecialPoint
 from ..orbits.branch.normal_forms import CRITICALITIES, EARLIER_REASONS, NOT_DECIDED, REASONS, NormalForm
-from ..orbits.branch.special import SPECIAL_KINDS
+from ..orbits.branch.special import EVENTS, SPECIAL_KINDS
 from ..orbits.branch.tables import NO_CONTACT, branch_tables
 from ..scene import Amplitude
 from ..steady.regime_criteria import LONGEST_LOCKED_PERIOD
 from ..tables import MAXIMA
 from .writing import write_file, write_result
 
-#: How an arm can have ended, and how a contact grazes.
+#: How an arm can have ended.
 _ENDS = ("", "reached", "returned", "closed", "merged", "lost")
-_EVENTS = ("", "touch", "separation")
+#: The interval that a contact gains, by its word in files.
+_GAINED = {event: gained for gained, event in EVENTS.items()}
 #: Numbers of one turning point.
 _TURN = 4
 
@@ -139,13 +140,13 @@ def _read_special(file: File, axis: KnobAxis) -> list[SpecialPoint]:
         "knob", "knob_low", "knob_high", "multiplier_real", "multiplier_imag")}
     contacts = within("/special/contact", file.numbers("special/contact", (count,), "i"), NO_CONTACT, axis.scene.N)
     forms = _read_normal_forms(file, count)
-    kinds, events = file.words("special/kind", count, SPECIAL_KINDS), file.words("special/event", count, _EVENTS)
+    kinds, events = file.words("special/kind", count, SPECIAL_KINDS), file.words("special/event", count, ("", *_GAINED))
     return [SpecialPoint(
         kind=kinds[i], knob=float(read["knob"][i]), interval=(float(read["knob_low"][i]), float(read["knob_high"][i])),
         before=before[i], after=after[i],
         multiplier=(None if np.isnan(read["multiplier_real"][i])
                     else complex(read["multiplier_real"][i], read["multiplier_imag"][i])),
-        contact=None if contacts[i] == NO_CONTACT else int(contacts[i]), event=events[i] or None,
+        contact=None if contacts[i] == NO_CONTACT else int(contacts[i]), gained=_GAINED.get(events[i]),
         normal_form=forms[i]) for i in range(count)]
 
 

@@ -48,7 +48,7 @@ class Between:
         if a.turning != b.turning:
             slope = self.equations.quick_slope(newton.z, newton.steps)
             newton.matrix[:-1, -1] = slope
-        if a.turning == b.turning and a.unstable == b.unstable:
+        if (a.turning, a.unstable, a.doubling_sign) == (b.turning, b.unstable, b.doubling_sign):
             tangent = self.equations.tangent_by(newton.matrix, a.tangent)
         else:
             derivative = newton.flow(ROUGH_TOLERANCE).derivative

@@ -115,7 +115,7 @@ class Branch(Labelled):
     def summary(self) -> list[str]:
         """How many orbits, where it ended, and the special points."""
         ends = [arm.reason or arm.ended for arm in self.arms if arm.ended]
-        kinds = [f"{one.kind.replace('_', ' ')} at {self.axis.text(one.knob)}"
+        kinds = [f"{one.kind_words} at {self.axis.text(one.knob)}"
                  + (f", {one.criticality_words()}" if one.normal_form and one.kind != "fold" else "")
                  for one in self.special if one.kind != "grazing"]
         grazings = sum(one.kind == "grazing" for one in self.special)

@@ -57,6 +57,8 @@ def _step_wrong(branch: Branch, arm: Arm, i: int) -> list[str]:
                and s.before.arclength < b.arclength]
     if a.stable != b.stable and not any(s.multiplier is not None for s in between):
         found.append(f"stability changes without a special point {where}")
+    if a.doubling_sign != b.doubling_sign and not any(s.kind == "period_doubling" for s in between):
+        found.append(f"a multiplier passes -1 without a period doubling {where}")
     if a.turning != b.turning and not any(s.kind == "fold" for s in between):
         found.append(f"the knob turns without a fold {where}")
     for contact in np.flatnonzero(a.closings != b.closings):

@@ -55,11 +55,11 @@ class Ends:
         return Ending(point, near, "reached", f"reached {axis.text(point.knob)}")
 
     def merging(self, special: list[SpecialPoint]) -> int | None:
-        """Index of a fold that is a merging: the difference of the orbit's two halves changes sign there."""
+        """Index of a passage through +1 that is a merging: the difference of the orbit's halves changes sign there."""
         if self.equations.period % 2:
             return None
         for place, one in enumerate(special):
-            if one.kind == "fold" and self._halves(one.before) @ self._halves(one.after) < 0.0:
+            if one.kind in ("fold", "plus_one") and self._halves(one.before) @ self._halves(one.after) < 0.0:
                 return place
         return None
 

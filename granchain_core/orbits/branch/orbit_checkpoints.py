@@ -18,7 +18,7 @@ from .axis import STATIC_OVERLAP, KnobAxis
 from .branch import Branch
 from .normal_forms import EARLIER_REASONS, NormalForm
 from .point import BranchPoint
-from .special import SpecialPoint
+from .special import EVENTS, SpecialPoint
 from .walk import Arm
 
 #: Entries of a point that are arrays.
@@ -120,6 +120,8 @@ def special_from_json(record: dict[str, Any]) -> SpecialPoint:
     form = record.get("normal_form")  # earlier versions had none
     if form:
         form = {**form, "reason": EARLIER_REASONS.get(form["reason"], form["reason"])}
-    return SpecialPoint(**{**record, "interval": tuple(record["interval"]), "before": _point(record["before"]),
+    gained = {event: gained for gained, event in EVENTS.items()}.get(record["event"])
+    known = {name: value for name, value in record.items() if name != "event"}
+    return SpecialPoint(**{**known, "gained": gained, "interval": tuple(record["interval"]), "before": _point(record["before"]),
                            "after": _point(record["after"]), "multiplier": multiplier,
                            "normal_form": NormalForm(**form) if form else None})

@@ -67,7 +67,12 @@ class BranchPoint:
     @property
     def unstable(self) -> int:
         """How many multipliers are outside the unit circle; without damping, by more than `ON_CIRCLE`."""
-        return int((np.abs(self.multipliers) >= (1.0 if self.damped else 1.0 + ON_CIRCLE)).sum())
+        return int((np.abs(self.multipliers) >= self._circle).sum())
+
+    @property
+    def _circle(self) -> float:
+        """Modulus from which on a multiplier counts as outside the unit circle."""
+        return 1.0 if self.damped else 1.0 + ON_CIRCLE
 
     @property
     def stable(self) -> bool:
@@ -80,9 +85,15 @@ class BranchPoint:
         return 1 if self.tangent[-1] > 0.0 else -1
 
     @property
+    def doubling_sign(self) -> int:
+        """Sign of det(M + I) of the monodromy matrix M: it changes where a real multiplier passes −1."""
+        real = self.multipliers.real[self.multipliers.imag == 0.0]
+        return -1 if (real <= -self._circle).sum() % 2 else 1
+
+    @property
     def signature(self) -> tuple[int, ...]:
         """Numbers that change at special points and nowhere else."""
-        return (self.turning, self.unstable, *(int(n) for n in self.closings))
+        return (self.turning, self.unstable, self.doubling_sign, *(int(n) for n in self.closings))
 
 
 def branch_point(equations: BranchEquations, solved: Solved, tangent: np.ndarray, arclength: float) -> BranchPoint:

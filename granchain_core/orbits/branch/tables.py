@@ -12,7 +12,7 @@ from ...tables.words import multiplier_columns
 from .axis import KnobAxis
 from .normal_forms import NormalForm
 from .point import BranchPoint
-from .special import BIFURCATIONS, SpecialPoint
+from .special import SPECIAL_KINDS, SpecialPoint
 from .walk import Arm
 
 #: What is told of a special point without a normal form.
@@ -84,7 +84,7 @@ def _special(over: KnobAxis, special: Sequence[SpecialPoint], arms: Sequence[int
 
     return Table("special", axis("special", np.arange(len(special)), "1", "special point along the branch"), {
         "kind": Column(words([s.kind for s in special]), along, "",
-                       f"{', '.join(BIFURCATIONS)} or grazing"),
+                       f"{', '.join(SPECIAL_KINDS[:-1])} or {SPECIAL_KINDS[-1]}"),
         "knob": Column(number([s.knob for s in special]), along, unit,
                        "knob at the special point, the middle of its interval"),
         "knob_low": Column(number([s.interval[0] for s in special]), along, unit,
@@ -94,7 +94,8 @@ def _special(over: KnobAxis, special: Sequence[SpecialPoint], arms: Sequence[int
                                   "multiplier that passes the unit circle, real part"),
         "multiplier_imag": Column(multipliers.imag, along, "1", "its imaginary part"),
         "contact": Column(contacts, along, "1", "contact that grazes, -1 if none"),
-        "event": Column(words([s.event or "" for s in special]), along, "", "touch or separation"),
+        "event": Column(words([s.event or "" for s in special]), along, "",
+                        "what the contact has once more on one side: touch (a closed interval) or separation (an open one)"),
         "criticality": Column(words([form.criticality for form in forms]), along, "",
                               "supercritical, subcritical, generic (a fold) or not decided"),
         "coefficient": Column(number([form.coefficient for form in forms]), along, "1",
