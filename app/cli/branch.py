@@ -232,7 +232,8 @@ def _show(found: Branch) -> None:
     for p in found.points:
         print(f"{p.knob:14.8g}  {p.max_output_force_elastic:26.8g}  {'stable' if p.stable else 'unstable'}")
     for s in found.special:
-        more = f", contact {s.contact}: one {s.gained} more on one side" if s.contact is not None else normal_form_words(s)
+        grazes = s.contact is not None
+        more = f", contact {s.contact}: one {s.gained} more on one side" if grazes else normal_form_words(s)
         low, high = s.interval
         print(f"{s.kind} at {found.axis.knob} = {s.knob:.8g}, between {low:.9g} and {high:.9g}{more}")
 

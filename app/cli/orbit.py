@@ -24,8 +24,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `orbit`."""
     add_scene(parser)
     parser.add_argument("--period", type=whole, metavar="n",
-                        help="drive periods of the orbit; by default those of the settled motion, 1 if it has none or with "
-                             "another --start")
+                        help="drive periods of the orbit; by default those of the settled motion, 1 if it has none or "
+                             "with another --start")
     parser.add_argument("--start", default="settled", metavar="settled|rest|random|FILE",
                         help="where Newton's method starts; FILE is a recorded run, whose last sample counts")
     parser.add_argument("--seed", type=whole, default=0, help="seed of the random start")

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import Any
 
 import numpy as np
 
+from ..errors import Cancelled
 from ..execution.stop import Stop
 from ..inputs.checks import axis_in
 from ..scene import Amplitude, Scene
@@ -57,7 +59,8 @@ def iter_parameter_map(grid: Grid, missing: Sequence[int] | np.ndarray | None = 
 
 def parameter_map(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, Iterable[float]],
                   stop: Stop | None = None, progress: Callable[[ParameterMap, float], None] | None = None,
-                  workers: int | None = None, amplitude: Amplitude | None = None) -> ParameterMap:
+                  workers: int | None = None, amplitude: Amplitude | None = None,
+                  scheduler: Any = None) -> ParameterMap:
     """The parameter map: regime and largest forces over two knobs, every cell from rest, on all cores.
 
     Cells are computed in batches with fixed steps, whatever the scene's `accuracy`, and state the error they have.
@@ -71,11 +74,14 @@ def parameter_map(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, It
     stop : Stop, optional
         Read between cells. When set, the computation ends, and cells that are not computed have regime −1.
     progress : callable, optional
-        Called with the map so far and the fraction that is done, after every cell.
+        Called with the map so far and the fraction that is done, after every cell; with a scheduler after every block.
     workers : int, optional
         Threads; one for each core if not given.
     amplitude : Amplitude, optional
         The drive amplitude over the frequency, which is then one of the axes; the scene's A0 if not given.
+    scheduler : distributed.Client, optional
+        A client of a Dask scheduler (`granchain_core.scheduler.connect`), whose workers compute blocks of cells. A cell
+        that fails is marked as failed.
 
     Returns
     -------
@@ -86,6 +92,8 @@ def parameter_map(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, It
     ------
     BadInput
         A knob cannot be an axis, its values do not ascend or are out of range, or there are too many cells.
+    ComputationError
+        A worker of the scheduler could not do its part.
 
     Examples
     --------
@@ -100,9 +108,25 @@ def parameter_map(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, It
     began = time.perf_counter()
     grid = Grid(scene, Axis.of(*axis_in("x", x)), Axis.of(*axis_in("y", y)), amplitude)
     found = ParameterMap(grid, empty_cells(grid))
-    for done, result in enumerate(iter_parameter_map(grid, None, stop, workers), start=1):
-        found.cells[result.number] = cell_of(result)
+    done = 0
+    for rows in _finished(grid, stop, workers, scheduler):
+        found.cells[rows["number"]] = rows
         found.wall_s = time.perf_counter() - began
+        done += len(rows)
         if progress is not None:
             progress(found, done / grid.size)
     return found
+
+
+def _finished(grid: Grid, stop: Stop | None, workers: int | None, scheduler: Any) -> Iterator[np.ndarray]:
+    """Finished cells, one by one from the cores of this machine or in blocks from a scheduler's workers."""
+    if scheduler is not None:
+        from .scheduled import iter_blocks  # imports this module
+
+        try:
+            yield from iter_blocks(scheduler, grid, [int(number) for number in grid.coarse_first()], stop)
+        except Cancelled:  # the cells that are known are kept, as without a scheduler
+            pass
+        return
+    for result in iter_parameter_map(grid, None, stop, workers):
+        yield np.atleast_1d(cell_of(result))

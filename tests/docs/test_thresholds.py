@@ -18,6 +18,7 @@ from granchain_core import orbit, scene
 from granchain_core.kernels.batch import checks, record
 from granchain_core.observe.drift import TRANSLATION
 from granchain_core.orbits.branch import ends, newton, normal_forms, special, steps
+from granchain_core.parameter_map import scheduled
 from granchain_core.results.regime import Regime
 from granchain_core.steady import exponent_measurements, regime_criteria
 from granchain_core.steady.batch import job, threads
@@ -83,6 +84,9 @@ NUMBERS = {2: "two", 3: "three", 4: "four"}
         r"at most (\d+) periods before Python looks": regime_decisions.EXAMINED_AFTER,
         r"motion continues with (a \w+) of the step": PARTS[job.FINE_STEPS_PER_COARSE],
         r"coarse steps for (\d+) periods beside": exponent_measurements.MEASURED_PERIODS, r"at best to ([\de-]+) \(`CURVE_ACCURACY`": single_chain.CURVE_ACCURACY}),
+    ("docs/cost.md", {r"blocks of (\d+) cells": scheduled.CELLS_IN_TASK, r"; (\d+) cells are one task": scheduled.CELLS_IN_TASK,
+                      r"blocks of (\d+) points": resonance_curve.POINTS_IN_TASK, r"; (\d+) points are one task": resonance_curve.POINTS_IN_TASK}),
+    ("docs/parameter-map.md", {r"sends blocks of (\d+) cells": scheduled.CELLS_IN_TASK}),
     ("docs/regimes.md", {
         r"The measurement begins after (\d+) periods": regime_decisions.EXAMINED_AFTER, r"with at least (\d+) strobes": regime_criteria.SLOW_RECORD,
         r"Its first (\d+) periods do not count": exponent_measurements.TURNING_PERIODS, r"not decided after (\d+) periods is settled alone": regime_decisions.MOST_PERIODS,

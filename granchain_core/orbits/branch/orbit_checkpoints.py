@@ -122,6 +122,7 @@ def special_from_json(record: dict[str, Any]) -> SpecialPoint:
         form = {**form, "reason": EARLIER_REASONS.get(form["reason"], form["reason"])}
     gained = {event: gained for gained, event in EVENTS.items()}.get(record["event"])
     known = {name: value for name, value in record.items() if name != "event"}
-    return SpecialPoint(**{**known, "gained": gained, "interval": tuple(record["interval"]), "before": _point(record["before"]),
-                           "after": _point(record["after"]), "multiplier": multiplier,
+    return SpecialPoint(**{**known, "gained": gained, "interval": tuple(record["interval"]),
+                           "before": _point(record["before"]), "after": _point(record["after"]),
+                           "multiplier": multiplier,
                            "normal_form": NormalForm(**form) if form else None})
