@@ -23,6 +23,7 @@ from ..scene import Scene
 from ..scene.refusals import require_scene
 from ..scene.state import State
 from ..steady.regime_criteria import LONGEST_LOCKED_PERIOD
+from ..steady.residuals import ACCEPTED_RESIDUAL, RESIDUAL_GOAL
 from ..steady.settling.advance import run_until_settled
 from ..steady.settling.nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS
 from ..tables import Column, Labelled, Table, axis, bead_axis, or_nan, provenance
@@ -31,8 +32,6 @@ from ..tables.words import multiplier_columns, state_columns
 from .multiplier_errors import derivative_change, errors_of
 from .stroboscopic_map import FLOW_METHOD, Flow, StroboscopicMap, refuse_cut
 
-#: Residual at which an orbit is found (`StroboscopicMap.residual`).
-CONVERGED = 1e-11
 #: Newton's iterations at most.
 MOST_ITERATIONS = 12
 #: Multipliers smaller than this part of the largest are rounding.
@@ -273,7 +272,7 @@ def _newton(stroboscopic_map: StroboscopicMap, x: np.ndarray) -> tuple[np.ndarra
     """Damped Newton iterations."""
     flow = _flow(stroboscopic_map, x)
     history = [stroboscopic_map.residual(flow.end, x)]
-    while history[-1] > CONVERGED and len(history) <= MOST_ITERATIONS:
+    while history[-1] > RESIDUAL_GOAL and len(history) <= MOST_ITERATIONS:
         step = _newton_step(stroboscopic_map, x, flow)
         for halving in range(_MOST_HALVINGS):
             trial = x + step / 2**halving
@@ -287,7 +286,7 @@ def _newton(stroboscopic_map: StroboscopicMap, x: np.ndarray) -> tuple[np.ndarra
             break
         x, flow = trial, after
         history.append(stroboscopic_map.residual(flow.end, x))
-    if history[-1] > 100.0 * CONVERGED:
+    if history[-1] > ACCEPTED_RESIDUAL:
         shown = ", ".join(f"{r:.1e}" for r in history)
         raise ComputationError(f"Newton's method found no orbit of {stroboscopic_map.periods} drive periods near this "
                                f"start: its residuals were {shown}; give another period or start.", "no-convergence")

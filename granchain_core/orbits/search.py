@@ -17,6 +17,7 @@ from ..execution.stop import Stop
 from ..integrate.scaling import scale_chain
 from ..scene import Scene
 from ..scene.state import State
+from ..steady.residuals import least_displacement
 from ..steady.returns import least_period
 from .orbit import Orbit, periodic_orbit
 from .stroboscopic_map import SAME_ORBIT_DISTANCE, StroboscopicMap
@@ -82,4 +83,4 @@ def least_period_of(orbit: Orbit, stop: Stop | None = None) -> int:
     def after(periods: int) -> np.ndarray:
         return StroboscopicMap(orbit.scene, periods, stop)(x, directions=np.zeros((len(x), 0))).end
 
-    return least_period(after, x, orbit.period, SAME_ORBIT_DISTANCE)
+    return least_period(after, x, orbit.period, SAME_ORBIT_DISTANCE, least_displacement(x, scaled.beta))

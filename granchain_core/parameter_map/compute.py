@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any
@@ -12,33 +13,12 @@ from ..errors import Cancelled
 from ..execution.stop import Stop
 from ..inputs.checks import axis_in
 from ..scene import Amplitude, Scene
-from ..steady.batch.job import Start
-from ..steady.batch.starts import settle_on_all_cores, settle_starts
+from ..steady.batch.starts import settle_on_all_cores
 from ..steady.steady_state import SteadyState
 from .cells import ParameterMap, cell_of, empty_cells
 from .grid import Axis, Grid
-
-
-def starts_of(grid: Grid, numbers: Iterable[int]) -> Iterator[Start]:
-    """Cells as starts from rest."""
-    return (Start(grid.cell(number), number=number) for number in numbers)
-
-
-def by_structure(grid: Grid, numbers: Iterable[int]) -> list[list[int]]:
-    """The cells in groups that share a kernel: an axis that reaches 0, or equal beads, switches its effect off."""
-    groups: dict[tuple[bool, tuple[str, ...]], list[int]] = {}
-    for number in numbers:
-        cell = grid.cell(number)
-        groups.setdefault((cell.is_uniform, tuple(cell.effects)), []).append(number)
-    return list(groups.values())
-
-
-def block_cells(grid: Grid, numbers: Sequence[int], stop: Stop | None = None) -> np.ndarray:
-    """The cells with these numbers, computed in this thread: the work that is handed to a scheduler as one block."""
-    stop = Stop() if stop is None else stop
-    found = [cell_of(result) for group in by_structure(grid, numbers)
-             for result in settle_starts(starts_of(grid, group), stop)]
-    return np.array(found)
+from .scheduled import iter_blocks
+from .starts import by_structure, starts_of
 
 
 def iter_parameter_map(grid: Grid, missing: Sequence[int] | np.ndarray | None = None,
@@ -121,12 +101,8 @@ def parameter_map(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, It
 def _finished(grid: Grid, stop: Stop | None, workers: int | None, scheduler: Any) -> Iterator[np.ndarray]:
     """Finished cells, one by one from the cores of this machine or in blocks from a scheduler's workers."""
     if scheduler is not None:
-        from .scheduled import iter_blocks  # imports this module
-
-        try:
+        with contextlib.suppress(Cancelled):  # the cells that are known are kept, as without a scheduler
             yield from iter_blocks(scheduler, grid, [int(number) for number in grid.coarse_first()], stop)
-        except Cancelled:  # the cells that are known are kept, as without a scheduler
-            pass
         return
     for result in iter_parameter_map(grid, None, stop, workers):
         yield np.atleast_1d(cell_of(result))

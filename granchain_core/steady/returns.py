@@ -25,16 +25,18 @@ def relative_change(change: np.ndarray, x: np.ndarray, least_displacement: float
     return float(np.abs(change / sizes(x, least_displacement)).max())
 
 
-def shorter_periods(after: Callable[[int], np.ndarray], x: np.ndarray, period: int, tolerance: float) -> Iterator[int]:
+def shorter_periods(after: Callable[[int], np.ndarray], x: np.ndarray, period: int, tolerance: float,
+                    least_displacement: float = 0.0) -> Iterator[int]:
     """Divisors n of `period`, below it, after which x is back within a relative `tolerance`; `after(n)` is Pⁿ(x).
 
     The tolerance must be far above the error of the map P and far below the distance of two orbits.
     """
     for n in range(1, period):
-        if period % n == 0 and relative_change(after(n) - x, x) < tolerance:
+        if period % n == 0 and relative_change(after(n) - x, x, least_displacement) < tolerance:
             yield n
 
 
-def least_period(after: Callable[[int], np.ndarray], x: np.ndarray, period: int, tolerance: float) -> int:
+def least_period(after: Callable[[int], np.ndarray], x: np.ndarray, period: int, tolerance: float,
+                 least_displacement: float = 0.0) -> int:
     """The smallest of `shorter_periods`, or `period` itself."""
-    return next(shorter_periods(after, x, period, tolerance), period)
+    return next(shorter_periods(after, x, period, tolerance, least_displacement), period)

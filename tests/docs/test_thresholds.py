@@ -17,10 +17,10 @@ from documents import ROOT
 from granchain_core import orbit, scene
 from granchain_core.kernels.batch import checks, record
 from granchain_core.observe.drift import TRANSLATION
-from granchain_core.orbits.branch import ends, newton, normal_forms, special, steps
+from granchain_core.orbits.branch import ends, normal_forms, special, steps
 from granchain_core.parameter_map import scheduled
 from granchain_core.results.regime import Regime
-from granchain_core.steady import exponent_measurements, regime_criteria
+from granchain_core.steady import exponent_measurements, regime_criteria, residuals
 from granchain_core.steady.batch import job, threads
 from granchain_core.steady.curve import resonance_curve
 from granchain_core.steady.settling import regime_decisions, single_chain
@@ -58,8 +58,8 @@ def test_the_text_on_branches_has_the_values_of_the_constants() -> None:
         r"t turns by about ([\d.]+)°": steps._TURN_OF_STEP, r"about ([\d.]+) % of the step away": 100.0 * steps._MISS_OF_STEP,
         r"goes farther than ([\d.]+) % of the step": 100.0 * steps.LARGEST_CORRECTION,
         r"if t turns by more than ([\d.]+)°": steps._LARGEST_TURN, r"The longest step is ([\d.]+),": steps.LONGEST_STEP,
-        r"the shortest ([\de-]+)\.": steps.SHORTEST_STEP, r"method aims at ([\de-]+);": newton.RESIDUAL_GOAL,
-        r"below ([\de-]+) the orbit is accepted": newton.ACCEPTED_RESIDUAL,
+        r"the shortest ([\de-]+)\.": steps.SHORTEST_STEP, r"method aims at ([\de-]+);": residuals.RESIDUAL_GOAL,
+        r"below ([\de-]+) the orbit is accepted": residuals.ACCEPTED_RESIDUAL,
         r"whose knobs differ by at most ([\de-]+) of the knob \(": special.RELATIVE_WIDTH,
         r"for at most (\d+) levels of bisection": special._MOST_LEVELS,
         r"back to the seed within ([\de-]+):": ends._CLOSING_DISTANCE,
@@ -86,6 +86,9 @@ NUMBERS = {2: "two", 3: "three", 4: "four"}
         r"coarse steps for (\d+) periods beside": exponent_measurements.MEASURED_PERIODS, r"at best to ([\de-]+) \(`CURVE_ACCURACY`": single_chain.CURVE_ACCURACY}),
     ("docs/cost.md", {r"blocks of (\d+) cells": scheduled.CELLS_IN_TASK, r"; (\d+) cells are one task": scheduled.CELLS_IN_TASK,
                       r"blocks of (\d+) points": resonance_curve.POINTS_IN_TASK, r"; (\d+) points are one task": resonance_curve.POINTS_IN_TASK}),
+    ("docs/orbits.md", {r"stops at a residual of ([\de-]+),": residuals.RESIDUAL_GOAL, r"If it ends above ([\de-]+), it fails": residuals.ACCEPTED_RESIDUAL,
+                        r"is less exact, has ([\de-]+) and": residuals.FIXED_STEP_RESIDUAL_GOAL,
+                        r"is less exact, has 1e-9 and ([\de-]+)\.": residuals.ACCEPTED_FIXED_STEP_RESIDUAL}),
     ("docs/parameter-map.md", {r"sends blocks of (\d+) cells": scheduled.CELLS_IN_TASK}),
     ("docs/regimes.md", {
         r"The measurement begins after (\d+) periods": regime_decisions.EXAMINED_AFTER, r"with at least (\d+) strobes": regime_criteria.SLOW_RECORD,

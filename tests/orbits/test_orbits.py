@@ -11,9 +11,15 @@ from linear_chain import linear_multipliers
 import granchain_core
 from app.cli import main
 from granchain_core import BadInput, ComputationError, scene
+from granchain_core.execution.stop import Stop
+from granchain_core.orbits import check_branch
 from granchain_core.orbits.stroboscopic_map import StroboscopicMap
+from granchain_core.steady.settling.nearby_orbit import orbit_of
 
 pytestmark = pytest.mark.quick
+
+#: A chain whose beads are at rest positions at phase 0, to 3e-8 of their amplitude.
+VANISHING = scene("sec2").evolve(N=3, A0=9.787e-8, D=2.0578, kappa=1.835e-3, F0=0.79338, f=84.05)
 
 
 @pytest.mark.parametrize(("frequency", "period"), [(340.0, 1), (615.0, 2), (1130.0, 3), (1576.0, 4)])
@@ -109,10 +115,26 @@ def test_an_orbit_whose_displacements_vanish_at_phase_0_is_found() -> None:
 
     Relative to displacements there, rounding kept the residual at 1e-7, and Newton's method was said to fail.
     """
-    chain = scene("sec2").evolve(N=3, A0=9.787e-8, D=2.0578, kappa=1.835e-3, F0=0.79338, f=84.05)
-    found = granchain_core.orbit(chain)
+    found = granchain_core.orbit(VANISHING)
     assert found.period == 1 and found.stable and found.residual < 1e-9
     assert found.liouville is not None and abs(found.liouville) < 1e-8
+
+
+def test_its_branch_is_found_too() -> None:
+    """Relative to displacements at phase 0 the residual of the seed stayed at 1e-7, and there was no branch."""
+    found = granchain_core.branch(VANISHING, "f", VANISHING.f, VANISHING.f + 0.5, 1)
+    assert found.arms[0].ended == "reached" and check_branch(found) == []
+
+
+def test_its_multiplier_is_right_where_the_chain_settles() -> None:
+    """A difference relative to these displacements was below the map's noise: |μ| was wrong in its third digit."""
+    exact = abs(granchain_core.orbit(VANISHING).multipliers[0])
+    stroboscopic_map = StroboscopicMap(VANISHING, 1)
+    x = stroboscopic_map.inner(stroboscopic_map.engine.scaled.from_si(granchain_core.orbit(VANISHING).state))
+    for period in (1, 2):
+        found = orbit_of(VANISHING, period, x, Stop())
+        assert found is not None and found.period == 1 and found.point.residual < 1e-9
+        assert found.modulus == pytest.approx(exact, abs=1e-4) and found.distance_of_motion < 1e-6
 
 
 def test_period_1_of_a_motion_without_a_period_is_taken_with_a_reason(capsys: pytest.CaptureFixture[str]) -> None:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...steady.residuals import ACCEPTED_RESIDUAL
 from ..orbit import ROUNDING
 from .branch import Branch
-from .newton import ACCEPTED_RESIDUAL
 from .point import BranchPoint
 from .steps import LONGEST_STEP
 from .walk import Arm

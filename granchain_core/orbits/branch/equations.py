@@ -13,7 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...execution.stop import Stop
-from ...integrate.scaling import scale_chain, scale_like
+from ...integrate.scaling import scale_chain, scale_like, scales_of
+from ...steady.residuals import least_displacement
 from ...steady.returns import least_period
 from ..stroboscopic_map import SAME_ORBIT_DISTANCE, TOLERANCE, Flow, StroboscopicMap
 from .axis import KnobAxis
@@ -78,6 +79,11 @@ class BranchEquations:
             found.move(self.axis.scene_at(value), tolerance)
         return found
 
+    def drive_rate(self, z: np.ndarray) -> float:
+        """The drive's rate β in scaled time near z."""
+        scene = self.axis.scene_at(self.value(z))
+        return 2.0 * np.pi * scene.f / scales_of(scene).phi
+
     def quick_steps(self, z: np.ndarray) -> int:
         """Steps in a period of the quick map near z, 0 where the flow takes its place."""
         return quick_steps(scale_like(self._scaled, self.axis.scene_at(self.value(z))))
@@ -100,7 +106,8 @@ class BranchEquations:
 
     def least_period(self, x: np.ndarray, value: float, back: float = SAME_ORBIT_DISTANCE) -> int:
         """The drive periods after which the orbit through x is `back` again, relatively, at most `period`."""
-        return least_period(lambda periods: self.stroboscopic_map(value, periods).end(x), x, self.period, back)
+        least = least_displacement(x, self.drive_rate(self.point(x, value)))
+        return least_period(lambda periods: self.stroboscopic_map(value, periods).end(x), x, self.period, back, least)
 
     def solve(self, z: np.ndarray, normal: np.ndarray, slope: np.ndarray | None = None,
               farthest: float = np.inf) -> Solved:

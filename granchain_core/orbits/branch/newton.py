@@ -19,7 +19,7 @@ from typing import Protocol
 import numpy as np
 
 from ...errors import ComputationError
-from ...steady.returns import relative_change
+from ...steady.residuals import ACCEPTED_RESIDUAL, RESIDUAL_GOAL, orbit_change
 from ..stroboscopic_map import TOLERANCE, Flow, StroboscopicMap
 
 #: [branch] Tolerance of the rough map, the flow where exactness is not needed.
@@ -29,10 +29,6 @@ _ROUGHEST_ABOVE = 1e-3
 #: [branch] Tolerance of the rough map where the residual is large. The map is then good to 1e-6 (measured: 7e-7 on the
 #: branch of sec2 over f).
 _ROUGHEST_TOLERANCE = 1e-7
-#: [branch] Relative residual at which Newton's method stops.
-RESIDUAL_GOAL = 1e-11
-#: [branch] Largest residual that is accepted where rounding does not let it fall that far.
-ACCEPTED_RESIDUAL = 1e-10
 #: [branch] Residual at which the quick map is left. Its own error is as large.
 QUICK_RESIDUAL = 1e-8
 #: [branch] Largest residual at which a derivative from nearby is used.
@@ -88,6 +84,9 @@ class Equations(Protocol):
     def reused_map(self, value: float, tolerance: float) -> StroboscopicMap:
         """The map at a knob value."""
 
+    def drive_rate(self, z: np.ndarray) -> float:
+        """The drive's rate in scaled time near z."""
+
     def quick_steps(self, z: np.ndarray) -> int:
         """Steps in a period of the quick map near z."""
 
@@ -104,7 +103,7 @@ class Newton:
     def __init__(self, equations: Equations, z: np.ndarray, normal: np.ndarray, farthest: float = np.inf) -> None:
         self.equations, self.start, self.normal, self.farthest = equations, z, normal, farthest
         self.z, self.residuals = z, list[float]()
-        self.matrix, self.steps = np.empty(0), equations.quick_steps(z)
+        self.matrix, self.steps, self._rate = np.empty(0), equations.quick_steps(z), equations.drive_rate(z)
         self._quick_end_here: np.ndarray | None = None
 
     def solve_quick(self, near: Near) -> None:
@@ -241,7 +240,7 @@ class Newton:
     def _residual(self, end: np.ndarray) -> float:
         """Relative residual of z, from which a map leads to `end`."""
         x = self.equations.state(self.z)
-        return relative_change(end - x, x)
+        return orbit_change(end - x, x, self._rate)
 
     def _record(self, end: np.ndarray) -> float:
         """The same residual, added to `residuals`."""

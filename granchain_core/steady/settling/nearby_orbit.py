@@ -18,7 +18,8 @@ from ...execution.stop import Stop
 from ...kernels.strobes.periodicity import LONGEST_PERIOD
 from ...scene import Scene
 from ..regime_criteria import changes, window_changes
-from ..returns import relative_change, shorter_periods
+from ..residuals import least_displacement
+from ..returns import shorter_periods
 from .finite_difference_map import FiniteDifferenceMap, FixedPoint, fixed_point
 
 #: [period n] A chain alone: an unconfirmed claim needs multipliers up to this many beads. Up to there the derivative of
@@ -91,7 +92,7 @@ class NearbyOrbit:
     @property
     def distance_of_motion(self) -> float:
         """How far the motion is from the orbit, relative to the largest displacement and w."""
-        return relative_change(self.x - self.point.x, self.point.x)
+        return self.stroboscopic_map.relative(self.x - self.point.x, self.point.x)
 
     @property
     def orbit_error(self) -> float:
@@ -111,7 +112,7 @@ class NearbyOrbit:
             if not after <= left * before:
                 return False
             offset = offset * _DISTANCE_FACTOR
-            if relative_change(offset, self.point.x) < _SMALLEST_DISTANCE:
+            if self.stroboscopic_map.relative(offset, self.point.x) < _SMALLEST_DISTANCE:
                 return True
 
     def _largest_lengths(self, rows: np.ndarray, offset: np.ndarray, orbits: int) -> tuple[float, float]:
@@ -134,7 +135,7 @@ class NearbyOrbit:
         if not np.abs(parts).max() > 0.0:  # on the orbit itself: any direction will do
             parts = np.ones(len(parts), dtype=complex)
         leaving = np.real(right[:, grows] @ parts)
-        length = relative_change(leaving, self.point.x)
+        length = self.stroboscopic_map.relative(leaving, self.point.x)
         return None if length >= _ENLARGED_LENGTH else self.point.x + leaving * (_ENLARGED_LENGTH / length)
 
 
@@ -155,7 +156,8 @@ def orbit_of(scene: Scene, period: int, x: np.ndarray, stop: Stop) -> NearbyOrbi
     if found is None:
         return None
     parts = {n: FiniteDifferenceMap(scene, n, stop) for n in range(1, period) if period % n == 0}
-    for shorter in shorter_periods(lambda n: parts[n](found.x), found.x, period, _SAME_ORBIT_DISTANCE):
+    least = least_displacement(found.x, stroboscopic_map.engine.scaled.beta)
+    for shorter in shorter_periods(lambda n: parts[n](found.x), found.x, period, _SAME_ORBIT_DISTANCE, least):
         again = fixed_point(parts[shorter], found.x)
         if again is not None:
             return NearbyOrbit(parts[shorter], again, x, again.modulus)
