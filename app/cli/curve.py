@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 #: The numbers behind the regime of a point that the JSON has.
 _EVIDENCE = ("decay", "distance", "multiplier", "lyapunov", "lyapunov_periods", "return_distance", "return_limit",
-             "window_ratios")
+             "window_ratios", "orbit_found_by")
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:

@@ -148,7 +148,7 @@ def branches(found: Sequence[Branch], theme: Theme, now: float | None = None, co
     models: dict[str, Any] = {}
     number = 0
     for one in found:
-        for arm in one.arms:
+        for arm in one.half_branches:
             if arm.points:
                 added = rows.add(number, one, arm.points, arm.special)
                 _put(data, added)

@@ -5,9 +5,10 @@ Equation   Q_{p+1} R_{p+1} = M_p Q_p with M_p the derivative of the map over per
            D_KY = j + (λ_1 + … + λ_j) / |λ_{j+1}| with the largest j for which the sum is not negative
 Source     Benettin et al. 1980; Kaplan & Yorke 1979; standard errors from means of blocks
 Note       The sum of all exponents is the mean of ∫ trace along the motion (Liouville), which is computed too.
-           Standard errors take the means of the blocks as independent. A strong dashpot shrinks some directions by more
-           than double precision resolves in a period: such exponents are bounds from above, and `resolved` says how
-           many are more than that.
+           Standard errors take the means of the blocks as independent. The blocks are plain ones, not those of
+           steady/lyapunov.py: on a closed curve their error covers the swing of the growth (docs/analysis.md).
+           A strong dashpot shrinks some directions by more than double precision resolves in a period: such
+           exponents are bounds from above, and `resolved` says how many are more than that.
 """
 
 from __future__ import annotations

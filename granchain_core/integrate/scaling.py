@@ -163,7 +163,14 @@ class ScaledChain:
 
     @cached_property
     def step(self) -> float:
-        """The fixed-step method's step in scaled time."""
+        """The fixed-step method's step in scaled time: the shortest of the limits of contacts, damping and foundation.
+
+        Damping rates add up. The frequencies ω of a bead between its contacts and on its foundation do not: where both
+        are equal the bead's own frequency, the root of the sum of both squares, is √2 times as high, so that the step
+        is up to √2 longer in radians than each limit alone says, 0.28 in place of 0.2, far from the stability limit of
+        RK4, 2.83. In the scenes with a foundation ω of the contacts is nine times that of the foundation, and the sum
+        would shorten the step by 0.14 %.
+        """
         limits = self.step_limits
         step, (stiffness, damping) = limits.contacts, self._body_rates
         damping += limits.damping

@@ -24,7 +24,7 @@ import numpy as np
 from ..hdf5 import File, opened
 from ..hdf5.border import entries, finite, one_of, within
 from ..hdf5.plain import Refused
-from ..orbits import Arm, Branch, BranchPoint, KnobAxis, SpecialPoint
+from ..orbits import Branch, BranchPoint, HalfBranch, KnobAxis, SpecialPoint
 from ..orbits.branch.normal_forms import CRITICALITIES, EARLIER_REASONS, NOT_DECIDED, REASONS, NormalForm
 from ..orbits.branch.special import EVENTS, SPECIAL_KINDS
 from ..orbits.branch.tables import NO_CONTACT, branch_tables
@@ -50,7 +50,7 @@ def write_branch(file: h5py.File, branch: Branch) -> None:
     """Write a branch with what its walk needs to go on."""
     write_result(file, branch)
     turns = file.create_group("turns")
-    for place, arm in enumerate(branch.arms):
+    for place, arm in enumerate(branch.half_branches):
         turns.create_dataset(str(place), data=arm.points[-1].turns)
 
 
@@ -83,7 +83,7 @@ def _read(file: File) -> Branch:
             raise Refused(f"arm {number} has no orbits")
         turns = file.numbers(f"turns/{number}", (*file.shape(f"turns/{number}")[:1], _TURN))
         object.__setattr__(mine[-1], "turns", turns)
-        arms.append(Arm(arm["direction"], mine,
+        arms.append(HalfBranch(arm["direction"], mine,
                         [s for s, where in zip(special, special_place, strict=True) if where == number],
                         arm["step"], arm["ended"], arm["reason"]))
     return Branch(axis, header["period"], tuple(arms))

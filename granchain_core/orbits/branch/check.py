@@ -9,7 +9,7 @@ from ..orbit import ROUNDING
 from .branch import Branch
 from .point import BranchPoint
 from .steps import LONGEST_STEP
-from .walk import Arm
+from .walk import HalfBranch
 
 #: Factor by which neighbours may be farther apart than the longest step, because the correction adds to it.
 _DISTANCE_FACTOR = 1.2
@@ -26,12 +26,12 @@ def check_branch(branch: Branch) -> list[str]:
     differ by it.
     """
     found = []
-    for arm in branch.arms:
-        for point in arm.points:
+    for half in branch.half_branches:
+        for point in half.points:
             found.extend(_orbit_wrong(branch, point))
-        for i in range(1, len(arm.points)):
-            found.extend(_step_wrong(branch, arm, i))
-        found.extend(_special_wrong(branch, arm))
+        for i in range(1, len(half.points)):
+            found.extend(_step_wrong(branch, half, i))
+        found.extend(_special_wrong(branch, half))
     return found
 
 
@@ -47,13 +47,13 @@ def _orbit_wrong(branch: Branch, point: BranchPoint) -> list[str]:
     return found
 
 
-def _step_wrong(branch: Branch, arm: Arm, i: int) -> list[str]:
-    a, b, found = arm.points[i - 1], arm.points[i], []
+def _step_wrong(branch: Branch, half: HalfBranch, i: int) -> list[str]:
+    a, b, found = half.points[i - 1], half.points[i], []
     where = f"between {branch.axis.text(a.knob)} and {branch.axis.text(b.knob)}"
     moved = np.append((b.x - a.x) / np.sqrt(len(a.x)), branch.axis.coordinate(b.knob) - branch.axis.coordinate(a.knob))
     if np.linalg.norm(moved) > _DISTANCE_FACTOR * LONGEST_STEP or not b.arclength > a.arclength:
         found.append(f"neighbours are {np.linalg.norm(moved):.2g} apart {where}")
-    between = [s for s in arm.special if a.arclength <= s.before.arclength and s.after.arclength <= b.arclength
+    between = [s for s in half.special if a.arclength <= s.before.arclength and s.after.arclength <= b.arclength
                and s.before.arclength < b.arclength]
     if a.stable != b.stable and not any(s.multiplier is not None for s in between):
         found.append(f"stability changes without a special point {where}")
@@ -67,9 +67,9 @@ def _step_wrong(branch: Branch, arm: Arm, i: int) -> list[str]:
     return found
 
 
-def _special_wrong(branch: Branch, arm: Arm) -> list[str]:
+def _special_wrong(branch: Branch, half: HalfBranch) -> list[str]:
     found = []
-    for s in arm.special:
+    for s in half.special:
         where, (low, high) = f"{s.kind} at {branch.axis.text(s.knob)}", s.interval
         if not low <= s.knob <= high:
             found.append(f"{where} is outside its interval")

@@ -13,7 +13,7 @@ from .axis import KnobAxis
 from .normal_forms import NormalForm
 from .point import BranchPoint
 from .special import SPECIAL_KINDS, SpecialPoint
-from .walk import Arm
+from .walk import HalfBranch
 
 #: What is told of a special point without a normal form.
 _NO_NORMAL_FORM = NormalForm("")
@@ -21,17 +21,18 @@ _NO_NORMAL_FORM = NormalForm("")
 NO_CONTACT = -1
 
 
-def branch_tables(over: KnobAxis, arms: Sequence[Arm]) -> tuple[Table, ...]:
-    """All tables of a branch; orbits arm by arm, each from the seed."""
-    points = [(place, point) for place, arm in enumerate(arms) for point in arm.points]
-    special = [(place, one) for place, arm in enumerate(arms) for one in arm.special]
+def branch_tables(over: KnobAxis, half_branches: Sequence[HalfBranch]) -> tuple[Table, ...]:
+    """All tables of a branch; orbits half-branch by half-branch, each from the seed."""
+    points = [(place, point) for place, half in enumerate(half_branches) for point in half.points]
+    special = [(place, one) for place, half in enumerate(half_branches) for one in half.special]
     return (_orbits("branch", over, [point for _, point in points], [place for place, _ in points]),
             _special(over, [one for _, one in special], [place for place, _ in special]),
             _orbits("special_before", over, [one.before for _, one in special]),
             _orbits("special_after", over, [one.after for _, one in special]))
 
 
-def _orbits(name: str, over: KnobAxis, points: Sequence[BranchPoint], arms: Sequence[int] | None = None) -> Table:
+def _orbits(name: str, over: KnobAxis, points: Sequence[BranchPoint],
+            half_branches: Sequence[int] | None = None) -> Table:
     """A table with one row for each orbit. Components are the beads' displacements, then their w, scaled."""
     n, along, knob = over.scene.N, ("point",), QUANTITIES[over.knob]
 
@@ -48,8 +49,8 @@ def _orbits(name: str, over: KnobAxis, points: Sequence[BranchPoint], arms: Sequ
         row[: len(point.residuals)] = point.residuals
     forces = np.array([[getattr(point, one) for one in MAXIMA] for point in points]).reshape(-1, 3)
     of_state, of_tangent = ("point", "component"), ("point", "coordinate")
-    which = {} if arms is None else {
-        "arm": Column(np.array(arms, dtype=np.int64), along, "1", "which way from the seed")}
+    which = {} if half_branches is None else {
+        "arm": Column(np.array(half_branches, dtype=np.int64), along, "1", "which way from the seed")}
     return Table(name, {
         **axis("point", np.arange(len(points)), "1", "orbit along the branch"),
         **axis("component", np.arange(2 * n), "1", "displacements, then w"), **contact_axis(n),
@@ -70,7 +71,7 @@ def _orbits(name: str, over: KnobAxis, points: Sequence[BranchPoint], arms: Sequ
                            "closings of each contact; 0 always open, -1 always closed"), **which})
 
 
-def _special(over: KnobAxis, special: Sequence[SpecialPoint], arms: Sequence[int]) -> Table:
+def _special(over: KnobAxis, special: Sequence[SpecialPoint], half_branches: Sequence[int]) -> Table:
     along, unit = ("special",), QUANTITIES[over.knob].unit
     multipliers = np.array([np.nan if s.multiplier is None else s.multiplier for s in special], dtype=complex)
     forms = [_NO_NORMAL_FORM if s.normal_form is None else s.normal_form for s in special]
@@ -104,4 +105,4 @@ def _special(over: KnobAxis, special: Sequence[SpecialPoint], arms: Sequence[int
         "coefficient_error": Column(number([form.error for form in forms]), along, "1",
                                     "error of the coefficient"),
         "undecided": Column(words([form.reason for form in forms]), along, "", "why it is not decided"),
-        "arm": Column(np.array(arms, dtype=np.int64), along, "1", "which way from the seed")})
+        "arm": Column(np.array(half_branches, dtype=np.int64), along, "1", "which way from the seed")})

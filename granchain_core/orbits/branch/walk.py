@@ -39,7 +39,7 @@ _THREADS = 2
 
 
 @dataclass
-class Arm:
+class HalfBranch:
     """One direction of a branch from its seed: points (the seed first), special points, and how it ended.
 
     `ended` is "" while there is more to come, else "reached", "returned", "closed", "merged" or "lost"; `reason` is
@@ -69,21 +69,21 @@ class _Ahead:
 
 
 class Walk(Iterator[BranchPoint]):
-    """The points of one arm, one after the other; each `next` adds one to the arm, with the special points before it.
+    """The points of one half-branch, one after the other; each `next` adds one, with the special points before it.
 
     A walk that is not iterated is paused; one whose stop flag is set raises `Cancelled` and can go on later.
     """
 
-    def __init__(self, equations: BranchEquations, arm: Arm) -> None:
-        self.equations, self.arm = equations, arm
-        self._ends = Ends(equations, arm.points[0])
+    def __init__(self, equations: BranchEquations, half: HalfBranch) -> None:
+        self.equations, self.half = equations, half
+        self._ends = Ends(equations, half.points[0])
         self._pool = ThreadPoolExecutor(min(_THREADS, usable_cores()))
         self._known: tuple[BranchPoint, Near] | None = None
-        self._go_back(arm.step)
+        self._go_back(half.step)
 
     def __next__(self) -> BranchPoint:
-        arm = self.arm
-        while not arm.ended:
+        half = self.half
+        while not half.ended:
             try:
                 while len(self._ahead) < _ORBITS_AHEAD and self._goes_on:
                     self._advance()
@@ -97,16 +97,16 @@ class Walk(Iterator[BranchPoint]):
                     self._go_back(0.5 * one.tried, problem)
                     continue
             except Cancelled:
-                self._go_back(arm.step)
+                self._go_back(half.step)
                 raise
             self._add(one, point, special)
-            return arm.points[-1]
+            return half.points[-1]
         raise StopIteration
 
-    # --- ahead of the arm ----------------------------------------------------------------------------------
+    # --- ahead of the half-branch --------------------------------------------------------------------------
 
     def _go_back(self, step: float, failure: Exception | None = None) -> None:
-        """Forget what is ahead, and go on from the arm's last orbit with this step."""
+        """Forget what is ahead, and go on from the half-branch's last orbit with this step."""
         self._ahead: deque[_Ahead] = deque()
         self._step, self._failure = step, failure
 
@@ -117,7 +117,7 @@ class Walk(Iterator[BranchPoint]):
     @property
     def _last_two(self) -> list[BranchPoint]:
         """The last two orbits, or the seed alone."""
-        return [*self.arm.points[-2:], *(one.ending.point for one in self._ahead)][-2:]
+        return [*self.half.points[-2:], *(one.ending.point for one in self._ahead)][-2:]
 
     def _advance(self) -> None:
         """Compute the next orbit ahead; halve the step where it is too long."""
@@ -146,7 +146,7 @@ class Walk(Iterator[BranchPoint]):
         """P_x and P_p at the last orbit. Where P_x is not known it is computed again, to the same bits."""
         if self._ahead:
             return self._ahead[-1].ending.near
-        last = self.arm.points[-1]
+        last = self.half.points[-1]
         if self._known is None or self._known[0] is not last:
             self._known = last, Near(self.equations.stroboscopic_map(last.knob)(last.x).derivative, last.slope)
         return self._known[1]
@@ -167,7 +167,7 @@ class Walk(Iterator[BranchPoint]):
             raise ComputationError(f"the branch turns by {turn:.0f}° in one step", "no-convergence")
         chord = float(np.linalg.norm(solved.z - self._z(here)))
         beyond = Ending(unrecorded(equations, solved, tangent, here.arclength + chord), solved.near)
-        may_close = len(self.arm.points) + len(self._ahead) >= _POINTS_BEFORE_CLOSING
+        may_close = len(self.half.points) + len(self._ahead) >= _POINTS_BEFORE_CLOSING
         ending = self._ends.of_step(last, beyond, solved.z, may_close)
         off = float(np.linalg.norm(solved.z - guess))
         self._step, self._failure = next_step(step, off, cosine, self._failure is not None), None
@@ -179,11 +179,11 @@ class Walk(Iterator[BranchPoint]):
         before = self._last_two[:-1]
         return (self._z(before[0]), before[0].tangent) if before else None
 
-    # --- the arm -------------------------------------------------------------------------------------------
+    # --- the half-branch -----------------------------------------------------------------------------------
 
     def _add(self, one: _Ahead, point: BranchPoint, special: list[SpecialPoint]) -> None:
-        """Add an orbit and the special points before it to the arm, which ends at a merging."""
-        arm, ended, reason = self.arm, one.ending.ended, one.ending.reason
+        """Add an orbit and the special points before it to the half-branch, which ends at a merging."""
+        half, ended, reason = self.half, one.ending.ended, one.ending.reason
         merging = self._ends.merging(special)
         if merging is not None:
             special, point = special[: merging + 1], special[merging].before
@@ -192,19 +192,19 @@ class Walk(Iterator[BranchPoint]):
             reason = (f"merged with the branch of period {self.equations.period // 2}, whose period doubles at "
                       f"{self.equations.axis.text(special[merging].knob)}: beyond it are the same orbits, half a "
                       "period later")
-        arm.special.extend(special)
-        if point is not arm.points[-1]:
-            arm.points.append(point)
+        half.special.extend(special)
+        if point is not half.points[-1]:
+            half.points.append(point)
             self._known = point, one.ending.near
-        arm.step, arm.ended, arm.reason = one.step, ended, reason
+        half.step, half.ended, half.reason = one.step, ended, reason
 
     def _lose(self) -> None:
-        last, arm = self.arm.points[-1], self.arm
+        last, half = self.half.points[-1], self.half
         singular = isinstance(self._failure, np.linalg.LinAlgError)
         failure = ("the equations became singular" if singular else
                    "it bends ever more sharply" if self._failure is None else str(self._failure))
-        arm.step, arm.ended = self._step, "lost"
-        arm.reason = (f"the branch could not be followed beyond {self.equations.axis.text(last.knob)} although "
+        half.step, half.ended = self._step, "lost"
+        half.reason = (f"the branch could not be followed beyond {self.equations.axis.text(last.knob)} although "
                       f"steps were shortened to {SHORTEST_STEP:g}: {failure.rstrip('.')}; residuals at the last orbit: "
                       f"{formatted(last.residuals)}")
 

@@ -108,7 +108,8 @@ class Decisions:
         """The decision by an orbit near the motion, if it allows one."""
         if orbit.approached():
             return Decision(replace(regime, name="periodic", period=orbit.period, multiplier=orbit.modulus, decay=None,
-                                    distance=orbit.orbit_error, followed=True, approaches=None), orbit.point.x)
+                                    distance=orbit.orbit_error, followed=True, followed_by="Newton",
+                                    approaches=None), orbit.point.x)
         self._leaves = self._leaves or orbit.unstable
         if not orbit.unstable or self._departures >= _MOST_DEPARTURES:
             return None
@@ -132,14 +133,15 @@ def _may_repeat_sooner(strobes: np.ndarray, period: int) -> bool:
 
 
 def _decays_clearly(regime: Regime) -> bool:
-    """Whether the decay per drive period leaves no doubt of a periodic regime where the motion began at rest."""
+    """Whether the observed contraction leaves no doubt of a periodic regime where the motion began at rest."""
     assert regime.period is not None
-    return (regime.decay or 0.0) ** (1.0 / regime.period) <= CLEAR_DECAY
+    return (regime.observed_contraction or 0.0) ** (1.0 / regime.period) <= CLEAR_DECAY
 
 
 def _on(orbit: NearbyOrbit, regime: Regime) -> Regime:
     """The periodic regime of a motion on a stable orbit that Newton's method has found from it."""
-    decay = regime.decay if orbit.period == regime.period else None  # it is that of the longer period
+    # that of the longer period says nothing of a shorter one
+    decay = regime.observed_contraction if orbit.period == regime.period else None
     return replace(regime, period=orbit.period, multiplier=orbit.modulus, decay=decay)
 
 
