@@ -178,7 +178,7 @@ def _plain(value: float | tuple[float, ...] | None) -> float | list[float | None
     """A number, or several, of a regime as JSON has them."""
     if isinstance(value, tuple):
         return [finite_or_null(one) for one in value]
-    return None if value is None else finite_or_null(value)
+    return value if value is None or isinstance(value, str) else finite_or_null(value)
 
 
 def _show_curve(swept: Any) -> None:

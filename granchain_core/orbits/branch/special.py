@@ -73,7 +73,7 @@ class SpecialPoint:
 
     @property
     def event(self) -> str | None:
-        """`gained` as JSON and files spell it: "touch" for a closed interval, "separation" for an open one."""
+        """The older name of `gained`, as JSON and files spell it: "touch" for a closed interval, else "separation"."""
         return None if self.gained is None else EVENTS[self.gained]
 
     @property
