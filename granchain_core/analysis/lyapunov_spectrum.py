@@ -96,8 +96,8 @@ class LyapunovSpectrum(Labelled):
     @property
     def dimension_resolved(self) -> bool:
         """Whether the range is known and has no jump: the largest exponent has one sign within its standard error."""
-        found, certain = self.dimension_range, abs(self.exponents[0]) > self.errors[0]
-        return self.dimension is not None and found is not None and bool(certain or found[0] == found[1])
+        span, certain = self.dimension_range, abs(self.exponents[0]) > self.errors[0]
+        return self.dimension is not None and span is not None and bool(certain or span[0] == span[1])
 
     @property
     def liouville(self) -> float | None:
@@ -209,7 +209,7 @@ def lyapunov_spectrum(scene: Scene, periods: int = 400, start: State | None = No
     counted = growth[_TURNING:]
     blocks = np.array([part.mean(axis=0) for part in np.array_split(counted, _BLOCKS)])
     resolved = int(np.argmax(rounding)) if rounding.any() else size
-    found, errors = counted.mean(axis=0), blocks.std(axis=0, ddof=1) / np.sqrt(_BLOCKS)
+    exponents, errors = counted.mean(axis=0), blocks.std(axis=0, ddof=1) / np.sqrt(_BLOCKS)
     # the factorization puts them in this order in the limit only: near ones may have changed places
-    order = np.concatenate([np.argsort(-found[:resolved], kind="stable"), np.arange(resolved, size)])
-    return LyapunovSpectrum(scene, found[order], errors[order], resolved, periods, float(traces[_TURNING:].mean()))
+    order = np.concatenate([np.argsort(-exponents[:resolved], kind="stable"), np.arange(resolved, size)])
+    return LyapunovSpectrum(scene, exponents[order], errors[order], resolved, periods, float(traces[_TURNING:].mean()))

@@ -57,8 +57,8 @@ class Setting:
     def finer(self) -> Setting:
         """The next finer setting: half the step, or a tolerance small enough that the error is smaller in practice.
 
-        With error control the error does not fall evenly with the tolerance: an eighth of it sometimes left the error
-        unchanged, so the next tolerance is a sixty-fourth.
+        With error control the error does not fall regularly with the tolerance: an eighth of it sometimes left the
+        error unchanged, so the next tolerance is a sixty-fourth.
         """
         if METHODS[self.method].error_control:
             return Setting(self.method, 1, min(max(self.tolerance / 64.0, _SMALLEST_TOLERANCE), self.tolerance / 8.0))

@@ -137,13 +137,13 @@ class Observation(RecordedMotion):
 
     def summary(self) -> list[str]:
         """Largest forces, errors, and the difference from what was measured."""
-        found = [f"{len(self.time)} samples over {self.time[-1] - self.time[0]:.4g} s; {self.status.replace('-', ' ')}",
-                 *said_forces(self)[:2],
-                 f"relative error of displacements {self.integration_error:.1e} by steps, "
-                 f"{self.interpolation_error:.1e} between samples"]
+        duration, status = self.time[-1] - self.time[0], self.status.replace("-", " ")
+        sentences = [f"{len(self.time)} samples over {duration:.4g} s; {status}", *said_forces(self)[:2],
+                     f"relative error of displacements {self.integration_error:.1e} by steps, "
+                     f"{self.interpolation_error:.1e} between samples"]
         if self.residual is not None:
-            found.append(f"model − measured: rms {self.residual.rms:.3g} N, most {self.residual.largest:.3g} N")
-        return found
+            sentences.append(f"model − measured: rms {self.residual.rms:.3g} N, most {self.residual.largest:.3g} N")
+        return sentences
 
 
 def observe(scene: Scene, time: object, force: object = None, output: object = None, start: State | None = None,

@@ -51,7 +51,7 @@ class Orbit(Labelled):
     period : int
         Period in drive periods.
     state : State
-        Where the orbit is at drive phase 0.
+        State of the orbit at drive phase 0.
     residual : float
         Change of the state by the map, relative to displacements and w (`StroboscopicMap.residual`).
     newton_residuals : tuple of float
@@ -99,15 +99,15 @@ class Orbit(Labelled):
 
     @functools.cached_property
     def multiplier_errors(self) -> np.ndarray | None:
-        """How far each multiplier may be from the exact map's, absolute (2N,); None with more than 100 beads.
+        """Absolute error of each multiplier (2N,); None with more than 100 beads.
 
-        Computed when it is first asked for (multiplier_errors.py), in the time of a Newton step.
+        The first access computes it (multiplier_errors.py), in the time of a Newton step.
         """
         return self._errors()
 
     @functools.cached_property
     def observer_multiplier_errors(self) -> np.ndarray | None:
-        """How far each of the observer's multipliers may be from the exact map's, absolute (2N,).
+        """Absolute error of each of the observer's multipliers (2N,).
 
         None where they were not requested.
         """
@@ -136,11 +136,11 @@ class Orbit(Labelled):
         return _is_certain(self.multipliers, self.multiplier_errors)
 
     def stability_words(self) -> str:
-        """"stable" or "unstable"; where a multiplier is no farther from the unit circle than its error, that one."""
+        """"stable" or "unstable", or the multiplier that is no farther from the unit circle than its error."""
         return _stability_words(self.multipliers, self.multiplier_errors)
 
     def observer_stability_words(self) -> str | None:
-        """The same of the observer; None where it was not requested."""
+        """The words for the observer; None where it was not requested."""
         if self.observer_multipliers is None:
             return None
         return _stability_words(self.observer_multipliers, self.observer_multiplier_errors)
@@ -175,14 +175,14 @@ class Orbit(Labelled):
                                      "evaluation of Newton's method"), {"residual": residuals}))
 
     def attributes(self) -> dict[str, Attribute]:
-        """Period, residual, stability, and where it comes from."""
-        found: dict[str, Attribute] = {
+        """Period, residual, stability, and the provenance."""
+        values: dict[str, Attribute] = {
             **provenance(self.scene, FLOW_METHOD, None), "period": self.period, "residual": self.residual,
             "stable": int(self.stable), "liouville": or_nan(self.liouville)}
-        return found if self.observer_stable is None else {**found, "observer_stable": int(self.observer_stable)}
+        return values if self.observer_stable is None else {**values, "observer_stable": int(self.observer_stable)}
 
     def summary(self) -> list[str]:
-        """Period, stability, the leading multiplier and how well the orbit closes."""
+        """Period, stability, the leading multiplier and the residual."""
         lead = self.multipliers[0]
         observer = "" if self.observer_stable is None else f"; observer {self.observer_stability_words()}"
         return [f"period {self.period}, {self.stability_words()}{observer}",
@@ -287,9 +287,10 @@ def _newton(stroboscopic_map: StroboscopicMap, x: np.ndarray) -> tuple[np.ndarra
         x, flow = trial, after
         history.append(stroboscopic_map.residual(flow.end, x))
     if history[-1] > ACCEPTED_RESIDUAL:
-        shown = ", ".join(f"{r:.1e}" for r in history)
+        residuals = ", ".join(f"{r:.1e}" for r in history)
         raise ComputationError(f"Newton's method found no orbit of {stroboscopic_map.periods} drive periods near this "
-                               f"start: its residuals were {shown}; give another period or start.", "no-convergence")
+                               f"start: its residuals were {residuals}; give another period or start.",
+                               "no-convergence")
     return x, flow, history
 
 
@@ -347,7 +348,7 @@ def _stability_words(multipliers: np.ndarray, errors: np.ndarray | None) -> str:
 
 
 def _liouville(multipliers: np.ndarray, log_determinant: float) -> float | None:
-    """The error, None where the smallest multiplier is only rounding."""
+    """Error of Liouville's formula; None where the smallest multiplier is only rounding."""
     sizes = np.abs(multipliers)
     return None if sizes.min() < ROUNDING * sizes.max() else liouville_error(multipliers, log_determinant)
 
@@ -355,11 +356,11 @@ def _liouville(multipliers: np.ndarray, log_determinant: float) -> float | None:
 def liouville_error(multipliers: np.ndarray, log_determinant: float) -> float:
     """Difference of ln |det| and ∫ trace, relative to the latter where that is above 1."""
     with np.errstate(divide="ignore"):
-        found = float(np.sum(np.log(np.abs(multipliers))))
-    return abs(found - log_determinant) / max(1.0, abs(log_determinant))
+        log_product = float(np.sum(np.log(np.abs(multipliers))))
+    return abs(log_product - log_determinant) / max(1.0, abs(log_determinant))
 
 
 def sorted_multipliers(derivative: np.ndarray) -> np.ndarray:
     """Eigenvalues of a monodromy matrix, largest modulus first."""
-    found = np.linalg.eigvals(derivative)
-    return found[np.argsort(-np.abs(found), kind="stable")]
+    multipliers = np.linalg.eigvals(derivative)
+    return multipliers[np.argsort(-np.abs(multipliers), kind="stable")]

@@ -36,8 +36,8 @@ class Response:
     """The pulse ratio: strong pushes of the driver per number of periods, whether they are in step, and the evidence.
 
     `kind` is "resonance" if the reflected pulse is in step with one strong push in `periods`, "anti-resonance" if it is
-    not, and else "". `contact_phase` and `peak_phase` are the drive's phase [degrees, 0
-    where it moves forward through its middle] where the strongest push begins and is strongest, None where driver and
+    not, and else "". `contact_phase` and `peak_phase` are the drive's phases [degrees] at which the strongest push
+    begins and is strongest; the phase is 0 where the driver moves forward through its middle, and None where driver and
     bead 1 never part. `returning` is relative to 2πf A0, `transmission` is largest output over largest input force.
     """
 

@@ -54,14 +54,14 @@ def search_orbit(scene: Scene, period: int, start: State, strobes: np.ndarray,
 
 
 def _middle(strobes: np.ndarray, period: int) -> Iterator[State]:
-    """The mean of every n-th late state."""
+    """The mean of every n-th late state, if there are two."""
     late = strobes[-_STATES_OF_MIDDLE:][::period]
     if len(late) > 1:
         yield State(*np.asarray(late, dtype=float).mean(axis=0))
 
 
 def _close_returns(strobes: np.ndarray, period: int) -> Iterator[State]:
-    """States of the section that come back nearest after `period` periods, closest first, not two of one passage."""
+    """States of the section with the closest returns after `period` periods, closest first, one of each passage."""
     if len(strobes) <= period:
         return
     size = np.maximum(1e-300, np.abs(strobes).max(axis=(0, 2)))[:, None]
@@ -76,7 +76,7 @@ def _close_returns(strobes: np.ndarray, period: int) -> Iterator[State]:
 
 
 def least_period_of(orbit: Orbit, stop: Stop | None = None) -> int:
-    """The smallest number of drive periods after which an orbit is back."""
+    """The least period of an orbit in drive periods."""
     scaled = scale_chain(orbit.scene)
     x = scaled.beads_of(scaled.from_si(orbit.state))
 

@@ -75,7 +75,7 @@ class StroboscopicMap:
         self._prepare(tolerance)
 
     def move(self, scene: Scene, tolerance: float) -> None:
-        """Become the map of another scene with as many beads, to the same bits as a new one at a third of the cost."""
+        """Become the map of another scene with as many beads: the bits of a new map at a third of its cost."""
         engine, scaled = self.engine, scale_like(self.engine.scaled, scene)
         engine.stepper = Dop853Stepper(tolerance, scaled, 1)
         engine.stepper.pause = engine.stop.pause
@@ -129,7 +129,7 @@ class StroboscopicMap:
         return np.linalg.solve(velocity_jacobian(scaled, self.inner(self.engine.y)), tangent.matrix)
 
     def end(self, x: np.ndarray) -> np.ndarray:
-        """The state n periods after x, without tangents: with none of them, by the kernel that has their code."""
+        """The state n periods after x, by the kernel with tangents, of which there are none."""
         self._run(x, new_tangent(np.zeros((len(x), 0)), self.engine.scaled.bodies, 0))
         return self.inner(self.engine.y)
 

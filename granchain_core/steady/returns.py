@@ -11,8 +11,9 @@ _NO_SIZE = 1e-300
 
 
 def sizes(x: np.ndarray, least_displacement: float = 0.0) -> np.ndarray:
-    """The sizes of displacements and of w, each for its own half of x (2N,): the largest, of displacements at least
-    `least_displacement`.
+    """The sizes of displacements and of w, in the two halves of x (2N,): the largest entry of each half.
+
+    That of displacements is at least `least_displacement`.
     """
     half = len(x) // 2
     largest = [max(_NO_SIZE, least, float(np.abs(part).max()))

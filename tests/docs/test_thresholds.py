@@ -90,9 +90,11 @@ NUMBERS = {2: "two", 3: "three", 4: "four"}
                         r"is less exact, has ([\de-]+) and": residuals.FIXED_STEP_RESIDUAL_GOAL,
                         r"is less exact, has 1e-9 and ([\de-]+)\.": residuals.ACCEPTED_FIXED_STEP_RESIDUAL}),
     ("docs/parameter-map.md", {r"sends blocks of (\d+) cells": scheduled.CELLS_IN_TASK}),
-    ("docs/regimes.md", {
+    ("docs/regime-evidence.md", {
         r"The measurement begins after (\d+) periods": regime_decisions.EXAMINED_AFTER, r"with at least (\d+) strobes": regime_criteria.SLOW_RECORD,
-        r"Its first (\d+) periods do not count": exponent_measurements.TURNING_PERIODS, r"not decided after (\d+) periods is settled alone": regime_decisions.MOST_PERIODS,
+        r"Its first (\d+) periods do not count": exponent_measurements.TURNING_PERIODS}),
+    ("docs/regimes.md", {
+        r"not decided after (\d+) periods is settled alone": regime_decisions.MOST_PERIODS,
         r"which means that \|mean\| − 3σ is below ([\d.]+);": round(regime_criteria._BOUNDED_GROWTH / regime_criteria._LONGEST_COMPARISON, 4),
         r"computed it is r, at most ([\d.]+), and": Regime("periodic", 1, 1.0, None, 1).assumed_contraction, r"decay was seen it is ([\d.]+) \(": Regime("periodic", 1, None, None, 1).assumed_contraction,
         r"below ([\d.]+) \+ 3σ": round(regime_criteria._BOUNDED_GROWTH / regime_criteria._LONGEST_COMPARISON, 4),

@@ -113,3 +113,15 @@ def test_the_motion_of_a_cut_chain_without_a_drive_is_known_to_the_accuracy_aske
     found, fine = settle(chain).run, run(chain.evolve(accuracy=1e-11), periods=0, record=1, samples=96)
     assert found.displacement_error < 1e-8
     assert np.abs(found.displacement - fine.displacement).max() < 1e-8 * np.abs(fine.displacement).max()
+
+
+def test_the_example_of_the_documentation_goes_through_its_stages() -> None:
+    """docs/regimes.md, "One motion through all stages": it settles so slowly that Newton's method finds its orbit."""
+    chain = scene("sec2").evolve(f=615.0)
+    found = settle(chain)
+    assert found.regime.orbit_found_by == "Newton" and found.regime.observed_contraction is None
+    assert found.regime.sentence == "period 2, orbit found after 400 periods of approach (|μ| 0.9939 per 2 periods)"
+    assert found.run.max_output_force == pytest.approx(1.211561, abs=1e-6)
+    point = resonance_curve(scene("sec2"), [615.0]).points[0]
+    assert point.regime.orbit_found_by == "extrapolation" and point.regime.period == 2
+    assert point.regime.observed_contraction == pytest.approx(0.93, abs=0.02) and point.regime.multiplier is None

@@ -109,7 +109,7 @@ class Branch(Labelled):
         return branch_tables(self.axis, self.half_branches)
 
     def attributes(self) -> dict[str, Attribute]:
-        """Knob, ends and period as JSON, and where it comes from."""
+        """Knob, ends and period as JSON, and the provenance."""
         header = {"knob": self.axis.knob, "start": self.axis.start, "end": self.axis.end, "period": self.period,
                 "arms": [{"direction": half.direction, "step": half.step.hex(), "ended": half.ended,
                           "reason": half.reason} for half in self.half_branches]}
@@ -118,7 +118,7 @@ class Branch(Labelled):
                 **({"coordinate": STATIC_OVERLAP} if self.axis.by_overlap else {})}
 
     def summary(self) -> list[str]:
-        """How many orbits, where it ended, and the special points."""
+        """Number of orbits, the reasons why it ended, and the special points."""
         ends = [half.reason or half.ended for half in self.half_branches if half.ended]
         kinds = [f"{one.kind_words} at {self.axis.text(one.knob)}"
                  + (f", {one.criticality_words()}" if one.normal_form and one.kind != "fold" else "")
@@ -173,7 +173,7 @@ class Continuation(Iterator[BranchPoint]):
         return self.branch
 
     def _grows(self, walk: Walk) -> bool:
-        """Whether a half-branch has not ended, and is shorter than every half-branch that has closed."""
+        """Whether a half-branch goes on: it has not ended, and is shorter than every half-branch that has closed."""
         return not walk.half.ended and len(walk.half.points) < min(map(len, self._closed), default=math.inf)
 
     @property
@@ -190,7 +190,7 @@ class Continuation(Iterator[BranchPoint]):
 def begin_branch(scene: Scene, knob: str, start: float, end: float, period: int | None = None,
                  start_state: State | None = None, both: bool = False, stop: Stop | None = None,
                  amplitude: Amplitude | None = None) -> Branch:
-    """The seed of a branch, to be followed by a `Continuation`.
+    """The seed of a branch, from which a `Continuation` goes on.
 
     The seed is the orbit of `period` drive periods at knob = `start` near `start_state`, or near the steady state from
     rest. With `both` it is the orbit at the scene's own value of the knob, and the branch goes both ways, to `start`
@@ -216,7 +216,7 @@ def begin_branch(scene: Scene, knob: str, start: float, end: float, period: int 
 
 def half_branches_from(equations: BranchEquations, x: np.ndarray, value: float,
                        directions: tuple[int, ...]) -> tuple[HalfBranch, ...]:
-    """Arms with their seed only, the orbit at the knob's `value` near the scaled state x."""
+    """Half-branches with their seed only, the orbit at the knob's `value` near the scaled state x."""
     fixed = np.zeros(equations.size + 1)
     fixed[-1] = 1.0
     solved = equations.solve(equations.point(x, value), fixed)

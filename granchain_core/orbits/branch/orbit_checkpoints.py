@@ -26,7 +26,7 @@ _ARRAYS = ("x", "tangent", "multipliers", "closings", "slope", "turns")
 
 
 def asked_digest(axis: KnobAxis, both: bool) -> str:
-    """Hash of everything that changes a branch but for its period, which may be left to the settled motion."""
+    """Hash of all arguments that change a branch, except its period, which may be that of the settled motion."""
     driven = {} if axis.amplitude is None else {"amplitude": axis.amplitude.to_json()}
     coordinate = {"coordinate": STATIC_OVERLAP} if axis.by_overlap else {}
     return digest_of({"scene": axis.scene.digest, "knob": axis.knob, "from": axis.start, "to": axis.end, "both": both,
@@ -48,7 +48,7 @@ class OrbitCheckpoints:
         return asked_digest(branch.axis, both) == asked_digest(self._axis, self._directions > 1)
 
     def add(self, period: int, half: HalfBranch) -> None:
-        """Add what a half-branch has grown by since the last call."""
+        """Add the orbits and special points by which a half-branch has grown since the last call."""
         points, special = self._written.get(half.direction, (0, 0))
         self._written[half.direction] = len(half.points), len(half.special)
         self.kept.add({"period": period, "direction": half.direction, "first": [points, special],
@@ -57,15 +57,13 @@ class OrbitCheckpoints:
                        "step": half.step.hex(), "ended": half.ended, "reason": half.reason})
 
     def begin(self, branch: Branch) -> None:
-        """Add what there is of a branch before it is followed."""
+        """Add a branch as it is before it is continued."""
         for half in branch.half_branches:
             if self._written.get(half.direction) != (len(half.points), len(half.special)):
                 self.add(branch.period, half)
 
     def branch(self) -> Branch | None:
-        """The branch as far as it is in the blocks, each half-branch up to the first orbit that is missing.
-
-        None where not even the seed is there.
+        """The branch in the blocks, each half-branch up to the first orbit that is missing; None without a seed.
         """
         halves: dict[int, HalfBranch] = {}
         period = 0
@@ -116,7 +114,7 @@ def special_as_json(one: SpecialPoint) -> dict[str, Any]:
 
 
 def special_from_json(record: dict[str, Any]) -> SpecialPoint:
-    """The special point that `special_as_json` made a record of."""
+    """The special point of a record by `special_as_json`."""
     multiplier = None if record["multiplier"] is None else complex(*record["multiplier"])
     form = record.get("normal_form")  # earlier versions had none
     if form:

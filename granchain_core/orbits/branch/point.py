@@ -66,12 +66,12 @@ class BranchPoint:
 
     @property
     def unstable(self) -> int:
-        """How many multipliers are outside the unit circle; without damping, by more than `ON_CIRCLE`."""
+        """Number of multipliers outside the unit circle; without damping, outside by more than `ON_CIRCLE`."""
         return int((np.abs(self.multipliers) >= self._circle).sum())
 
     @property
     def _circle(self) -> float:
-        """Modulus from which on a multiplier counts as outside the unit circle."""
+        """Least modulus of a multiplier that counts as outside the unit circle."""
         return 1.0 if self.damped else 1.0 + ON_CIRCLE
 
     @property
@@ -102,7 +102,7 @@ def branch_point(equations: BranchEquations, solved: Solved, tangent: np.ndarray
 
 
 def unrecorded(equations: BranchEquations, solved: Solved, tangent: np.ndarray, arclength: float) -> BranchPoint:
-    """The point without what a run along the orbit tells: its forces are NaN, its closings not counted."""
+    """The point without a run along its orbit: its forces are NaN and its closings are not counted."""
     multipliers = sorted_multipliers(solved.flow.derivative)
     return BranchPoint(
         knob=equations.value(solved.z), x=equations.state(solved.z), tangent=tangent, arclength=arclength,
@@ -130,7 +130,7 @@ def state_at(scene: Scene, x: np.ndarray) -> State:
 
 def rough_point(equations: BranchEquations, z: np.ndarray, tangent: np.ndarray, slope: np.ndarray,
                 multipliers: np.ndarray, residuals: list[float], arclength: float) -> BranchPoint:
-    """A point near the branch with its contacts, to find others by; it has no forces and no Liouville."""
+    """A point near the branch with its contacts, for the search only, without forces and Liouville's sum."""
     x, value = equations.state(z), equations.value(z)
     _, record = record_along(equations, x, value, _ROUGH_TOLERANCE)
     return BranchPoint(

@@ -56,9 +56,9 @@ class SpecialPoint:
 
     `kind` is one of `SPECIAL_KINDS`, `knob` the middle of the interval.
     `contact` and `gained` belong to a grazing: on one side of it the contact has one `gained` more per orbit, a "closed
-    interval" or an "open interval". `multiplier` is the one that passes the unit
-    circle. `normal_form` has the criticality and its coefficient; it is None for a grazing, for `plus_one`, at the end
-    of a doubled branch, and in older files.
+    interval" or an "open interval". `multiplier` is the one that passes the unit circle. `normal_form` has the
+    criticality and its coefficient; it is None for a grazing, for `plus_one`, at the end of a doubled branch, and in
+    older files.
     """
 
     kind: str
@@ -117,13 +117,13 @@ def special_between(between: Between) -> list[SpecialPoint]:
         kept = False
     if not kept:
         brackets = _brackets(axis, a, b, between, careful=True)
-    found = [special for bracket in brackets for special in _classified(axis, *bracket)]
-    return _merged(found)
+    special_points = [special for bracket in brackets for special in _classified(axis, *bracket)]
+    return _merged(special_points)
 
 
 def _brackets(axis: KnobAxis, a: BranchPoint, b: BranchPoint, between: Between, depth: int = 0,
               beyond: BranchPoint | None = None, careful: bool = False) -> list[tuple[BranchPoint, BranchPoint]]:
-    """Narrow brackets of all changes between a and b; `beyond` is an orbit next to one of them outside."""
+    """Narrow brackets of all changes between a and b; `beyond` is an orbit outside, next to a or to b."""
     if a.signature == b.signature:
         return []
     if _narrow(axis, a, b) or depth >= _MOST_LEVELS:
@@ -167,12 +167,12 @@ def _distance(axis: KnobAxis, a: BranchPoint, b: BranchPoint) -> float:
 
 def _fraction(axis: KnobAxis, a: BranchPoint, b: BranchPoint, depth: int,
               beyond: BranchPoint | None) -> tuple[float, bool]:
-    """Where to compute the next orbit, as a fraction of the bracket from a to b, and whether to solve it exactly.
+    """Place of the next orbit, as a fraction of the bracket from a to b, and whether to solve it exactly.
 
     The orbit lies just beyond the estimated root of the test function, on the side of the longer part, so that the
     bracket shrinks from both ends; at times, or without a test function, it is the middle. The first root is that of a
-    straight line. With a third value the root is known so well that the orbits on both sides of it can be as near to
-    each other as the bracket is to be narrow; then they are its ends and are solved exactly.
+    straight line. With a third value the root is known so well that the orbits on both sides of it are the ends of the
+    narrow bracket; these are solved exactly.
     """
     values = _test_values(a, b)
     if depth % _LEVELS_TO_MIDDLE == _LEVELS_TO_MIDDLE - 1 or values is None or not values[0] * values[1] < 0.0:
@@ -245,28 +245,28 @@ def _turns(point: BranchPoint, contact: int) -> np.ndarray:
 
 
 def _closings(point: BranchPoint, contact: int) -> int:
-    """How often a contact closes along the orbit."""
+    """Number of closings of a contact along the orbit."""
     return max(0, int(point.closings[contact]))
 
 
 def _classified(axis: KnobAxis, a: BranchPoint, b: BranchPoint) -> list[SpecialPoint]:
     """The special points inside a narrow bracket, usually one."""
     low, high = _interval(axis, a, b)
-    found = []
+    special_points = []
     left = _passing(a, b)
     if a.turning != b.turning:
         mine = next((mu for mu in left if mu.imag == 0.0 and mu.real > 0.0), None)
         left = [mu for mu in left if mu is not mine]
-        found.append(SpecialPoint("fold", 0.5 * (low + high), (low, high), a, b, multiplier=mine))
+        special_points.append(SpecialPoint("fold", 0.5 * (low + high), (low, high), a, b, multiplier=mine))
     interval = min(low, a.knob, b.knob), max(high, a.knob, b.knob)
     knob = 0.5 * (interval[0] + interval[1])
     for mu in left:
         kind = "neimark_sacker" if mu.imag != 0.0 else "fold" if mu.real > 0.0 else "period_doubling"
-        found.append(SpecialPoint(kind, knob, interval, a, b, multiplier=mu))
+        special_points.append(SpecialPoint(kind, knob, interval, a, b, multiplier=mu))
     for contact in np.flatnonzero(a.closings != b.closings):
-        found.append(SpecialPoint("grazing", knob, interval, a, b, contact=int(contact),
+        special_points.append(SpecialPoint("grazing", knob, interval, a, b, contact=int(contact),
                                   gained=_gained(a, b, int(contact))))
-    return found
+    return special_points
 
 
 def _passing(a: BranchPoint, b: BranchPoint) -> list[complex]:
@@ -292,13 +292,13 @@ def _gained(a: BranchPoint, b: BranchPoint, contact: int) -> str:
     return "closed interval" if nearest[TURN_SIGN] > 0.0 else "open interval"
 
 
-def _merged(found: list[SpecialPoint]) -> list[SpecialPoint]:
+def _merged(special_points: list[SpecialPoint]) -> list[SpecialPoint]:
     """A fold's turning and its multiplier's passage through 1 are one, also where a bracket ended between them.
 
     A multiplier that passes 1 without a turn is `plus_one`.
     """
     merged: list[SpecialPoint] = []
-    for one in found:
+    for one in special_points:
         last = merged[-1] if merged else None
         if last is not None and one.kind == last.kind == "fold" and one.before is last.after \
                 and (one.multiplier is None) != (last.multiplier is None):

@@ -25,7 +25,7 @@ _LEAST_DOUBLING = 0.5
 
 
 def switch_to_doubled(branch: Branch, special: SpecialPoint, stop: Stop | None = None) -> Branch:
-    """A branch of twice the period, begun near the period doubling `special` of `branch` and leading away from it.
+    """The branch of twice the period that leads away from the period doubling `special` of `branch`.
 
     Raises `BadInput` for another kind of point and `ComputationError` where no doubled orbit is found.
     """

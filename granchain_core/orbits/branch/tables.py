@@ -22,7 +22,7 @@ NO_CONTACT = -1
 
 
 def branch_tables(over: KnobAxis, half_branches: Sequence[HalfBranch]) -> tuple[Table, ...]:
-    """All tables of a branch; orbits half-branch by half-branch, each from the seed."""
+    """All tables of a branch. Orbits come half-branch by half-branch, each from the seed."""
     points = [(place, point) for place, half in enumerate(half_branches) for point in half.points]
     special = [(place, one) for place, half in enumerate(half_branches) for one in half.special]
     return (_orbits("branch", over, [point for _, point in points], [place for place, _ in points]),

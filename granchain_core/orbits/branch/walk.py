@@ -40,7 +40,7 @@ _THREADS = 2
 
 @dataclass
 class HalfBranch:
-    """One direction of a branch from its seed: points (the seed first), special points, and how it ended.
+    """One direction of a branch from its seed: points (the seed first), special points, and its end.
 
     `ended` is "" while there is more to come, else "reached", "returned", "closed", "merged" or "lost"; `reason` is
     a sentence. `step` is the next step in arclength: with it and the last point the walk goes on as if it had
@@ -57,7 +57,7 @@ class HalfBranch:
 
 @dataclass(frozen=True)
 class _Ahead:
-    """An orbit whose special points are still looked for, and the steps to and from it.
+    """An orbit ahead of the half-branch, whose special points are still sought, and the steps to and from it.
 
     `found` will be the orbit with its forces and contacts, and the special points before it.
     """
@@ -106,7 +106,7 @@ class Walk(Iterator[BranchPoint]):
     # --- ahead of the half-branch --------------------------------------------------------------------------
 
     def _go_back(self, step: float, failure: Exception | None = None) -> None:
-        """Forget what is ahead, and go on from the half-branch's last orbit with this step."""
+        """Drop all orbits ahead, and go on from the half-branch's last orbit with this step."""
         self._ahead: deque[_Ahead] = deque()
         self._step, self._failure = step, failure
 
@@ -128,13 +128,13 @@ class Walk(Iterator[BranchPoint]):
             self._step, self._failure = 0.5 * tried, problem
             return
         before = self._ahead[-1].found if self._ahead else last.point
-        found = self._pool.submit(self._completed, before, ending.point, contact_events, (last.near, ending.near))
-        self._ahead.append(_Ahead(ending, tried, self._step, found))
+        completed = self._pool.submit(self._completed, before, ending.point, contact_events, (last.near, ending.near))
+        self._ahead.append(_Ahead(ending, tried, self._step, completed))
 
     def _completed(self, before: BranchPoint | Future[tuple[BranchPoint, list[SpecialPoint]]], point: BranchPoint,
                    contact_events: np.ndarray | None,
                    near: tuple[Near, Near]) -> tuple[BranchPoint, list[SpecialPoint]]:
-        """The orbit with its forces and contacts, and the special points between the one before and itself."""
+        """The orbit with its forces and contacts, and the special points between the orbit before and this one."""
         last = before.result()[0] if isinstance(before, Future) else before
         if contact_events is not None:
             point = recorded(self.equations, point, contact_events)
@@ -152,21 +152,21 @@ class Walk(Iterator[BranchPoint]):
         return self._known[1]
 
     def _next_orbit(self, last: Ending) -> tuple[Ending, np.ndarray | None]:
-        """The next orbit, and whether the branch ends there; `ComputationError` where the step is too long.
+        """The next orbit and, if the branch ends there, the reason. Raises `ComputationError` if the step is too long.
 
-        With it come its contact events, where its forces and contacts are still to be found. Sets the next step.
+        Its contact events are None if its forces and contacts are known already. Sets the next step.
         """
-        equations, step, here = self.equations, self._step, last.point
-        guess = predicted(step, self._z(here), here.tangent, self._before_last)
-        solved = equations.solve_near(guess, here.tangent, last.near, LARGEST_CORRECTION * step)
+        equations, step, before = self.equations, self._step, last.point
+        guess = predicted(step, self._z(before), before.tangent, self._before_last)
+        solved = equations.solve_near(guess, before.tangent, last.near, LARGEST_CORRECTION * step)
         self._refuse_shorter(solved)
-        tangent = equations.tangent(solved, here.tangent)
-        cosine = float(tangent @ here.tangent)
+        tangent = equations.tangent(solved, before.tangent)
+        cosine = float(tangent @ before.tangent)
         if cosine < LEAST_COSINE:
             turn = np.degrees(np.arccos(np.clip(cosine, -1, 1)))
             raise ComputationError(f"the branch turns by {turn:.0f}° in one step", "no-convergence")
-        chord = float(np.linalg.norm(solved.z - self._z(here)))
-        beyond = Ending(unrecorded(equations, solved, tangent, here.arclength + chord), solved.near)
+        chord = float(np.linalg.norm(solved.z - self._z(before)))
+        beyond = Ending(unrecorded(equations, solved, tangent, before.arclength + chord), solved.near)
         may_close = len(self.half.points) + len(self._ahead) >= _POINTS_BEFORE_CLOSING
         ending = self._ends.of_step(last, beyond, solved.z, may_close)
         off = float(np.linalg.norm(solved.z - guess))
@@ -209,7 +209,7 @@ class Walk(Iterator[BranchPoint]):
                       f"{formatted(last.residuals)}")
 
     def _refuse_shorter(self, solved: Solved) -> None:
-        """Raise `ComputationError` where a step fell onto another branch, whose orbits have a part of the period."""
+        """Raise `ComputationError` for an orbit of another branch, whose period is a part of this one's."""
         n = self.equations.period
         x, value = self.equations.state(solved.z), self.equations.value(solved.z)
         least = self.equations.least_period(x, value, _SHORTER_PERIOD_DISTANCE)

@@ -49,7 +49,7 @@ _MOST_DEPARTURES = 6
 
 @dataclass(frozen=True, eq=False)
 class Decision:
-    """A regime, a scaled state (2N,) to go on from, strobes of periods that were run meanwhile, or nothing yet."""
+    """A regime, or a scaled state (2N,) to go on from, or strobes of periods that were run meanwhile, or nothing."""
 
     regime: Regime | None = None
     state: np.ndarray | None = None
@@ -80,7 +80,7 @@ class Decisions:
         return self._measure(engine, strobes, regime)
 
     def _confirmed(self, engine: Engine, strobes: np.ndarray, regime: Regime) -> Decision:
-        """A motion that seems settled: on an orbit that is stable, or near one that it will leave.
+        """The decision on a motion that seems settled: on a stable orbit, or near one that it will leave.
 
         A motion that settles alternating about an orbit is nearer to itself after two of its periods than after one,
         and may be taken for one of twice the period: where a part of the period almost repeats it, Newton's method
@@ -128,7 +128,7 @@ class Decisions:
 
 
 def _may_repeat_sooner(strobes: np.ndarray, period: int) -> bool:
-    """Whether a part of the period almost repeats the state."""
+    """Whether the state almost repeats after a part of the period."""
     return any(period % n == 0 and float(changes(strobes, n, n).max()) <= NEAR_AN_ORBIT for n in range(1, period))
 
 
@@ -153,9 +153,9 @@ def _orbits_beside(engine: Engine, strobes: np.ndarray) -> Iterator[NearbyOrbit]
 
 
 def regime_without_continuing(engine: Engine, strobes: np.ndarray, regime: Regime) -> Regime:
-    """The regime of a motion that is not followed any further: an orbit that it only approaches is not claimed.
+    """The regime of a motion that is not run any further: an orbit that it only approaches is not claimed.
 
-    `engine` is a live one where the strobes (P, 2, N) end; it goes on where a Lyapunov exponent is measured.
+    `engine` is live and at the end of the strobes (P, 2, N); it goes on if a Lyapunov exponent is measured.
     """
     scene = engine.scaled.scene
     if regime.period is not None:
