@@ -74,7 +74,7 @@ class Basins(Labelled):
         return (Table("basins", axes, {"attractor": number}, both), attractors_table(self.scene, self.attractors))
 
     def attributes(self) -> dict[str, Attribute]:
-        """Where they come from."""
+        """The provenance."""
         return dict(provenance(self.scene, attractor_methods(self.scene, self.attractors), None))
 
     def summary(self) -> list[str]:

@@ -158,7 +158,7 @@ class Transfer(Labelled):
         return self.run.attributes()
 
     def summary(self) -> list[str]:
-        """How many lines, and what passes at the drive frequency."""
+        """Number of lines, and gain and phase at the drive frequency."""
         at = int(np.argmin(np.abs(self.frequency - self.scene.f)))
         return [f"{len(self.frequency)} lines at which the input force is not negligible",
                 f"at {self.frequency[at]:.6g} Hz: gain {self.gain[at]:.4g} ± {self.gain_error[at]:.0e}, phase "

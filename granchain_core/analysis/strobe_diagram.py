@@ -63,7 +63,7 @@ class StrobePoint:
     strobe_error: float | None = None
 
     def distinct(self, bead: int) -> int:
-        """How many of the bead's displacements differ by more than a thousandth of the largest."""
+        """Number of the bead's displacements that differ by more than a thousandth of the largest."""
         displacements = np.sort(self.strobes[:, 0, bead - 1])
         if displacements.size == 0:
             return 0

@@ -69,7 +69,7 @@ class Scales:
 
 
 class StepLimits(NamedTuple):
-    """What limits the fixed-step method's step, whatever the drive frequency; in scaled units.
+    """The limits of the fixed-step method's step, whatever the drive frequency, in scaled units.
 
     `contacts` is the longest step for the contacts' springs, `damping` the fastest damped rate of their dashpots,
     `struck` the speed of the fastest bead at the start.

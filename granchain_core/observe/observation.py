@@ -36,7 +36,7 @@ from .record import ForceRecord, force_record, prepared
 
 @dataclass(frozen=True)
 class Residual:
-    """How far a computed output force is from the measured one: root mean square and largest [N], and relative rms."""
+    """Difference of a computed output force from the measured one: root mean square and largest [N], relative rms."""
 
     rms: float
     largest: float
@@ -235,7 +235,7 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
 
 
 def residual(computed: np.ndarray, measured: np.ndarray | None) -> Residual | None:
-    """How far `computed` is from `measured`; None where nothing was measured."""
+    """Difference of `computed` from `measured`; None where nothing was measured."""
     if measured is None:
         return None
     difference = model_minus_measured(computed, measured)

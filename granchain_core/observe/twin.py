@@ -231,7 +231,7 @@ def _follow(pair: Pair, periods: int) -> tuple[np.ndarray, np.ndarray, np.ndarra
 
 
 def observer_start(scene: Scene, chain: State, perturbation: float | State) -> State:
-    """Where the observer starts: in a given state, or displaced from the chain by a fraction of A0."""
+    """The observer's start: a given state, or the chain's displaced by a fraction of A0."""
     if isinstance(perturbation, State):
         return replace(checked_start(scene, perturbation), phase=chain.phase)
     if not np.isfinite(perturbation):

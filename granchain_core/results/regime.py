@@ -19,7 +19,7 @@ LEAST_BELOW_1 = 1e-6
 
 @dataclass(frozen=True)
 class Regime:
-    """What kind of motion it is, and the evidence.
+    """The kind of a motion, and the evidence for it.
 
     Attributes
     ----------

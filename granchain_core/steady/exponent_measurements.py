@@ -1,4 +1,4 @@
-"""What several measurements of one motion's Lyapunov exponent decide together: the rule of single chains and batches.
+"""The decision by several measurements of one motion's Lyapunov exponent: the rule of single chains and batches.
 
 A measurement that does not suffice for a decision is continued. One that is clearly chaotic decides by itself, and
 so does a quasi-periodic one that was continued, since it is as long as two; any other must agree with the one before it

@@ -178,7 +178,7 @@ def clearly_chaotic(exponents: np.ndarray) -> bool:
 
 
 def agree(one: Regime, other: Regime) -> bool:
-    """Whether two Lyapunov measurements give the same regime, with means that agree if it is chaotic.
+    """Whether two Lyapunov measurements agree: the same regime, and for a chaotic one the same mean.
 
     Means agree within the larger of `STANDARD_ERRORS` combined standard errors and `_EXPONENT_DIFFERENCE`. Those of a
     quasi-periodic motion are not compared: both are neutral (`is_neutral`).

@@ -1,4 +1,4 @@
-"""How a branch ends: at an end of the axis, at its own seed, or where it merges with one of half its period."""
+"""The ends of a branch: at an end of the axis, at its own seed, or where it merges with one of half its period."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is asked of a curve: one object for the computation, for its checkpoints and for a finished file."""
+"""A request for a curve: one object for the computation, for its checkpoints and for a finished file."""
 
 from __future__ import annotations
 
