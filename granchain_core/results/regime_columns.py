@@ -48,13 +48,13 @@ def evidence_columns(found: Sequence[Regime], along: str) -> dict[str, Column]:
         "periods_run": whole([one.periods_run for one in found], "drive periods run until that was decided"),
         "followed": whole([one.followed for one in found],
                           "1 where Newton's method or extrapolation found the orbit of a motion still approaching it"),
-        "orbit_found_by": Column(np.array([one.orbit_found_by or "" for one in found], dtype=object), (along,), "",
-                                 f"how the orbit was found: {', '.join(FOUND_BY[:-1])} or {FOUND_BY[-1]}; empty where "
-                                 "not periodic"),
         "approaches": whole([one.approaches or 0 for one in found],
                             "period of an orbit that an unsettled motion approaches, 0 where none is known"),
         **{name: Column(values, (along,), "1", meaning)
-           for (name, meaning), values in zip(meanings.items(), numbers.T, strict=True)}}
+           for (name, meaning), values in zip(meanings.items(), numbers.T, strict=True)},
+        "orbit_found_by": Column(np.array([one.orbit_found_by or "" for one in found], dtype=object), (along,), "",
+                                 f"how the orbit was found: {', '.join(FOUND_BY[:-1])} or {FOUND_BY[-1]}; empty where "
+                                 "not periodic")}
 
 
 def _evidence(regime: Regime) -> tuple[float, ...]:
