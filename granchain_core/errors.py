@@ -68,7 +68,7 @@ class ComputationError(ArithmeticError):
         self.cost = cost
 
 
-#: The older name, which scripts may use.
+#: The older name of `ComputationError`.
 NumbersFailed = ComputationError
 
 

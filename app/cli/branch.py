@@ -11,7 +11,7 @@ from typing import Any
 
 from granchain_core import BadInput, Cancelled, ComputationError
 from granchain_core.execution.checkpoints import folder_of
-from granchain_core.orbits import CONTINUOUS, Arm, Branch, Continuation, KnobAxis, begin_branch
+from granchain_core.orbits import CONTINUOUS, Branch, Continuation, HalfBranch, KnobAxis, begin_branch
 from granchain_core.orbits.branch.branch import MOST_POINTS
 from granchain_core.orbits.branch.orbit_checkpoints import OrbitCheckpoints
 from granchain_core.orbits.branch.special import SpecialPoint
@@ -35,7 +35,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--from", dest="start", metavar="a", help="its value where the branch begins")
     parser.add_argument("--to", dest="end", metavar="b", help="its value where it ends")
     parser.add_argument("--period", type=whole, metavar="n",
-                        help="drive periods of the orbits; by default those of the settled motion")
+                        help="drive periods of the orbits; by default those of the settled motion, 1 if it has none")
     parser.add_argument("--both", action="store_true",
                         help="begin at the scene's own value of the knob and go both ways, to a and to b")
     parser.add_argument("--points", type=whole, default=MOST_POINTS, metavar="m", help="most orbits each way")
@@ -52,8 +52,9 @@ def do(arguments: argparse.Namespace) -> None:
     check_points(arguments.points, 2, MOST_POINTS)
     found = _followed(arguments)
     write_picture(arguments.picture, f"A branch of {found.axis.scene.name}", found)
-    for arm in found.arms:
-        say(f"{len(arm.points)} orbits {_way(arm)}: {arm.reason or 'stopped after the number of orbits asked for'}")
+    for half in found.half_branches:
+        say(f"{len(half.points)} orbits {_way(half)}: {half.reason or 'stopped after the number of orbits asked for'}")
+    say_if(found.period_note)
     if arguments.json:
         show_json(branch_json(found))
     else:
@@ -73,7 +74,7 @@ def branch_json(found: Branch) -> dict[str, Any]:
         "max_input_force": [p.max_input_force for p in found.points],
         **({} if found.axis.amplitude is None else
            {"drive_amplitude": [found.axis.amplitude.held(p.knob) for p in found.points]}),
-        "ended": [{"how": arm.ended or "stopped", "reason": arm.reason} for arm in found.arms],
+        "ended": [{"how": half.ended or "stopped", "reason": half.reason} for half in found.half_branches],
     }
 
 
@@ -81,7 +82,7 @@ def _evidence(found: SpecialPoint) -> dict[str, Any]:
     """On what the kind of a special point rests: the multiplier that passes the circle, or what a contact does."""
     passing = found.multiplier
     return {"multiplier": None if passing is None else [passing.real, passing.imag], "contact": found.contact,
-            "event": found.event}
+            "event": found.event, "gained": found.gained}
 
 
 def _normal_form(found: SpecialPoint) -> dict[str, Any] | None:
@@ -144,7 +145,7 @@ def _begun(arguments: argparse.Namespace, stop: Any) -> _Begun:
     """A new branch, or the one that --resume goes on with."""
     if arguments.resume:
         found = _in_file(arguments)
-        kept = OrbitCheckpoints(found.axis, len(found.arms) > 1, arguments.out) if arguments.out else None
+        kept = OrbitCheckpoints(found.axis, len(found.half_branches) > 1, arguments.out) if arguments.out else None
         if kept is not None:
             kept.kept.open(resume=True)
         return _Begun((kept.branch() if kept is not None else None) or found, kept)
@@ -205,25 +206,25 @@ def _in_file(arguments: argparse.Namespace) -> Branch:
 
 
 class _Progress:
-    """Keeps orbits and reports progress on stderr; the threads of both arms call it after every orbit."""
+    """Keeps orbits and reports progress on stderr; the threads of both half-branches call it after every orbit."""
 
     def __init__(self, begun: _Begun) -> None:
         self._begun = begun
         self._lock = threading.Lock()
 
-    def __call__(self, arm: Arm) -> None:
+    def __call__(self, half: HalfBranch) -> None:
         if self._begun.kept is not None:
-            self._begun.kept.add(self._begun.branch.period, arm)
-        last = arm.points[-1]
-        if len(arm.points) % _EVERY == 0:
+            self._begun.kept.add(self._begun.branch.period, half)
+        last = half.points[-1]
+        if len(half.points) % _EVERY == 0:
             with self._lock:
-                say(f"{len(arm.points)} orbits {_way(arm)}, now at {last.knob:.6g}, "
-                    f"{'stable' if last.stable else 'unstable'}, {len(arm.special)} special points")
+                say(f"{len(half.points)} orbits {_way(half)}, now at {last.knob:.6g}, "
+                    f"{'stable' if last.stable else 'unstable'}, {len(half.special)} special points")
 
 
 
-def _way(arm: Arm) -> str:
-    return "upwards" if arm.direction > 0 else "downwards"
+def _way(half: HalfBranch) -> str:
+    return "upwards" if half.direction > 0 else "downwards"
 
 
 def _show(found: Branch) -> None:
@@ -231,7 +232,8 @@ def _show(found: Branch) -> None:
     for p in found.points:
         print(f"{p.knob:14.8g}  {p.max_output_force_elastic:26.8g}  {'stable' if p.stable else 'unstable'}")
     for s in found.special:
-        more = f", contact {s.contact}: {s.event}" if s.contact is not None else normal_form_words(s)
+        grazes = s.contact is not None
+        more = f", contact {s.contact}: one {s.gained} more on one side" if grazes else normal_form_words(s)
         low, high = s.interval
         print(f"{s.kind} at {found.axis.knob} = {s.knob:.8g}, between {low:.9g} and {high:.9g}{more}")
 

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 #: The numbers behind the regime of a point that the JSON has.
 _EVIDENCE = ("decay", "distance", "multiplier", "lyapunov", "lyapunov_periods", "return_distance", "return_limit",
-             "window_ratios")
+             "window_ratios", "orbit_found_by")
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -178,7 +178,7 @@ def _plain(value: float | tuple[float, ...] | None) -> float | list[float | None
     """A number, or several, of a regime as JSON has them."""
     if isinstance(value, tuple):
         return [finite_or_null(one) for one in value]
-    return None if value is None else finite_or_null(value)
+    return value if value is None or isinstance(value, str) else finite_or_null(value)
 
 
 def _show_curve(swept: Any) -> None:

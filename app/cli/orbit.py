@@ -11,7 +11,7 @@ from granchain_core import BadInput, Scene
 from granchain_core.precompile.pieces import ORBIT_KERNELS
 from granchain_core.scene.state import State
 
-from .common import chosen_scene, in_background, say, show_json
+from .common import chosen_scene, in_background, say, say_if, show_json
 from .compiling import compiling_beside
 from .options import add_json, add_out, add_scene, whole
 from .picture import add_option as add_picture
@@ -24,7 +24,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `orbit`."""
     add_scene(parser)
     parser.add_argument("--period", type=whole, metavar="n",
-                        help="drive periods of the orbit; by default those of the settled motion")
+                        help="drive periods of the orbit; by default those of the settled motion, 1 if it has none or "
+                             "with another --start")
     parser.add_argument("--start", default="settled", metavar="settled|rest|random|FILE",
                         help="where Newton's method starts; FILE is a recorded run, whose last sample counts")
     parser.add_argument("--seed", type=whole, default=0, help="seed of the random start")
@@ -45,11 +46,13 @@ def do(arguments: argparse.Namespace) -> None:
     with compiling_beside(chosen, ORBIT_KERNELS):
         found = in_background(lambda stop: periodic_orbit(chosen, arguments.period, start, arguments.observer, stop))
     write_files(arguments, f"Multipliers of {chosen.name}", found)
+    say_if(found.period_note)
     if arguments.json:
         data: dict[str, Any] = {
             "period": found.period, "residual": found.residual, "newton_residuals": list(found.newton_residuals),
             "multipliers": _pairs(found.multipliers), "stable": found.stable,
             "multiplier_errors": _numbers(found.multiplier_errors), "stability_certain": found.stability_certain,
+            "period_note": found.period_note or None,
         }
         if found.observer_multipliers is not None:
             data["observer_multipliers"] = _pairs(found.observer_multipliers)

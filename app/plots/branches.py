@@ -21,12 +21,13 @@ from .theme import AMBER, GREY, TEAL, VIOLET, Theme
 from .themed import apply_theme, empty_figure, themed
 
 SPECIAL = {"fold": "fold", "period_doubling": "period doubling", "neimark_sacker": "Neimark–Sacker (torus)",
-           "grazing": "grazing"}
+           "plus_one": "multiplier +1 without a fold", "grazing": "grazing"}
 #: Marks of special points, on branches and on the bifurcation curves of a map.
 SPECIAL_STYLES: dict[str, dict[str, Any]] = {
     "fold": {"marker": "inverted_triangle", "size": 14, "colour": AMBER, "filled": True},
     "period_doubling": {"marker": "hex", "size": 14, "colour": VIOLET, "filled": True},
     "neimark_sacker": {"marker": "circle", "size": 12, "colour": TEAL, "filled": False},
+    "plus_one": {"marker": "square", "size": 12, "colour": AMBER, "filled": False},
     "grazing": {"marker": "cross", "size": 9, "colour": GREY, "filled": True},
 }
 #: What begins at a bifurcation that is sub- or supercritical.
@@ -148,7 +149,7 @@ def branches(found: Sequence[Branch], theme: Theme, now: float | None = None, co
     models: dict[str, Any] = {}
     number = 0
     for one in found:
-        for arm in one.arms:
+        for arm in one.half_branches:
             if arm.points:
                 added = rows.add(number, one, arm.points, arm.special)
                 _put(data, added)
@@ -252,7 +253,7 @@ def special_words(special: SpecialPoint, branch: Branch) -> str:
     words = (f"{SPECIAL[special.kind].removesuffix(' (torus)')} at {special.knob / scale.factor:.4f} ± "
              f"{0.5 * (high - low) / scale.factor:.4f} {scale.unit}")
     if special.contact is not None:
-        words += f": contact {special.contact} has one {special.event} more on one side"
+        words += f": contact {special.contact} has one {special.gained} more per orbit on one side"
     elif special.kind == "neimark_sacker" and special.multiplier is not None:
         words += (f": a pair μ = {special.multiplier.real:+.3f} ± {abs(special.multiplier.imag):.3f}i crosses the unit "
                   "circle")

@@ -62,11 +62,14 @@ def curve_csv(curves: Mapping[str, Sequence[CurvePoint]]) -> str:
     titles = ["start", "frequency_Hz", "force_N", "elastic_part", "at_the_driver", "claim", "regime", "period",
               *evidence]
 
-    def row(start: str, point: CurvePoint, known: Iterable[float]) -> list[str]:
+    def cell(value: float | str) -> str:
+        return value if isinstance(value, str) else "" if np.isnan(value) else repr(value)
+
+    def row(start: str, point: CurvePoint, known: Iterable[float | str]) -> list[str]:
         claim = point.force_errors.output
         return [start, repr(point.frequency), repr(point.max_output_force), repr(point.max_output_force_elastic),
                 repr(point.max_input_force), "" if claim is None else repr(claim), point.regime.name,
-                str(point.regime.period or ""), *("" if np.isnan(value) else repr(value) for value in known)]
+                str(point.regime.period or ""), *map(cell, known)]
 
     rows = zip(*(column.values.tolist() for column in evidence.values()), strict=True)
     return _csv(titles, (row(start, point, known) for (start, point), known in zip(all_points, rows, strict=True)))

@@ -74,7 +74,7 @@ class Basins(Labelled):
         return (Table("basins", axes, {"attractor": number}, both), attractors_table(self.scene, self.attractors))
 
     def attributes(self) -> dict[str, Attribute]:
-        """Where they come from."""
+        """The provenance."""
         return dict(provenance(self.scene, attractor_methods(self.scene, self.attractors), None))
 
     def summary(self) -> list[str]:
@@ -142,11 +142,11 @@ def basins(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, Iterable[
 
 def _axis(scene: Scene, name: str, values: Iterable[float]) -> tuple[tuple[int, int], np.ndarray]:
     """Place of a coordinate in a state (2, N), and its values."""
-    found = re.fullmatch(r"([uv])([1-9][0-9]{0,4})", name, re.ASCII)
-    if found is None or int(found[2]) > scene.N:
+    coordinate = re.fullmatch(r"([uv])([1-9][0-9]{0,4})", name, re.ASCII)
+    if coordinate is None or int(coordinate[2]) > scene.N:
         raise BadInput(f"Coordinate {name[:40]!r} does not exist; there are u1 to u{scene.N} [m] and v1 to v{scene.N} "
                        "[m/s].")
     numbers = np.asarray(numbers_in(f"The values of {name}", values))
     if not np.isfinite(numbers).all():
         raise BadInput(f"The values of {name} must be finite numbers.")
-    return ("uv".index(found[1]), int(found[2]) - 1), numbers
+    return ("uv".index(coordinate[1]), int(coordinate[2]) - 1), numbers

@@ -5,9 +5,10 @@ Equation   Q_{p+1} R_{p+1} = M_p Q_p with M_p the derivative of the map over per
            D_KY = j + (λ_1 + … + λ_j) / |λ_{j+1}| with the largest j for which the sum is not negative
 Source     Benettin et al. 1980; Kaplan & Yorke 1979; standard errors from means of blocks
 Note       The sum of all exponents is the mean of ∫ trace along the motion (Liouville), which is computed too.
-           Standard errors take the means of the blocks as independent. A strong dashpot shrinks some directions by more
-           than double precision resolves in a period: such exponents are bounds from above, and `resolved` says how
-           many are more than that.
+           Standard errors take the means of the blocks as independent. The blocks are plain ones, not those of
+           steady/lyapunov.py: on a closed curve their error covers the swing of the growth (docs/analysis.md).
+           A strong dashpot shrinks some directions by more than double precision resolves in a period: such
+           exponents are bounds from above, and `resolved` says how many are more than that.
 """
 
 from __future__ import annotations
@@ -95,8 +96,8 @@ class LyapunovSpectrum(Labelled):
     @property
     def dimension_resolved(self) -> bool:
         """Whether the range is known and has no jump: the largest exponent has one sign within its standard error."""
-        found, certain = self.dimension_range, abs(self.exponents[0]) > self.errors[0]
-        return self.dimension is not None and found is not None and bool(certain or found[0] == found[1])
+        span, certain = self.dimension_range, abs(self.exponents[0]) > self.errors[0]
+        return self.dimension is not None and span is not None and bool(certain or span[0] == span[1])
 
     @property
     def liouville(self) -> float | None:
@@ -208,7 +209,7 @@ def lyapunov_spectrum(scene: Scene, periods: int = 400, start: State | None = No
     counted = growth[_TURNING:]
     blocks = np.array([part.mean(axis=0) for part in np.array_split(counted, _BLOCKS)])
     resolved = int(np.argmax(rounding)) if rounding.any() else size
-    found, errors = counted.mean(axis=0), blocks.std(axis=0, ddof=1) / np.sqrt(_BLOCKS)
+    exponents, errors = counted.mean(axis=0), blocks.std(axis=0, ddof=1) / np.sqrt(_BLOCKS)
     # the factorization puts them in this order in the limit only: near ones may have changed places
-    order = np.concatenate([np.argsort(-found[:resolved], kind="stable"), np.arange(resolved, size)])
-    return LyapunovSpectrum(scene, found[order], errors[order], resolved, periods, float(traces[_TURNING:].mean()))
+    order = np.concatenate([np.argsort(-exponents[:resolved], kind="stable"), np.arange(resolved, size)])
+    return LyapunovSpectrum(scene, exponents[order], errors[order], resolved, periods, float(traces[_TURNING:].mean()))

@@ -139,7 +139,7 @@ class Pulse(Labelled):
         return Table("pulse", along, columns), Table("beads", bead_axis(self.scene.N), fastest)
 
     def attributes(self) -> dict[str, Attribute]:
-        """Where it comes from, and the errors by sampling."""
+        """The provenance, and the errors by sampling."""
         return {**provenance(self.scene, self.run.cost.method, self.run.displacement_error),
                 "sampling_error": self.sampling_error, "sampling_error_time": self.sampling_error_time,
                 "sampling_error_speed": self.sampling_error_speed, "sampling_error_width": self.sampling_error_width}

@@ -158,7 +158,7 @@ class Transfer(Labelled):
         return self.run.attributes()
 
     def summary(self) -> list[str]:
-        """How many lines, and what passes at the drive frequency."""
+        """Number of lines, and gain and phase at the drive frequency."""
         at = int(np.argmin(np.abs(self.frequency - self.scene.f)))
         return [f"{len(self.frequency)} lines at which the input force is not negligible",
                 f"at {self.frequency[at]:.6g} Hz: gain {self.gain[at]:.4g} ± {self.gain_error[at]:.0e}, phase "
@@ -197,10 +197,10 @@ def spectrum(run: Run, force: str = "output") -> Spectrum:
     if force not in FORCES:
         raise unknown_name("force", force, FORCES)
     values, period = _record(run, np.asarray(getattr(run, FORCES[force]))[:-1])
-    found, half = (cosines(some, period is not None) for some in (values, values[::2]))
-    aliasing = 2.0 * float(np.abs(found[: len(half) // 2] - half[: len(half) // 2]).max())
-    frequency = np.arange(len(found)) * run.scene.f * run.samples / len(values)
-    return Spectrum(run, force, frequency, np.abs(found), np.angle(found), period, aliasing)
+    lines, half = (cosines(some, period is not None) for some in (values, values[::2]))
+    aliasing = 2.0 * float(np.abs(lines[: len(half) // 2] - half[: len(half) // 2]).max())
+    frequency = np.arange(len(lines)) * run.scene.f * run.samples / len(values)
+    return Spectrum(run, force, frequency, np.abs(lines), np.angle(lines), period, aliasing)
 
 
 def transfer(run: Run) -> Transfer:
@@ -260,10 +260,10 @@ def cosines(values: np.ndarray, repeats: bool) -> np.ndarray:
     if not repeats:
         window = np.hanning(len(values) + 1)[:-1]
         mean = float(np.average(values, weights=window))
-        found = np.fft.rfft((values - mean) * window) * (2.0 / window.sum())
-        found[0] = mean
-        return np.asarray(found)
-    found = np.fft.rfft(values) * (2.0 / len(values))
-    found[0] *= 0.5
-    found[-1] *= 0.5
-    return np.asarray(found)
+        amplitudes = np.fft.rfft((values - mean) * window) * (2.0 / window.sum())
+        amplitudes[0] = mean
+        return np.asarray(amplitudes)
+    amplitudes = np.fft.rfft(values) * (2.0 / len(values))
+    amplitudes[0] *= 0.5
+    amplitudes[-1] *= 0.5
+    return np.asarray(amplitudes)

@@ -63,11 +63,11 @@ class StrobePoint:
     strobe_error: float | None = None
 
     def distinct(self, bead: int) -> int:
-        """How many of the bead's displacements differ by more than a thousandth of the largest."""
-        found = np.sort(self.strobes[:, 0, bead - 1])
-        if found.size == 0:
+        """Number of the bead's displacements that differ by more than a thousandth of the largest."""
+        displacements = np.sort(self.strobes[:, 0, bead - 1])
+        if displacements.size == 0:
             return 0
-        return 1 + int((np.diff(found) > _APART * np.abs(found).max()).sum())
+        return 1 + int((np.diff(displacements) > _APART * np.abs(displacements).max()).sum())
 
 
 @dataclass(eq=False, repr=False)
@@ -199,13 +199,13 @@ def strobe_diagram(scene: Scene, knob: str, values: Sequence[float] | np.ndarray
         raise BadInput(f"A bifurcation diagram has 1 to {MOST_VALUES} values of its knob, not {len(numbers)}.")
     keep = whole_number("keep =", keep, 1, MOST_STROBES)
     chains = [(value, scene.evolve(**{knob: value})) for value in numbers]
-    found = StrobeDiagram(scene, knob, start)
+    diagram = StrobeDiagram(scene, knob, start)
     for point in _points(chains, start, keep, stop):
-        found.points.append(point)
+        diagram.points.append(point)
         if progress is not None:
-            progress(len(found.points) / len(chains))
-    found.points.sort(key=lambda point: point.value)
-    return found
+            progress(len(diagram.points) / len(chains))
+    diagram.points.sort(key=lambda point: point.value)
+    return diagram
 
 
 def _points(chains: list[tuple[float, Scene]], start: str, keep: int, stop: Stop | None) -> Iterator[StrobePoint]:

@@ -34,11 +34,10 @@ from ..scene import Scene
 from ..scene.hertz import RATE_POWER
 from ..scene.quantities import QUANTITIES
 from ..scene.state import State
+from ..steady.residuals import ACCEPTED_RESIDUAL, RESIDUAL_GOAL
 
 #: How exactly the critical multiplier meets its condition: it is not known better.
 _CONDITION_ERROR = MULTIPLIER_ERROR
-#: Residual at which an orbit is found.
-_ORBIT_RESIDUAL = 1e-10
 #: Newton's iterations at most.
 _MOST_ITERATIONS = 8
 #: Relative change of a knob for its difference quotient; the map is smooth to 1e-12.
@@ -85,10 +84,11 @@ class _Branch:
         """The scene at a point's last entry, x / unit."""
         return self.scene.evolve(**{self.knob: float(ratio) * self.unit})
 
-    def map(self, X: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The map's end from X, and its derivative (2N, 2N)."""
-        flow = StroboscopicMap(self.at(X[-1]), self.periods, self.stop)(X[:-1])
-        return flow.end, flow.derivative
+    def map(self, X: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
+        """The map's end from X, its derivative (2N, 2N), and the residual."""
+        stroboscopic_map = StroboscopicMap(self.at(X[-1]), self.periods, self.stop)
+        flow = stroboscopic_map(X[:-1])
+        return flow.end, flow.derivative, stroboscopic_map.residual(flow.end, X[:-1])
 
     def slope(self, X: np.ndarray) -> np.ndarray:
         """Derivative of the map's end by the knob, (2N,)."""
@@ -101,12 +101,12 @@ class _Branch:
 
         `slope` may be that of a point near by: it only steers the iterations.
         """
-        X = guess.copy()
+        X, before = guess.copy(), np.inf
         for _ in range(_MOST_ITERATIONS):
-            end, derivative = self.map(X)
-            off = np.append(end - X[:-1], direction @ (X - guess))
-            if np.abs(off).max() <= _ORBIT_RESIDUAL * max(1.0, float(np.abs(X[:-1]).max())):
+            end, derivative, residual = self.map(X)
+            if residual <= RESIDUAL_GOAL or (before <= ACCEPTED_RESIDUAL and residual <= ACCEPTED_RESIDUAL):
                 return X, derivative
+            before, off = residual, np.append(end - X[:-1], direction @ (X - guess))
             matrix = np.block([[derivative - np.eye(len(end)), slope[:, None]], [direction[None, :]]])
             X = X - np.linalg.solve(matrix, off)
             if not np.isfinite(X).all() or X[-1] <= 0.0:
@@ -277,7 +277,7 @@ def _inwards(branch: _Branch, state: np.ndarray) -> np.ndarray:
 
     It is the null vector of the map's derivative less one; the knob does not change along it.
     """
-    _, derivative = branch.map(np.append(state, 1.0))
+    _, derivative, _ = branch.map(np.append(state, 1.0))
     _, _, rows = np.linalg.svd(derivative - np.eye(len(state)))
     return np.append(rows[-1], 0.0)
 

@@ -57,8 +57,8 @@ class MethodSetting:
     def finer(self) -> MethodSetting:
         """The next finer setting: half the step, or a tolerance small enough that the error is smaller in practice.
 
-        With error control the error does not fall evenly with the tolerance: an eighth of it sometimes left the error
-        unchanged, so the next tolerance is a sixty-fourth.
+        With error control the error does not fall regularly with the tolerance: an eighth of it sometimes left the
+        error unchanged, so the next tolerance is a sixty-fourth.
         """
         if METHODS[self.method].error_control:
             finer = min(max(self.tolerance / 64.0, _SMALLEST_TOLERANCE), self.tolerance / 8.0)
@@ -197,7 +197,7 @@ METHODS: dict[str, Method] = {
             order=4.0, order_at_events=3.5, observed_smooth=4.0, observed_order=3.9,
             error_control=False, symplectic=False,
             restrictions="fixed step; order 3.5 below errors of about 1e-9, and 1 where tension is cut; in chains of "
-                         f"more than {SHORT_CHAIN} beads two changes of one inner contact within a step are not seen",
+                         f"more than {SHORT_CHAIN} beads two events of one inner contact within a step are missed",
             reference="Kutta 1901; w-variables and events: docs/method.md", stepper=_fixed(Rk4Split, simd=True),
             cost=StepCost(450e-9, 45e-9), usual_error=_FIXED_STEP_ERROR, converges_regularly=True,
             observed_with_cut=1.0),

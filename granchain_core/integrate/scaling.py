@@ -69,7 +69,7 @@ class Scales:
 
 
 class StepLimits(NamedTuple):
-    """What limits the fixed-step method's step, whatever the drive frequency; in scaled units.
+    """The limits of the fixed-step method's step, whatever the drive frequency, in scaled units.
 
     `contacts` is the longest step for the contacts' springs, `damping` the fastest damped rate of their dashpots,
     `struck` the speed of the fastest bead at the start.
@@ -163,7 +163,14 @@ class ScaledChain:
 
     @cached_property
     def step(self) -> float:
-        """The fixed-step method's step in scaled time."""
+        """The fixed-step method's step in scaled time: the shortest of the limits of contacts, damping and foundation.
+
+        Damping rates add up. The frequencies ω of a bead between its contacts and on its foundation do not: where both
+        are equal the bead's own frequency, the root of the sum of both squares, is √2 times as high, so that the step
+        is up to √2 longer in radians than each limit alone says, 0.28 in place of 0.2, far from the stability limit of
+        RK4, 2.83. In the scenes with a foundation ω of the contacts is nine times that of the foundation, and the sum
+        would shorten the step by 0.14 %.
+        """
         limits = self.step_limits
         step, (stiffness, damping) = limits.contacts, self._body_rates
         damping += limits.damping

@@ -98,8 +98,8 @@ class Computations:
         seen = differences
         if self._before is not None:
             seen = np.maximum(seen, self._before / self._falls(coarser, setting))
-        even = METHODS[setting.method].converges_regularly and not self.cuts_tension
-        self.stated = np.maximum((REGULAR if even else IRREGULAR) * seen, np.maximum(least, self.rounding))
+        regular = METHODS[setting.method].converges_regularly and not self.cuts_tension
+        self.stated = np.maximum((REGULAR if regular else IRREGULAR) * seen, np.maximum(least, self.rounding))
         self._before = differences
         self.settings.append(setting)
 

@@ -41,7 +41,7 @@ def is_real(multiplier: complex) -> bool:
 
 
 def departure_words(drifts: bool, multiplier: complex | None) -> str:
-    """What an observer does that does not synchronise: it drifts or leaves its chain, and alternates where μ < 0."""
+    """An observer that does not synchronise in words: it drifts or leaves its chain, and alternates where μ < 0."""
     alternating = multiplier is not None and is_real(multiplier) and multiplier.real < 0.0
     sides = ", alternating between the sides" if alternating else ""
     if drifts:

@@ -36,7 +36,7 @@ from .record import ForceRecord, force_record, prepared
 
 @dataclass(frozen=True)
 class Residual:
-    """How far a computed output force is from the measured one: root mean square and largest [N], and relative rms."""
+    """Difference of a computed output force from the measured one: root mean square and largest [N], relative rms."""
 
     rms: float
     largest: float
@@ -137,13 +137,13 @@ class Observation(RecordedMotion):
 
     def summary(self) -> list[str]:
         """Largest forces, errors, and the difference from what was measured."""
-        found = [f"{len(self.time)} samples over {self.time[-1] - self.time[0]:.4g} s; {self.status.replace('-', ' ')}",
-                 *said_forces(self)[:2],
-                 f"relative error of displacements {self.integration_error:.1e} by steps, "
-                 f"{self.interpolation_error:.1e} between samples"]
+        duration, status = self.time[-1] - self.time[0], self.status.replace("-", " ")
+        sentences = [f"{len(self.time)} samples over {duration:.4g} s; {status}", *said_forces(self)[:2],
+                     f"relative error of displacements {self.integration_error:.1e} by steps, "
+                     f"{self.interpolation_error:.1e} between samples"]
         if self.residual is not None:
-            found.append(f"model − measured: rms {self.residual.rms:.3g} N, most {self.residual.largest:.3g} N")
-        return found
+            sentences.append(f"model − measured: rms {self.residual.rms:.3g} N, most {self.residual.largest:.3g} N")
+        return sentences
 
 
 def observe(scene: Scene, time: object, force: object = None, output: object = None, start: State | None = None,
@@ -235,7 +235,7 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
 
 
 def residual(computed: np.ndarray, measured: np.ndarray | None) -> Residual | None:
-    """How far `computed` is from `measured`; None where nothing was measured."""
+    """Difference of `computed` from `measured`; None where nothing was measured."""
     if measured is None:
         return None
     difference = model_minus_measured(computed, measured)

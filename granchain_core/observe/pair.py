@@ -66,7 +66,7 @@ class Pair:
 
     @property
     def states(self) -> tuple[State, State]:
-        """Where the chain and its observer are."""
+        """The states of the chain and of its observer."""
         both, n = self.engine.state, self.scene.N
         return (State(both.displacement[:n], both.velocity[:n], both.phase),
                 State(both.displacement[n + 1 :], both.velocity[n + 1 :], both.phase))

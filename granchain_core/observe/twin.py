@@ -26,11 +26,12 @@ from ..steady.settling.advance import run_until_settled
 from .drift import departure_words, is_drift, share_of_translation
 from .pair import Pair
 
-#: Largest distance, relative to the motion, at which the difference of two motions still grows linearly.
+#: Largest distance, in scaled units, at which the difference of two motions still grows linearly.
 LINEAR = 0.03
-#: Smallest distance that is not rounding.
+#: Smallest distance that the fit of the multipliers uses: below it rounding is a part of the distance.
 LEAST_DISTANCE = 1e-11
-#: Differences below this, all through a period, are rounding: the observer is in step and is followed no further.
+#: The observer is in step, and is followed no further, once all entries of the difference are below this for a period.
+#: It is a tenth of `LEAST_DISTANCE`, so that no distance of the fit is missing.
 SYNCHRONISED = 1e-12
 #: Most periods of one twin: a minute or so.
 MOST_PERIODS = 20_000
@@ -230,7 +231,7 @@ def _follow(pair: Pair, periods: int) -> tuple[np.ndarray, np.ndarray, np.ndarra
 
 
 def observer_start(scene: Scene, chain: State, perturbation: float | State) -> State:
-    """Where the observer starts: in a given state, or displaced from the chain by a fraction of A0."""
+    """The observer's start: a given state, or the chain's displaced by a fraction of A0."""
     if isinstance(perturbation, State):
         return replace(checked_start(scene, perturbation), phase=chain.phase)
     if not np.isfinite(perturbation):

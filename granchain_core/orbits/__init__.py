@@ -7,12 +7,15 @@ from .branch.normal_forms import NormalForm
 from .branch.point import BranchPoint
 from .branch.special import SpecialPoint
 from .branch.switch import switch_to_doubled
-from .branch.walk import Arm
+from .branch.walk import HalfBranch
 from .orbit import Orbit, periodic_orbit, random_state
 from .response import Response, response
 
+#: The older name of `HalfBranch`.
+Arm = HalfBranch
+
 __all__ = [
-    "CONTINUOUS", "Arm", "Branch", "BranchPoint", "Continuation", "KnobAxis", "NormalForm", "Orbit", "Response",
-    "SpecialPoint", "begin_branch", "check_branch", "continue_branch", "periodic_orbit", "random_state", "response",
-    "switch_to_doubled",
+    "CONTINUOUS", "Arm", "Branch", "BranchPoint", "Continuation", "HalfBranch", "KnobAxis", "NormalForm", "Orbit",
+    "Response", "SpecialPoint", "begin_branch", "check_branch", "continue_branch", "periodic_orbit", "random_state",
+    "response", "switch_to_doubled",
 ]

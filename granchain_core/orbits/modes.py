@@ -83,7 +83,7 @@ def eigenpair(stroboscopic_map: StroboscopicMap, x: np.ndarray, rank: int,
 
 def _carried(orbit: Orbit, x: np.ndarray, direction: np.ndarray, size: float, samples: int,
              stop: Stop | None) -> tuple[np.ndarray, np.ndarray]:
-    """δu (n·samples + 1, N) and δx (2N,) at the end that start as `direction`, as a central difference."""
+    """δu (n·samples + 1, N), and δx (2N,) at the end, from the start `direction`, by a central difference."""
     engine = Engine(orbit.scene, dop853_setting(TOLERANCE), samples, stop=stop)
     ways = []
     for sign in (1.0, -1.0):
@@ -95,7 +95,7 @@ def _carried(orbit: Orbit, x: np.ndarray, direction: np.ndarray, size: float, sa
 
 
 def orbit_section(orbit: Orbit, samples: int = 48, stop: Stop | None = None) -> Section:
-    """The orbit's own n points at every phase, by dop853: n periods of an unstable orbit stay on it."""
+    """The n points of the orbit at every phase, by dop853, which stays on an unstable orbit for n periods."""
     stroboscopic_map = StroboscopicMap(orbit.scene, orbit.period, stop)
     engine = Engine(orbit.scene, dop853_setting(TOLERANCE), samples, stop=stop)
     engine.start_scaled(stroboscopic_map.inner(stroboscopic_map.engine.scaled.from_si(orbit.state)))

@@ -31,7 +31,7 @@ _LEAST_FRACTION = 0.25
 def derivative_change(scene: Scene, period: int, state: State, derivative: np.ndarray,
                       observed: np.ndarray | None = None, tolerance: float = TOLERANCE,
                       stop: Stop | None = None) -> np.ndarray:
-    """ΔM (2N, 2N) of the map's derivative at its fixed point `state`, or of the observer's, `observed`.
+    """Error ΔM (2N, 2N) of the map's derivative at its fixed point `state`, or of the observer's, `observed`.
 
     Infinite where the fixed point is not isolated, as at a fold.
     """
@@ -45,7 +45,7 @@ def derivative_change(scene: Scene, period: int, state: State, derivative: np.nd
 
 
 def errors_of(multipliers: np.ndarray, derivative: np.ndarray, change: np.ndarray) -> np.ndarray:
-    """Errors of the eigenvalues (2N,) of a derivative that is known to ΔM = `change`."""
+    """Errors (2N,) of the eigenvalues of a derivative with the error ΔM = `change`."""
     from scipy.linalg import eig  # a sixth of a second, which only multipliers pay
 
     values, left, right = eig(derivative, left=True, right=True)

@@ -9,7 +9,7 @@ the first chain without the driver's contact, so its multipliers come from the s
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,11 +18,12 @@ from ..execution.stop import Stop
 from ..inputs.checks import whole_number
 from ..integrate.scaling import scales_of
 from ..integrate.start import at_phase_0
-from ..results.regime import modulus_words
+from ..results.regime import Regime, modulus_words
 from ..scene import Scene
 from ..scene.refusals import require_scene
 from ..scene.state import State
 from ..steady.regime_criteria import LONGEST_LOCKED_PERIOD
+from ..steady.residuals import ACCEPTED_RESIDUAL, RESIDUAL_GOAL
 from ..steady.settling.advance import run_until_settled
 from ..steady.settling.nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS
 from ..tables import Column, Labelled, Table, axis, bead_axis, or_nan, provenance
@@ -31,8 +32,6 @@ from ..tables.words import multiplier_columns, state_columns
 from .multiplier_errors import derivative_change, errors_of
 from .stroboscopic_map import FLOW_METHOD, Flow, StroboscopicMap, refuse_cut
 
-#: Residual at which an orbit is found (`StroboscopicMap.residual`).
-CONVERGED = 1e-11
 #: Newton's iterations at most.
 MOST_ITERATIONS = 12
 #: Multipliers smaller than this part of the largest are rounding.
@@ -52,7 +51,7 @@ class Orbit(Labelled):
     period : int
         Period in drive periods.
     state : State
-        Where the orbit is at drive phase 0.
+        State of the orbit at drive phase 0.
     residual : float
         Change of the state by the map, relative to displacements and w (`StroboscopicMap.residual`).
     newton_residuals : tuple of float
@@ -69,6 +68,8 @@ class Orbit(Labelled):
     monodromy, observer_monodromy : numpy.ndarray or None, shape (2N, 2N)
         Derivatives of the n-period map in scaled displacements, then w, whose eigenvalues the multipliers are; None
         with more than 100 beads.
+    period_note : str
+        Why period 1 was taken, in words, where no period was given and no motion has one; else empty.
 
     Examples
     --------
@@ -89,6 +90,7 @@ class Orbit(Labelled):
     observer_multipliers: np.ndarray | None = None
     monodromy: np.ndarray | None = None
     observer_monodromy: np.ndarray | None = None
+    period_note: str = ""
 
     @property
     def changes(self) -> np.ndarray:
@@ -97,15 +99,15 @@ class Orbit(Labelled):
 
     @functools.cached_property
     def multiplier_errors(self) -> np.ndarray | None:
-        """How far each multiplier may be from the exact map's, absolute (2N,); None with more than 100 beads.
+        """Absolute error of each multiplier (2N,); None with more than 100 beads.
 
-        Computed when it is first asked for (multiplier_errors.py), in the time of a Newton step.
+        The first access computes it (multiplier_errors.py), in the time of a Newton step.
         """
         return self._errors()
 
     @functools.cached_property
     def observer_multiplier_errors(self) -> np.ndarray | None:
-        """How far each of the observer's multipliers may be from the exact map's, absolute (2N,).
+        """Absolute error of each of the observer's multipliers (2N,).
 
         None where they were not requested.
         """
@@ -134,11 +136,11 @@ class Orbit(Labelled):
         return _is_certain(self.multipliers, self.multiplier_errors)
 
     def stability_words(self) -> str:
-        """"stable" or "unstable"; where a multiplier is no farther from the unit circle than its error, that one."""
+        """"stable" or "unstable", or the multiplier that is no farther from the unit circle than its error."""
         return _stability_words(self.multipliers, self.multiplier_errors)
 
     def observer_stability_words(self) -> str | None:
-        """The same of the observer; None where it was not requested."""
+        """The words for the observer; None where it was not requested."""
         if self.observer_multipliers is None:
             return None
         return _stability_words(self.observer_multipliers, self.observer_multiplier_errors)
@@ -173,20 +175,21 @@ class Orbit(Labelled):
                                      "evaluation of Newton's method"), {"residual": residuals}))
 
     def attributes(self) -> dict[str, Attribute]:
-        """Period, residual, stability, and where it comes from."""
-        found: dict[str, Attribute] = {
+        """Period, residual, stability, and the provenance."""
+        values: dict[str, Attribute] = {
             **provenance(self.scene, FLOW_METHOD, None), "period": self.period, "residual": self.residual,
             "stable": int(self.stable), "liouville": or_nan(self.liouville)}
-        return found if self.observer_stable is None else {**found, "observer_stable": int(self.observer_stable)}
+        return values if self.observer_stable is None else {**values, "observer_stable": int(self.observer_stable)}
 
     def summary(self) -> list[str]:
-        """Period, stability, the leading multiplier and how well the orbit closes."""
+        """Period, stability, the leading multiplier and the residual."""
         lead = self.multipliers[0]
         observer = "" if self.observer_stable is None else f"; observer {self.observer_stability_words()}"
         return [f"period {self.period}, {self.stability_words()}{observer}",
                 f"leading multiplier {lead.real:+.4f}{lead.imag:+.4f}i, |μ| {modulus_words(abs(lead))}"
                 + ("" if self.multiplier_errors is None else f" ± {self.multiplier_errors[0]:.0e}"),
-                f"closes to {self.residual:.1e} of its largest displacement and w"]
+                f"closes to {self.residual:.1e} of its largest displacement and w",
+                *([self.period_note] if self.period_note else [])]
 
 
 def periodic_orbit(scene: Scene, period: int | None = None, start: State | None = None, observer: bool = False,
@@ -200,7 +203,8 @@ def periodic_orbit(scene: Scene, period: int | None = None, start: State | None 
     scene : Scene
         The chain; its tension must not be cut.
     period : int, optional
-        Period in drive periods; by default that of the steady state.
+        Period in drive periods. By default that of the steady state; 1 if the steady state is not periodic, or if
+        `start` is given. `Orbit.period_note` then says why.
     start : State, optional
         Where Newton's method begins; by default the steady state reached from rest.
     observer : bool
@@ -234,17 +238,27 @@ def periodic_orbit(scene: Scene, period: int | None = None, start: State | None 
     require_scene(scene)
     n = None if period is None else whole_number("period", period, 1, LONGEST_LOCKED_PERIOD)
     refuse_cut(scene)
+    note = ""
     if start is None:
         settling = run_until_settled(scene, None, stop)
+        if n is None and settling.regime.period is None:
+            note = f"period 1 was taken, because the motion from rest is {_no_period(settling.regime)}"
         n = n or settling.regime.period or 1
         start = settling.engine.state
     else:
+        if n is None:
+            note = "period 1 was taken, because a start was given without a period"
         start = at_phase_0(scene, start, stop)
     n = n or 1
     stroboscopic_map = StroboscopicMap(scene, n, stop)
     x = stroboscopic_map.inner(stroboscopic_map.engine.scaled.from_si(start))
     x, flow, history = _newton(stroboscopic_map, x)
-    return _orbit(scene, n, stroboscopic_map, x, flow, history, observer)
+    return replace(_orbit(scene, n, stroboscopic_map, x, flow, history, observer), period_note=note)
+
+
+def _no_period(regime: Regime) -> str:
+    """The regime of a motion without a period, in words."""
+    return f"not settled after {regime.periods_run} periods" if regime.name == "unsettled" else regime.name
 
 
 def random_state(scene: Scene, seed: int) -> State:
@@ -258,7 +272,7 @@ def _newton(stroboscopic_map: StroboscopicMap, x: np.ndarray) -> tuple[np.ndarra
     """Damped Newton iterations."""
     flow = _flow(stroboscopic_map, x)
     history = [stroboscopic_map.residual(flow.end, x)]
-    while history[-1] > CONVERGED and len(history) <= MOST_ITERATIONS:
+    while history[-1] > RESIDUAL_GOAL and len(history) <= MOST_ITERATIONS:
         step = _newton_step(stroboscopic_map, x, flow)
         for halving in range(_MOST_HALVINGS):
             trial = x + step / 2**halving
@@ -272,10 +286,11 @@ def _newton(stroboscopic_map: StroboscopicMap, x: np.ndarray) -> tuple[np.ndarra
             break
         x, flow = trial, after
         history.append(stroboscopic_map.residual(flow.end, x))
-    if history[-1] > 100.0 * CONVERGED:
-        shown = ", ".join(f"{r:.1e}" for r in history)
+    if history[-1] > ACCEPTED_RESIDUAL:
+        residuals = ", ".join(f"{r:.1e}" for r in history)
         raise ComputationError(f"Newton's method found no orbit of {stroboscopic_map.periods} drive periods near this "
-                               f"start: its residuals were {shown}; give another period or start.", "no-convergence")
+                               f"start: its residuals were {residuals}; give another period or start.",
+                               "no-convergence")
     return x, flow, history
 
 
@@ -333,7 +348,7 @@ def _stability_words(multipliers: np.ndarray, errors: np.ndarray | None) -> str:
 
 
 def _liouville(multipliers: np.ndarray, log_determinant: float) -> float | None:
-    """The error, None where the smallest multiplier is only rounding."""
+    """Error of Liouville's formula; None where the smallest multiplier is only rounding."""
     sizes = np.abs(multipliers)
     return None if sizes.min() < ROUNDING * sizes.max() else liouville_error(multipliers, log_determinant)
 
@@ -341,11 +356,11 @@ def _liouville(multipliers: np.ndarray, log_determinant: float) -> float | None:
 def liouville_error(multipliers: np.ndarray, log_determinant: float) -> float:
     """Difference of ln |det| and ∫ trace, relative to the latter where that is above 1."""
     with np.errstate(divide="ignore"):
-        found = float(np.sum(np.log(np.abs(multipliers))))
-    return abs(found - log_determinant) / max(1.0, abs(log_determinant))
+        log_product = float(np.sum(np.log(np.abs(multipliers))))
+    return abs(log_product - log_determinant) / max(1.0, abs(log_determinant))
 
 
 def sorted_multipliers(derivative: np.ndarray) -> np.ndarray:
     """Eigenvalues of a monodromy matrix, largest modulus first."""
-    found = np.linalg.eigvals(derivative)
-    return found[np.argsort(-np.abs(found), kind="stable")]
+    multipliers = np.linalg.eigvals(derivative)
+    return multipliers[np.argsort(-np.abs(multipliers), kind="stable")]

@@ -1,9 +1,9 @@
-"""The kind of response of a periodic orbit, from the orbit alone: 1:n resonance, anti-resonance, or stop band.
+"""The pulse ratio of a periodic orbit, from the orbit alone: strong pushes per drive period, in step or not.
 
-The rule and its thresholds are in docs/orbits.md; the place of a state on a resonance curve is another matter
-(steady/curve/resonance.py). Source: Zhang et al. 2016, sections 2 and 3: in a 1:n resonance the driver gives one strong
-push every n periods, at the moment at which the pulse reflected by the wall comes back to it; in an anti-resonance
-pulses interfere destructively, and every period has one push, none much stronger than the others.
+*Resonance* is a word of the curve (steady/curve/resonance.py), whose rule may disagree with this one; docs/orbits.md
+has both rules and their thresholds. Source: Zhang et al. 2016, sections 2 and 3: in a 1:n resonance the driver gives
+one strong push every n periods, at the moment at which the pulse reflected by the wall comes back to it; in an
+anti-resonance pulses interfere destructively, and every period has one push, none much stronger than the others.
 """
 
 from __future__ import annotations
@@ -33,10 +33,11 @@ _TOLERANCE = 1e-9
 
 @dataclass(frozen=True)
 class Response:
-    """Strong pushes of the driver per number of periods, the kind of response, and the evidence.
+    """The pulse ratio: strong pushes of the driver per number of periods, whether they are in step, and the evidence.
 
-    `kind` is "resonance", "anti-resonance" or "". `contact_phase` and `peak_phase` are the drive's phase [degrees, 0
-    where it moves forward through its middle] where the strongest push begins and is strongest, None where driver and
+    `kind` is "resonance" if the reflected pulse is in step with one strong push in `periods`, "anti-resonance" if it is
+    not, and else "". `contact_phase` and `peak_phase` are the drive's phases [degrees] at which the strongest push
+    begins and is strongest; the phase is 0 where the driver moves forward through its middle, and None where driver and
     bead 1 never part. `returning` is relative to 2πf A0, `transmission` is largest output over largest input force.
     """
 
@@ -49,12 +50,17 @@ class Response:
     transmission: float
 
     @property
+    def in_step(self) -> bool | None:
+        """Whether the reflected pulse is in step; None in a stop band, or with several strong pushes per orbit."""
+        return None if not self.kind else self.kind == "resonance"
+
+    @property
     def sentence(self) -> str:
         """The response in words."""
-        ratio = f"{self.strong}:{self.periods}"
-        if self.kind:
-            return f"{ratio} {self.kind}"
-        return f"{ratio} motion, stop band" if self.transmission < STOP_BAND_FRACTION else f"{ratio} motion"
+        ratio = f"pulse ratio {self.strong}:{self.periods}"
+        if self.in_step is not None:
+            return f"{ratio}, {'in step' if self.in_step else 'not in step'}"
+        return f"{ratio}, stop band" if self.transmission < STOP_BAND_FRACTION else ratio
 
 
 def response(orbit: Orbit) -> Response:

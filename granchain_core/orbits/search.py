@@ -17,6 +17,7 @@ from ..execution.stop import Stop
 from ..integrate.scaling import scale_chain
 from ..scene import Scene
 from ..scene.state import State
+from ..steady.residuals import least_displacement
 from ..steady.returns import least_period
 from .orbit import Orbit, periodic_orbit
 from .stroboscopic_map import SAME_ORBIT_DISTANCE, StroboscopicMap
@@ -53,14 +54,14 @@ def search_orbit(scene: Scene, period: int, start: State, strobes: np.ndarray,
 
 
 def _middle(strobes: np.ndarray, period: int) -> Iterator[State]:
-    """The mean of every n-th late state."""
+    """The mean of every n-th late state, if there are two."""
     late = strobes[-_STATES_OF_MIDDLE:][::period]
     if len(late) > 1:
         yield State(*np.asarray(late, dtype=float).mean(axis=0))
 
 
 def _close_returns(strobes: np.ndarray, period: int) -> Iterator[State]:
-    """States of the section that come back nearest after `period` periods, closest first, not two of one passage."""
+    """States of the section with the closest returns after `period` periods, closest first, one of each passage."""
     if len(strobes) <= period:
         return
     size = np.maximum(1e-300, np.abs(strobes).max(axis=(0, 2)))[:, None]
@@ -75,11 +76,11 @@ def _close_returns(strobes: np.ndarray, period: int) -> Iterator[State]:
 
 
 def least_period_of(orbit: Orbit, stop: Stop | None = None) -> int:
-    """The smallest number of drive periods after which an orbit is back."""
+    """The least period of an orbit in drive periods."""
     scaled = scale_chain(orbit.scene)
     x = scaled.beads_of(scaled.from_si(orbit.state))
 
     def after(periods: int) -> np.ndarray:
         return StroboscopicMap(orbit.scene, periods, stop)(x, directions=np.zeros((len(x), 0))).end
 
-    return least_period(after, x, orbit.period, SAME_ORBIT_DISTANCE)
+    return least_period(after, x, orbit.period, SAME_ORBIT_DISTANCE, least_displacement(x, scaled.beta))

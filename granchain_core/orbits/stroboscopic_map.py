@@ -21,10 +21,10 @@ from ..kernels.flow.velocity_tangent import VelocityTangent, new_velocity_tangen
 from ..kernels.status import EVENTS_PER_CONTACT
 from ..scene import Scene
 from ..scene.refusals import refuse_undriven
-from ..steady.returns import relative_change
+from ..steady.residuals import orbit_change
 
 #: Tolerance of one step, relative to the largest displacement and w. The map is then accurate enough for Newton's
-#: method to converge to `CONVERGED` (orbit.py), and a chain with its observer is followed to about 1e-11.
+#: method to converge to `RESIDUAL_GOAL` (steady/residuals.py); a chain with its observer is followed to about 1e-11.
 TOLERANCE = 1e-13
 #: Error of the derivative at that tolerance, relative to its largest entry. Against a tolerance of 1e-14 it was 3e-12
 #: to 5e-10 on orbits of sec2 and 1e-7 on those of the rig at 60 and 90 Hz. These are near grazings, where the
@@ -33,8 +33,6 @@ TANGENT_ERROR = 1e-7
 #: Error of a multiplier near the unit circle: ten times that, as the largest entry of the derivative is 2 to 13 and the
 #: eigenvectors are well separated. For single orbits it is computed (multiplier_errors.py).
 MULTIPLIER_ERROR = 10.0 * TANGENT_ERROR
-#: Smallest size of displacements at phase 0, relative to the amplitude of w over the drive rate.
-_LEAST_DISPLACEMENT = 1e-3
 #: The method, in the provenance of results.
 FLOW_METHOD = "tangent flow (DOP853, time substitution at events)"
 #: An orbit that is back within this, relatively, after a part of its period has that shorter period.
@@ -77,7 +75,7 @@ class StroboscopicMap:
         self._prepare(tolerance)
 
     def move(self, scene: Scene, tolerance: float) -> None:
-        """Become the map of another scene with as many beads, to the same bits as a new one at a third of the cost."""
+        """Become the map of another scene with as many beads: the bits of a new map at a third of its cost."""
         engine, scaled = self.engine, scale_like(self.engine.scaled, scene)
         engine.stepper = Dop853Stepper(tolerance, scaled, 1)
         engine.stepper.pause = engine.stop.pause
@@ -97,14 +95,8 @@ class StroboscopicMap:
         return self.engine.scaled.beads_of(y)
 
     def residual(self, end: np.ndarray, x: np.ndarray) -> float:
-        """Change from x (2N,) to `end`, of displacements and of w, each relative to the largest in x.
-
-        The size of displacements is taken to be at least `_LEAST_DISPLACEMENT` of the amplitude that w has at the drive
-        rate: beads that follow a slow drive pass their rest positions at phase 0, and their displacements there are
-        rounding.
-        """
-        least = _LEAST_DISPLACEMENT * float(np.abs(x[len(x) // 2 :]).max()) / self.engine.scaled.beta
-        return relative_change(end - x, x, least)
+        """Change from x (2N,) to `end`, relative to the sizes of displacements and of w (steady/residuals.py)."""
+        return orbit_change(end - x, x, self.engine.scaled.beta)
 
     def __call__(self, x: np.ndarray, observer: bool = False, directions: np.ndarray | None = None) -> Flow:
         """The flow from x with the derivative, or its product with the columns of `directions` (2N, columns).
@@ -120,22 +112,24 @@ class StroboscopicMap:
         """The derivative (2N, 2N) in (u, w), from tangents in (u, v) with their jumps at contact events.
 
         Without `jumps` it is wrong on purpose: the saltation is left out, for comparison. Raises `BadInput` for a
-        damping that is not the linear dashpot's.
+        damping g(δ) that is not the linear dashpot's: its saltation is the identity, since g(0) = 0, but the tangents
+        in (u, v) have a term g'(δ) δ̇, which this route leaves out.
 
         Only tests use it. It stands here because its type `VelocityTangent` is in the list of specializations of
         `run_flow`: were it in tests/, a process without the tests could not read that list.
         """
         scaled = self.engine.scaled
         if scaled.slots.dissipation is not None and not isinstance(scaled.slots.dissipation, LinearDashpot):
-            raise BadInput(f"dissipation = {scaled.scene.dissipation} has no constant saltation; the second route "
-                           "knows linear and none.")
+            raise BadInput(f"dissipation = {scaled.scene.dissipation}: the second route has no term for the change of "
+                           "the damping with the overlap, which is unbounded where a contact closes; it takes linear "
+                           "and none.")
         before = velocity_jacobian(scaled, x)
         tangent = new_velocity_tangent(before, scaled.bodies, float(jumps))
         self._run(x, tangent)
         return np.linalg.solve(velocity_jacobian(scaled, self.inner(self.engine.y)), tangent.matrix)
 
     def end(self, x: np.ndarray) -> np.ndarray:
-        """The state n periods after x, without tangents: with none of them, by the kernel that has their code."""
+        """The state n periods after x, by the kernel with tangents, of which there are none."""
         self._run(x, new_tangent(np.zeros((len(x), 0)), self.engine.scaled.bodies, 0))
         return self.inner(self.engine.y)
 

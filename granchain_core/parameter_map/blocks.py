@@ -31,7 +31,7 @@ class Blocks:
 
     @property
     def folder(self) -> Path:
-        """Where they are."""
+        """The folder of the blocks."""
         return self.kept.folder
 
     def cells(self) -> np.ndarray:

@@ -60,7 +60,7 @@ def cell_of(result: SteadyState) -> np.ndarray:
     name = "failed" if result.failure else regime.name
     mean, error = regime.lyapunov or (np.nan, np.nan)
     return np.array((result.number, CELL_REGIMES.index(name), regime.period or 0, regime.periods_run, *result.maxima,
-                     *ForceErrors.of(result.errors).row, _or_nan(regime.decay),
+                     *ForceErrors.of(result.errors).row, _or_nan(regime.observed_contraction),
                      _or_nan(regime.multiplier), mean, error,
                      _or_nan(regime.lyapunov_periods)), dtype=CELL)
 

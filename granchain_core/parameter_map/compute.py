@@ -2,41 +2,23 @@
 
 from __future__ import annotations
 
+import contextlib
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import Any
 
 import numpy as np
 
+from ..errors import Cancelled
 from ..execution.stop import Stop
 from ..inputs.checks import axis_in
 from ..scene import Amplitude, Scene
-from ..steady.batch.job import Start
-from ..steady.batch.starts import settle_on_all_cores, settle_starts
+from ..steady.batch.starts import settle_on_all_cores
 from ..steady.steady_state import SteadyState
 from .cells import ParameterMap, cell_of, empty_cells
 from .grid import Axis, Grid
-
-
-def starts_of(grid: Grid, numbers: Iterable[int]) -> Iterator[Start]:
-    """Cells as starts from rest."""
-    return (Start(grid.cell(number), number=number) for number in numbers)
-
-
-def by_structure(grid: Grid, numbers: Iterable[int]) -> list[list[int]]:
-    """The cells in groups that share a kernel: an axis that reaches 0, or equal beads, switches its effect off."""
-    groups: dict[tuple[bool, tuple[str, ...]], list[int]] = {}
-    for number in numbers:
-        cell = grid.cell(number)
-        groups.setdefault((cell.is_uniform, tuple(cell.effects)), []).append(number)
-    return list(groups.values())
-
-
-def block_cells(grid: Grid, numbers: Sequence[int], stop: Stop | None = None) -> np.ndarray:
-    """The cells with these numbers, computed in this thread: the work that is handed to a scheduler as one block."""
-    stop = Stop() if stop is None else stop
-    found = [cell_of(result) for group in by_structure(grid, numbers)
-             for result in settle_starts(starts_of(grid, group), stop)]
-    return np.array(found)
+from .scheduled import iter_blocks
+from .starts import by_structure, starts_of
 
 
 def iter_parameter_map(grid: Grid, missing: Sequence[int] | np.ndarray | None = None,
@@ -57,7 +39,8 @@ def iter_parameter_map(grid: Grid, missing: Sequence[int] | np.ndarray | None = 
 
 def parameter_map(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, Iterable[float]],
                   stop: Stop | None = None, progress: Callable[[ParameterMap, float], None] | None = None,
-                  workers: int | None = None, amplitude: Amplitude | None = None) -> ParameterMap:
+                  workers: int | None = None, amplitude: Amplitude | None = None,
+                  scheduler: Any = None) -> ParameterMap:
     """The parameter map: regime and largest forces over two knobs, every cell from rest, on all cores.
 
     Cells are computed in batches with fixed steps, whatever the scene's `accuracy`, and state the error they have.
@@ -71,11 +54,14 @@ def parameter_map(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, It
     stop : Stop, optional
         Read between cells. When set, the computation ends, and cells that are not computed have regime −1.
     progress : callable, optional
-        Called with the map so far and the fraction that is done, after every cell.
+        Called with the map so far and the fraction that is done, after every cell; with a scheduler after every block.
     workers : int, optional
         Threads; one for each core if not given.
     amplitude : Amplitude, optional
         The drive amplitude over the frequency, which is then one of the axes; the scene's A0 if not given.
+    scheduler : distributed.Client, optional
+        A client of a Dask scheduler (`granchain_core.scheduler.connect`), whose workers compute blocks of cells. A cell
+        that fails is marked as failed.
 
     Returns
     -------
@@ -86,6 +72,8 @@ def parameter_map(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, It
     ------
     BadInput
         A knob cannot be an axis, its values do not ascend or are out of range, or there are too many cells.
+    ComputationError
+        A worker of the scheduler could not do its part.
 
     Examples
     --------
@@ -100,9 +88,21 @@ def parameter_map(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, It
     began = time.perf_counter()
     grid = Grid(scene, Axis.of(*axis_in("x", x)), Axis.of(*axis_in("y", y)), amplitude)
     found = ParameterMap(grid, empty_cells(grid))
-    for done, result in enumerate(iter_parameter_map(grid, None, stop, workers), start=1):
-        found.cells[result.number] = cell_of(result)
+    done = 0
+    for rows in _finished(grid, stop, workers, scheduler):
+        found.cells[rows["number"]] = rows
         found.wall_s = time.perf_counter() - began
+        done += len(rows)
         if progress is not None:
             progress(found, done / grid.size)
     return found
+
+
+def _finished(grid: Grid, stop: Stop | None, workers: int | None, scheduler: Any) -> Iterator[np.ndarray]:
+    """Finished cells, one by one from the cores of this machine or in blocks from a scheduler's workers."""
+    if scheduler is not None:
+        with contextlib.suppress(Cancelled):  # the cells that are known are kept, as without a scheduler
+            yield from iter_blocks(scheduler, grid, [int(number) for number in grid.coarse_first()], stop)
+        return
+    for result in iter_parameter_map(grid, None, stop, workers):
+        yield np.atleast_1d(cell_of(result))

@@ -131,7 +131,7 @@ class Grid:
 
 
 def _level(index: np.ndarray) -> np.ndarray:
-    """How often an index is divisible by two; for 0 the largest number that counts."""
+    """Number of times that an index is divisible by two; for 0 the largest number that counts."""
     most = 1
     while 1 << most <= int(index.max(initial=1)):
         most += 1

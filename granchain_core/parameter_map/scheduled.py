@@ -10,11 +10,21 @@ import numpy as np
 from ..execution.stop import Stop
 from ..scene import Amplitude, Scene
 from ..scheduler import dealt, results
-from .compute import block_cells
+from ..steady.batch.starts import settle_starts
+from .cells import cell_of
 from .grid import Axis, Grid
+from .starts import by_structure, starts_of
 
 #: Cells of one block: some seconds of work, so that sending it costs nothing.
 CELLS_IN_TASK = 256
+
+
+def block_cells(grid: Grid, numbers: Sequence[int], stop: Stop | None = None) -> np.ndarray:
+    """The cells with these numbers, computed in this thread: the work that is handed to a scheduler as one block."""
+    stop = Stop() if stop is None else stop
+    found = [cell_of(result) for group in by_structure(grid, numbers)
+             for result in settle_starts(starts_of(grid, group), stop)]
+    return np.array(found)
 
 
 def work_on(described: dict[str, Any], numbers: Sequence[int]) -> np.ndarray:

@@ -11,13 +11,15 @@ from ..kernels.strobes.periodicity import assumed_decay
 NAMES = ("periodic", "quasi-periodic", "chaotic", "unsettled")
 #: Those of steady states that never repeat; their errors are not stated.
 NEVER_REPEATING = ("quasi-periodic", "chaotic")
+#: How the orbit of a periodic motion was found: the motion settled on it, or was still approaching it.
+FOUND_BY = ("settling", "Newton", "extrapolation")
 #: [all] A distance is taken to shrink by |μ| per orbit, at most 1 less this (`Regime.assumed_contraction`).
 LEAST_BELOW_1 = 1e-6
 
 
 @dataclass(frozen=True)
 class Regime:
-    """What kind of motion it is, and the evidence.
+    """The kind of a motion, and the evidence for it.
 
     Attributes
     ----------
@@ -26,7 +28,7 @@ class Regime:
     period : int or None
         Period of the motion in drive periods; None if it is not periodic.
     decay : float or None
-        Factor by which changes shrank per orbit; None if no decay was observed.
+        The older name of `observed_contraction`, which files and JSON have.
     distance : float or None
         Bound on the relative distance to the orbit.
     periods_run : int
@@ -40,6 +42,8 @@ class Regime:
         extrapolation that decay slowly, to about 1e-4.
     followed : bool
         Whether the motion was still approaching its orbit, which was then found by Newton's method or extrapolation.
+    followed_by : str or None
+        Which of the two, "Newton" or "extrapolation"; None where it was neither, and in older files.
     approaches : int or None
         Period of an orbit that an unsettled motion approaches.
     driven : bool
@@ -76,6 +80,7 @@ class Regime:
     return_limit: float | None = None
     window_ratios: tuple[float, float] | None = None
     lyapunov_periods: int | None = None
+    followed_by: str | None = None
 
     @classmethod
     def unsettled(cls, periods_run: int, lyapunov: tuple[float, float] | None = None,
@@ -94,11 +99,27 @@ class Regime:
         return cls(name="unsettled", period=None, decay=None, distance=None, periods_run=periods_run, driven=False)
 
     @property
+    def observed_contraction(self) -> float | None:
+        """Factor by which changes shrank per orbit, 1 if they did not shrink; None if it was not observed."""
+        return self.decay
+
+    @property
+    def orbit_found_by(self) -> str | None:
+        """One of `FOUND_BY`: how the orbit of a periodic motion was found. None for other motions.
+
+        Also None for an orbit in an older file that the motion was still approaching.
+        """
+        if self.name != "periodic":
+            return None
+        return self.followed_by if self.followed else "settling"
+
+    @property
     def assumed_contraction(self) -> float:
-        """Factor by which a distance is taken to shrink per orbit: |μ|, else `decay`, else `DECAY_NOT_SEEN`."""
+        """Factor by which a distance is taken to shrink per orbit: |μ|, else the observed one, else `DECAY_NOT_SEEN`.
+        """
         if self.multiplier is not None:
             return min(1.0 - LEAST_BELOW_1, self.multiplier)
-        return assumed_decay(self.decay or 0.0)
+        return assumed_decay(self.observed_contraction or 0.0)
 
     @property
     def contraction(self) -> float:
@@ -107,17 +128,17 @@ class Regime:
 
     @property
     def evidence(self) -> str:
-        """|μ| where it was computed, else the decay; empty where neither is known.
+        """|μ| where it was computed, else the observed contraction factor; empty where neither is known.
 
         A batch that extrapolated a motion to its orbit without multipliers assumed a contraction: that is no evidence.
         """
         shown = self.period or self.approaches or 1
         if self.multiplier is not None:
             return f"|μ| {modulus_words(self.multiplier)}" + ("" if shown == 1 else f" per {shown} periods")
-        if self.decay is None or self.followed:
+        if self.observed_contraction is None or self.followed:
             return ""
         every = "period" if shown == 1 else f"{shown} periods"
-        return f"transient shrinks to {modulus_words(self.decay)} every {every}"
+        return f"transient shrinks to {modulus_words(self.observed_contraction)} every {every}"
 
     @property
     def sentence(self) -> str:

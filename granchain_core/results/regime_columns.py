@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..tables import Column, or_nan
-from .regime import Regime
+from .regime import FOUND_BY, Regime
 
 
 def regime_columns(found: Sequence[Regime], along: str) -> dict[str, Column]:
@@ -20,7 +20,7 @@ def regime_columns(found: Sequence[Regime], along: str) -> dict[str, Column]:
 
 #: The evidence for a regime that every result keeps, and what each number means.
 EVIDENCE = {
-    "decay": "factor by which changes shrank per orbit, NaN where not seen",
+    "decay": "observed contraction factor: factor by which changes shrank per orbit, NaN where not seen",
     "multiplier": "modulus of the leading multiplier, NaN where not computed",
     "lyapunov": "largest Lyapunov exponent per drive period, NaN where not measured",
     "lyapunov_error": "standard error of the Lyapunov exponent",
@@ -51,11 +51,14 @@ def evidence_columns(found: Sequence[Regime], along: str) -> dict[str, Column]:
         "approaches": whole([one.approaches or 0 for one in found],
                             "period of an orbit that an unsettled motion approaches, 0 where none is known"),
         **{name: Column(values, (along,), "1", meaning)
-           for (name, meaning), values in zip(meanings.items(), numbers.T, strict=True)}}
+           for (name, meaning), values in zip(meanings.items(), numbers.T, strict=True)},
+        "orbit_found_by": Column(np.array([one.orbit_found_by or "" for one in found], dtype=object), (along,), "",
+                                 f"how the orbit was found: {', '.join(FOUND_BY[:-1])} or {FOUND_BY[-1]}; empty where "
+                                 "not periodic")}
 
 
 def _evidence(regime: Regime) -> tuple[float, ...]:
     """The numbers of `EVIDENCE`, then of `MORE_EVIDENCE`."""
     lyapunov, ratios = regime.lyapunov or (np.nan, np.nan), regime.window_ratios or (np.nan, np.nan)
-    return (or_nan(regime.decay), or_nan(regime.multiplier), *lyapunov, or_nan(regime.lyapunov_periods),
+    return (or_nan(regime.observed_contraction), or_nan(regime.multiplier), *lyapunov, or_nan(regime.lyapunov_periods),
             or_nan(regime.distance), or_nan(regime.return_distance), or_nan(regime.return_limit), *ratios)

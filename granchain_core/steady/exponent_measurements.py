@@ -1,4 +1,4 @@
-"""What several measurements of one motion's Lyapunov exponent decide together: the rule of single chains and batches.
+"""The decision by several measurements of one motion's Lyapunov exponent: the rule of single chains and batches.
 
 A measurement that does not suffice for a decision is continued. One that is clearly chaotic decides by itself, and
 so does a quasi-periodic one that was continued, since it is as long as two; any other must agree with the one before it
@@ -40,7 +40,7 @@ class ExponentMeasurements:
     unfinished: np.ndarray = field(default_factory=lambda: np.zeros(0))
 
     def interrupted(self) -> None:
-        """Other periods pass before the next measurement, which needs a new neighbour.
+        """Drop the neighbour, because other periods pass before the next measurement.
 
         The old offset does not lie along the closed curve at another place of it, and may need hundreds of periods to
         turn there again.
@@ -49,7 +49,7 @@ class ExponentMeasurements:
 
     @property
     def approach_rate(self) -> float:
-        """Mean exponent per period by which neighbours approach, as on the way to an orbit; 0 where they do not.
+        """Mean exponent per period by which neighbours approach, as on the way to an orbit; 0 if they do not.
 
         It is that of the last complete measurement.
         """

@@ -23,14 +23,15 @@ _DISTANCE = 1e-8
 _NO_DISTANCE = 1e-300
 
 
-def put_with_shadow(batch: Batch, member: int, shadow: int, scaled: ScaledChain, y: np.ndarray, periods: int,
-                    offset: np.ndarray | None = None) -> None:
-    """Make a scene a member of a batch for `growth_of`, its shadow in another lane, from the scaled state y.
+def put_with_neighbour(batch: Batch, member: int, lane: int, scaled: ScaledChain, y: np.ndarray, periods: int,
+                       offset: np.ndarray | None = None) -> None:
+    """Make a scene a member of a batch for `growth_of`, from the scaled state y, its neighbour in another lane.
 
-    The shadow begins at y + `offset` (2(N+2),), where an earlier measurement ended, or in a random direction.
+    The neighbour begins at y + `offset` (2(N+2),), where an earlier measurement ended, or in a random direction. The
+    kernels of a batch call it the member's shadow.
     """
     begin = _offset(scaled.bodies) if offset is None else offset
-    batch.put_pair(member, shadow, scaled, y, begin, _DISTANCE, periods)
+    batch.put_pair(member, lane, scaled, y, begin, _DISTANCE, periods)
 
 
 def block_means(growth: np.ndarray, blocks: int) -> np.ndarray:
@@ -50,11 +51,11 @@ def block_means(growth: np.ndarray, blocks: int) -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class MeasuredGrowth:
-    """What a member with a shadow has shown.
+    """The growth of the distance between a member and its neighbour, and the member's motion.
 
     `growth` (P,) is the logarithm of the distance's growth in each period, `strobes` (P, 2, N) displacement and w at
     the ends of the periods, `maxima` (16, 3) the largest forces of the last periods, `y` (2(N+2),) the last state, all
-    scaled; `offset` (2(N+2),) leads from there to the shadow.
+    scaled; `offset` (2(N+2),) leads from there to the neighbour.
     """
 
     growth: np.ndarray
@@ -65,7 +66,7 @@ class MeasuredGrowth:
 
 
 def growth_of(batch: Batch, member: int) -> MeasuredGrowth:
-    """What a member that is due, and has kept its shadow, has shown."""
+    """The growth of a member that is due and has kept its neighbour."""
     growth = batch.growth(member)
     periods, state = len(growth), batch.state
     strobes = state.strobes[member, : periods + 1]
@@ -92,21 +93,21 @@ def growth_along(engine: Engine, periods: int,
     """Logarithm of the growth (P,) of the distance to a neighbouring trajectory in each of so many periods.
 
     `engine` is at phase 0 and goes on; returns the growth, its strobes (P, 2, N) and the last offset (2(N+2),) of the
-    neighbouring trajectory (`shadow`), with which the next measurement may begin: without one it begins in a random
+    neighbouring trajectory, with which the next measurement may begin: without one it begins in a random
     direction, and needs some periods to turn into the leading one. In each period the usual kernel runs both; then the
     distance between them is measured, and the neighbour is put back to the first distance.
     """
     row = 2 * engine.scaled.bodies
-    shadow = Engine(engine.scaled.scene, engine.setting, engine.samples, stop=engine.stop)
-    shadow.start(engine.state)
+    neighbour = Engine(engine.scaled.scene, engine.setting, engine.samples, stop=engine.stop)
+    neighbour.start(engine.state)
     offset = _offset(engine.scaled.bodies) if offset is None else offset
     growth, strobes = np.zeros(periods), np.zeros((periods, 2, engine.scaled.beads))
     for period in range(periods):
-        shadow.y[:row] = engine.y[:row] + offset
-        shadow.evaluate()
+        neighbour.y[:row] = engine.y[:row] + offset
+        neighbour.evaluate()
         strobes[period] = engine.periods(1)[0][1]
-        shadow.periods(1)
-        offset = shadow.y[:row] - engine.y[:row]
+        neighbour.periods(1)
+        offset = neighbour.y[:row] - engine.y[:row]
         distance = max(float(np.linalg.norm(offset)), _NO_DISTANCE)
         growth[period] = np.log(distance / _DISTANCE)
         offset *= _DISTANCE / distance

@@ -34,7 +34,7 @@ def errors_of_map(change: np.ndarray, least: float, contraction: float) -> np.nd
     `change` (3,) is the relative change of the forces from one computation of the orbit to a finer one, both from the
     same state. `least` is the typical error of the finer one, because two may agree by chance. An error ε of the
     n-period map moves its fixed point by ε/(1 − contraction), and the forces with it; `contraction` is the factor per
-    orbit: |μ|, or else the decay seen.
+    orbit: |μ|, or else the observed contraction factor.
     """
     return np.maximum(ORBIT_FORCES * change, least) / (1.0 - contraction)
 

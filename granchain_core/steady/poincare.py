@@ -55,7 +55,7 @@ class Section:
 
 
 def most_periods(scene: Scene, samples: int, wanted: int) -> int:
-    """How many of the periods wanted are kept."""
+    """Number of the wanted periods that are kept."""
     return max(1, min(wanted, MOST_VALUES // (samples * scene.N)))
 
 

@@ -79,7 +79,7 @@ def find_period(strobes: np.ndarray, longest: int = LONGEST_LOCKED_PERIOD, round
     """Periodic with the smallest n whose distance bound holds, else unsettled; strobes (P + 1, 2, N).
 
     Changes below `rounding` are the method's own and count as none. A slow approach may hide below it, so the distance
-    is no better known than rounding·r/(1 − r) with the decay r.
+    is no better known than rounding·r/(1 − r) with the observed contraction factor r.
     """
     periods_run = len(strobes) - 1
     period, decay, distance, *_ = periodicity.detect_period(np.ascontiguousarray(strobes), longest, rounding,
@@ -94,7 +94,7 @@ def find_period(strobes: np.ndarray, longest: int = LONGEST_LOCKED_PERIOD, round
 
 
 def rounding_of(setting: MethodSetting) -> float:
-    """Changes of strobes up to which count as none: rounding, or with error control the tolerance of a step."""
+    """Largest change of strobes that counts as none: rounding, or with error control the tolerance of a step."""
     return max(ROUNDING, setting.tolerance)
 
 
@@ -107,7 +107,7 @@ def grows(mean: float, error: float, periods: int) -> bool:
 
 
 def is_neutral(mean: float, error: float, periods: int) -> bool:
-    """Whether a mean exponent is neutral: at most the bias that a torus may have, or three standard errors, and small.
+    """Whether a mean exponent is small enough for a torus: at most its bias, or three standard errors.
 
     |mean| ≤ min(max(s, `_BOUNDED_GROWTH`/periods), `_LARGEST_NEUTRAL_EXPONENT`) with s = `STANDARD_ERRORS` σ, which
     must be below `_LARGEST_NEUTRAL_EXPONENT` too: a large error must not make this easier. A mean over a short time may
@@ -129,11 +129,11 @@ def mean_and_error(exponents: np.ndarray) -> tuple[float, float]:
 
 
 def needs_more_periods(exponents: np.ndarray, periods: int) -> bool:
-    """Whether these blocks of `periods` in all do not suffice for a decision: the measurement is continued.
+    """Whether the measurement is continued, because these blocks of `periods` in all do not suffice for a decision.
 
-    So it is where the error is too large: the mean is neither clearly positive nor clearly negative, and not neutral.
-    So it is also where a neutral mean may be more than the bias of a torus, and at most `_LONGEST_COMPARISON` periods
-    will show it.
+    The blocks do not suffice if the error is too large: the mean is neither clearly positive nor clearly negative, and
+    not neutral. They do not suffice either if a neutral mean may be more than the bias of a torus and at most
+    `_LONGEST_COMPARISON` periods will show it.
     """
     mean, error = mean_and_error(exponents)
     if is_neutral(mean, error, periods):
@@ -178,7 +178,7 @@ def clearly_chaotic(exponents: np.ndarray) -> bool:
 
 
 def agree(one: Regime, other: Regime) -> bool:
-    """Whether two Lyapunov measurements give the same regime, with means that agree if it is chaotic.
+    """Whether two Lyapunov measurements agree: the same regime, and for a chaotic one the same mean.
 
     Means agree within the larger of `STANDARD_ERRORS` combined standard errors and `_EXPONENT_DIFFERENCE`. Those of a
     quasi-periodic motion are not compared: both are neutral (`is_neutral`).
@@ -197,7 +197,7 @@ def _windows(strobes: np.ndarray, longest: int = LONGEST_PERIOD) -> list[list[fl
 
 
 def converging(strobes: np.ndarray) -> bool:
-    """Whether the motion is still on its way: changes over some period shrink through three windows and none grow.
+    """Whether the motion converges: changes over some period shrink through three windows, and none grow.
 
     On a closed curve or a strange attractor their largest value does not change, or some grow while others shrink.
     """
@@ -207,7 +207,7 @@ def converging(strobes: np.ndarray) -> bool:
 
 
 def departing(strobes: np.ndarray) -> bool:
-    """Whether the motion leaves an orbit: changes over some period grow, small still, and none shrink."""
+    """Whether the motion departs from an orbit: changes over some period grow but are still small, and none shrink."""
     return _departing(_windows(strobes))
 
 
@@ -233,7 +233,7 @@ def _shrinks(first: float, second: float, third: float) -> bool:
 
 
 def _neither_converges_nor_departs(seen: list[list[float]]) -> bool:
-    """Whether a record that is long enough for windows shows a motion that neither converges nor leaves an orbit."""
+    """Whether a record of three windows shows neither convergence nor departure."""
     return len(seen) > 0 and not _converging(seen) and not _departing(seen)
 
 
@@ -259,7 +259,7 @@ def return_distance(strobes: np.ndarray) -> float:
 
 
 def return_limit(strobes: np.ndarray) -> float:
-    """The distance below which late states of the section count as returning near early ones.
+    """The limit of `return_distance`, below which the section returns near itself.
 
     A coarse test: it excludes drift and spreading, but does not prove a closed curve, and a torus of three frequencies
     may pass. On a curve filled evenly by P points neighbours lie about 2π/P apart. The limit is `_RETURN_FACTOR` times

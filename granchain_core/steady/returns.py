@@ -11,8 +11,9 @@ _NO_SIZE = 1e-300
 
 
 def sizes(x: np.ndarray, least_displacement: float = 0.0) -> np.ndarray:
-    """The sizes of displacements and of w, each for its own half of x (2N,): the largest, of displacements at least
-    `least_displacement`.
+    """The sizes of displacements and of w, in the two halves of x (2N,): the largest entry of each half.
+
+    That of displacements is at least `least_displacement`.
     """
     half = len(x) // 2
     largest = [max(_NO_SIZE, least, float(np.abs(part).max()))
@@ -25,16 +26,18 @@ def relative_change(change: np.ndarray, x: np.ndarray, least_displacement: float
     return float(np.abs(change / sizes(x, least_displacement)).max())
 
 
-def shorter_periods(after: Callable[[int], np.ndarray], x: np.ndarray, period: int, tolerance: float) -> Iterator[int]:
+def shorter_periods(after: Callable[[int], np.ndarray], x: np.ndarray, period: int, tolerance: float,
+                    least_displacement: float = 0.0) -> Iterator[int]:
     """Divisors n of `period`, below it, after which x is back within a relative `tolerance`; `after(n)` is Pⁿ(x).
 
     The tolerance must be far above the error of the map P and far below the distance of two orbits.
     """
     for n in range(1, period):
-        if period % n == 0 and relative_change(after(n) - x, x) < tolerance:
+        if period % n == 0 and relative_change(after(n) - x, x, least_displacement) < tolerance:
             yield n
 
 
-def least_period(after: Callable[[int], np.ndarray], x: np.ndarray, period: int, tolerance: float) -> int:
+def least_period(after: Callable[[int], np.ndarray], x: np.ndarray, period: int, tolerance: float,
+                 least_displacement: float = 0.0) -> int:
     """The smallest of `shorter_periods`, or `period` itself."""
-    return next(shorter_periods(after, x, period, tolerance), period)
+    return next(shorter_periods(after, x, period, tolerance, least_displacement), period)

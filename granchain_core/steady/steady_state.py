@@ -20,8 +20,8 @@ class SteadyState:
     """A steady state with its largest forces `maxima` (3,) [N] in the order input, output, elastic output.
 
     `errors` (3,) are their relative errors, None where none is stated; `state` is at drive phase 0. If the computation
-    failed, `failure` is a sentence, `status` the name of the failure, and the forces are NaN. `number` is that of the
-    start it was found from. If `undecided`, the batch could not decide, and `settle` has to continue from `state`.
+    failed, `failure` is a sentence, `status` the name of the failure, and the forces are NaN. `number` is that of its
+    start. If `undecided`, the batch could not decide, and `settle` has to continue from `state`.
     """
 
     scene: Scene

@@ -24,18 +24,19 @@ import numpy as np
 from ..hdf5 import File, opened
 from ..hdf5.border import entries, finite, one_of, within
 from ..hdf5.plain import Refused
-from ..orbits import Arm, Branch, BranchPoint, KnobAxis, SpecialPoint
+from ..orbits import Branch, BranchPoint, HalfBranch, KnobAxis, SpecialPoint
 from ..orbits.branch.normal_forms import CRITICALITIES, EARLIER_REASONS, NOT_DECIDED, REASONS, NormalForm
-from ..orbits.branch.special import SPECIAL_KINDS
+from ..orbits.branch.special import EVENTS, SPECIAL_KINDS
 from ..orbits.branch.tables import NO_CONTACT, branch_tables
 from ..scene import Amplitude
 from ..steady.regime_criteria import LONGEST_LOCKED_PERIOD
 from ..tables import MAXIMA
 from .writing import write_file, write_result
 
-#: How an arm can have ended, and how a contact grazes.
+#: How an arm can have ended.
 _ENDS = ("", "reached", "returned", "closed", "merged", "lost")
-_EVENTS = ("", "touch", "separation")
+#: The interval that a contact gains, by its word in files.
+_GAINED = {event: gained for gained, event in EVENTS.items()}
 #: Numbers of one turning point.
 _TURN = 4
 
@@ -49,7 +50,7 @@ def write_branch(file: h5py.File, branch: Branch) -> None:
     """Write a branch with what its walk needs to go on."""
     write_result(file, branch)
     turns = file.create_group("turns")
-    for place, arm in enumerate(branch.arms):
+    for place, arm in enumerate(branch.half_branches):
         turns.create_dataset(str(place), data=arm.points[-1].turns)
 
 
@@ -82,7 +83,7 @@ def _read(file: File) -> Branch:
             raise Refused(f"arm {number} has no orbits")
         turns = file.numbers(f"turns/{number}", (*file.shape(f"turns/{number}")[:1], _TURN))
         object.__setattr__(mine[-1], "turns", turns)
-        arms.append(Arm(arm["direction"], mine,
+        arms.append(HalfBranch(arm["direction"], mine,
                         [s for s, where in zip(special, special_place, strict=True) if where == number],
                         arm["step"], arm["ended"], arm["reason"]))
     return Branch(axis, header["period"], tuple(arms))
@@ -139,13 +140,13 @@ def _read_special(file: File, axis: KnobAxis) -> list[SpecialPoint]:
         "knob", "knob_low", "knob_high", "multiplier_real", "multiplier_imag")}
     contacts = within("/special/contact", file.numbers("special/contact", (count,), "i"), NO_CONTACT, axis.scene.N)
     forms = _read_normal_forms(file, count)
-    kinds, events = file.words("special/kind", count, SPECIAL_KINDS), file.words("special/event", count, _EVENTS)
+    kinds, events = file.words("special/kind", count, SPECIAL_KINDS), file.words("special/event", count, ("", *_GAINED))
     return [SpecialPoint(
         kind=kinds[i], knob=float(read["knob"][i]), interval=(float(read["knob_low"][i]), float(read["knob_high"][i])),
         before=before[i], after=after[i],
         multiplier=(None if np.isnan(read["multiplier_real"][i])
                     else complex(read["multiplier_real"][i], read["multiplier_imag"][i])),
-        contact=None if contacts[i] == NO_CONTACT else int(contacts[i]), event=events[i] or None,
+        contact=None if contacts[i] == NO_CONTACT else int(contacts[i]), gained=_GAINED.get(events[i]),
         normal_form=forms[i]) for i in range(count)]
 
 

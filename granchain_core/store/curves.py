@@ -21,7 +21,7 @@ from ..errors import FAILURES
 from ..hdf5 import File, opened
 from ..hdf5.border import one_of, within
 from ..hdf5.plain import Refused
-from ..results.regime import NAMES, Regime
+from ..results.regime import FOUND_BY, NAMES, Regime
 from ..results.regime_columns import EVIDENCE, MORE_EVIDENCE
 from ..results.run import ForceErrors
 from ..scene import Amplitude, Scene
@@ -74,7 +74,10 @@ def _evidence(file: File, shape: tuple[int, ...]) -> list[dict[str, Any]]:
                else np.full(shape, np.nan) for name in EVIDENCE | MORE_EVIDENCE}
     run, followed, approaches = (_whole(file, name, shape, most) for name, most in (
         ("periods_run", np.iinfo(np.int64).max), ("followed", 1), ("approaches", np.iinfo(np.int32).max)))
-    return [{"periods_run": int(run[i]), "followed": bool(followed[i]), "approaches": int(approaches[i]) or None,
+    by = file.words("curve/orbit_found_by", shape[0], ("", *FOUND_BY)) if file.has("curve/orbit_found_by") else None
+    return [{"periods_run": int(run[i]), "followed": bool(followed[i]),
+             "followed_by": by[i] or None if by is not None and followed[i] else None,
+             "approaches": int(approaches[i]) or None,
              "lyapunov": _pair(numbers["lyapunov"][i], numbers["lyapunov_error"][i]),
              "lyapunov_periods": _count(numbers["lyapunov_periods"][i]),
              "window_ratios": _pair(numbers["smallest_window_ratio"][i], numbers["largest_window_ratio"][i]),

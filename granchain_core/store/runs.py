@@ -18,7 +18,7 @@ from ..hdf5 import File, opened
 from ..hdf5.border import entries, finite, one_of, within
 from ..hdf5.plain import Refused
 from ..results.recorded_motion import motion_units
-from ..results.regime import NAMES, Regime
+from ..results.regime import FOUND_BY, NAMES, Regime
 from ..results.run import AT_REST, GIVEN_STATE, RUN_ERRORS, RUN_STARTS, Cost, ForceErrors, Jumps, Run
 from ..tables import MAXIMA
 from ..tables.table import units_by_path
@@ -128,8 +128,10 @@ def _regime(file: File) -> Regime:
     values = entries("regime", found, {
         "name": "text", "period": "whole?", "decay": "number?", "distance": "number?", "periods_run": "whole",
         "multiplier": "number?", "followed": "flag?", "approaches": "whole?", "driven": "flag?",
-        "lyapunov_periods": "whole?", "return_distance": "number?", "return_limit": "number?"})
+        "lyapunov_periods": "whole?", "return_distance": "number?", "return_limit": "number?", "followed_by": "text?"})
     one_of("regime", values["name"], NAMES)
+    if values["followed_by"] is not None:
+        one_of("regime.followed_by", values["followed_by"], FOUND_BY[1:])
     if lyapunov is not None:
         values["lyapunov"] = _pair("regime.lyapunov", lyapunov, "mean", "error")
     if ratios is not None:

@@ -76,7 +76,7 @@ def test_points_appear_and_the_cheapest_way_is_told(visit: Visit) -> None:
     expect(sheet.get_by_role("button", name="stop")).to_be_hidden()
     expect(sheet.locator(".stale")).to_have_count(0)
     rows = sheet.locator("tbody tr")
-    expect(rows.filter(has_text="rk4-split")).to_contain_text("two changes of one inner contact")
+    expect(rows.filter(has_text="rk4-split")).to_contain_text("two events of one inner contact")
     expect(rows.filter(has_text="dop853").first).to_contain_text("Hairer")
     # hovering tells the point, wherever the figure has moved to by now
     tip = page.locator(".bk-tooltip-content")  # it stands over the whole page

@@ -256,7 +256,7 @@ def test_an_orbit_starts_in_the_last_state_of_a_run_at_its_phase(tmp_path: Path,
     save(run(chain, periods=20, record=1, samples=8, start=State(np.zeros(2), np.zeros(2), 0.25)), file)
     starts = []
     monkeypatch.setattr("granchain_core.orbits.periodic_orbit", lambda *given: starts.append(given[2]) or orbit(*given))
-    assert main(["orbit", "sec2", "--set", "N=2", "--set", "f=2000", "--start", file]) == 0
+    assert main(["orbit", "sec2", "--set", "N=2", "--set", "f=2000", "--start", file, "--period", "1"]) == 0
     assert starts[0].phase == 0.25 and capsys.readouterr().err == ""
     assert main(["orbit", "sec2", "--set", "N=2", "--set", "f=1990", "--set", "D=90", "--start", file]) == 0
     assert "was recorded with f = 2000, D = 100: its last state is only where" in capsys.readouterr().err

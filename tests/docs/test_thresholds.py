@@ -18,10 +18,10 @@ from granchain_core import orbit, scene
 from granchain_core.integrate.fixed import SHORT_CHAIN
 from granchain_core.kernels.batch import checks, record
 from granchain_core.observe.drift import TRANSLATION
-from granchain_core.orbits.branch import ends, newton, normal_forms, special, steps
+from granchain_core.orbits.branch import ends, normal_forms, special, steps
 from granchain_core.parameter_map import scheduled
 from granchain_core.results.regime import Regime
-from granchain_core.steady import exponent_measurements, regime_criteria
+from granchain_core.steady import exponent_measurements, regime_criteria, residuals
 from granchain_core.steady.batch import job, threads
 from granchain_core.steady.curve import resonance_curve
 from granchain_core.steady.settling import regime_decisions, single_chain
@@ -59,8 +59,8 @@ def test_the_text_on_branches_has_the_values_of_the_constants() -> None:
         r"t turns by about ([\d.]+)°": steps._TURN_OF_STEP, r"about ([\d.]+) % of the step away": 100.0 * steps._MISS_OF_STEP,
         r"goes farther than ([\d.]+) % of the step": 100.0 * steps.LARGEST_CORRECTION,
         r"if t turns by more than ([\d.]+)°": steps._LARGEST_TURN, r"The longest step is ([\d.]+),": steps.LONGEST_STEP,
-        r"the shortest ([\de-]+)\.": steps.SHORTEST_STEP, r"method aims at ([\de-]+);": newton.RESIDUAL_GOAL,
-        r"below ([\de-]+) the orbit is accepted": newton.ACCEPTED_RESIDUAL,
+        r"the shortest ([\de-]+)\.": steps.SHORTEST_STEP, r"method aims at ([\de-]+);": residuals.RESIDUAL_GOAL,
+        r"below ([\de-]+) the orbit is accepted": residuals.ACCEPTED_RESIDUAL,
         r"whose knobs differ by at most ([\de-]+) of the knob \(": special.RELATIVE_WIDTH,
         r"for at most (\d+) levels of bisection": special._MOST_LEVELS,
         r"back to the seed within ([\de-]+):": ends._CLOSING_DISTANCE,
@@ -85,9 +85,17 @@ NUMBERS = {2: "two", 3: "three", 4: "four"}
         r"at most (\d+) periods before Python looks": regime_decisions.EXAMINED_AFTER,
         r"motion continues with (a \w+) of the step": PARTS[job.FINE_STEPS_PER_COARSE],
         r"coarse steps for (\d+) periods beside": exponent_measurements.MEASURED_PERIODS, r"at best to ([\de-]+) \(`CURVE_ACCURACY`": single_chain.CURVE_ACCURACY}),
-    ("docs/regimes.md", {
+    ("docs/cost.md", {r"blocks of (\d+) cells": scheduled.CELLS_IN_TASK, r"; (\d+) cells are one task": scheduled.CELLS_IN_TASK,
+                      r"blocks of (\d+) points": resonance_curve.POINTS_IN_TASK, r"; (\d+) points are one task": resonance_curve.POINTS_IN_TASK}),
+    ("docs/orbits.md", {r"stops at a residual of ([\de-]+),": residuals.RESIDUAL_GOAL, r"If it ends above ([\de-]+), it fails": residuals.ACCEPTED_RESIDUAL,
+                        r"is less exact, has ([\de-]+) and": residuals.FIXED_STEP_RESIDUAL_GOAL,
+                        r"is less exact, has 1e-9 and ([\de-]+)\.": residuals.ACCEPTED_FIXED_STEP_RESIDUAL}),
+    ("docs/parameter-map.md", {r"sends blocks of (\d+) cells": scheduled.CELLS_IN_TASK}),
+    ("docs/regime-evidence.md", {
         r"The measurement begins after (\d+) periods": regime_decisions.EXAMINED_AFTER, r"with at least (\d+) strobes": regime_criteria.SLOW_RECORD,
-        r"Its first (\d+) periods do not count": exponent_measurements.TURNING_PERIODS, r"not decided after (\d+) periods is settled alone": regime_decisions.MOST_PERIODS,
+        r"Its first (\d+) periods do not count": exponent_measurements.TURNING_PERIODS}),
+    ("docs/regimes.md", {
+        r"not decided after (\d+) periods is settled alone": regime_decisions.MOST_PERIODS,
         r"which means that \|mean\| − 3σ is below ([\d.]+);": round(regime_criteria._BOUNDED_GROWTH / regime_criteria._LONGEST_COMPARISON, 4),
         r"computed it is r, at most ([\d.]+), and": Regime("periodic", 1, 1.0, None, 1).assumed_contraction, r"decay was seen it is ([\d.]+) \(": Regime("periodic", 1, None, None, 1).assumed_contraction,
         r"below ([\d.]+) \+ 3σ": round(regime_criteria._BOUNDED_GROWTH / regime_criteria._LONGEST_COMPARISON, 4),

@@ -12,9 +12,10 @@ from granchain_core import State, run, scene
 from granchain_core.integrate import Engine, MethodSetting
 from granchain_core.kernels.dop853.tableau import STAGES
 from granchain_core.kernels.error_control.located_step import located_step
+from granchain_core.kernels.samples import Samples
 
 
-def grazing(depth: float, method: str, tolerance: float = 1e-9):
+def grazing(depth: float, method: str, tolerance: float = 1e-9) -> tuple[Engine, Samples]:
     """One bead at rest `depth` (scaled) below the top of a slow driver's stroke, held apart from both sides.
 
     The bead is thrown by a touch that lasts only while the driver is above 1 − depth.
@@ -30,7 +31,7 @@ def grazing(depth: float, method: str, tolerance: float = 1e-9):
 
 @pytest.mark.parametrize("depth", [1e-3, 1e-4, 1e-6])
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-7, 1e-10])
-def test_a_brief_touch_is_not_stepped_over(depth, tolerance):
+def test_a_brief_touch_is_not_stepped_over(depth: float, tolerance: float) -> None:
     """A driver that only grazes a bead at rest throws it, found at every tolerance."""
     engine, kept = grazing(depth, "dop853", tolerance)
     assert engine.counts.events == 2
@@ -40,7 +41,7 @@ def test_a_brief_touch_is_not_stepped_over(depth, tolerance):
     assert kept.velocity[-1, 0] == pytest.approx(expected, rel=max(4e-3, 4 * depth))
 
 
-def test_counted_events_are_the_openings_and_closings_that_a_fine_sampling_shows():
+def test_counted_events_are_the_openings_and_closings_that_a_fine_sampling_shows() -> None:
     """Sign changes of all overlaps in 4096 samples a period: all 36, none of them between two samples. The first
     contact at t = 0 is none, because it happens before the first sample.
     """
@@ -53,7 +54,7 @@ def test_counted_events_are_the_openings_and_closings_that_a_fine_sampling_shows
     assert engine.counts.events == seen == 36
 
 
-def test_across_events_dop853_keeps_to_a_hundred_tolerances():
+def test_across_events_dop853_keeps_to_a_hundred_tolerances() -> None:
     """Without event location a method of order 8 has the order of the kink that it steps over."""
     chain = scene("sec2").evolve(F0=0.0)
     true = Engine(chain, MethodSetting("dop853", tolerance=1e-14), 8).record(16).displacement
@@ -61,14 +62,14 @@ def test_across_events_dop853_keeps_to_a_hundred_tolerances():
     assert np.abs(found - true).max() / np.abs(true).max() < 1e-8  # a hundred tolerances
 
 
-def test_a_chain_that_never_opens_has_no_events():
+def test_a_chain_that_never_opens_has_no_events() -> None:
     """Pressed together and driven gently, every contact stays closed."""
     result = run(scene("sec2").evolve(F0=20.0, A0=1e-8, accuracy=1e-8), periods=1, record=2)
     assert (result.overlap > 0.0).all()
     assert result.cost.events == 0
 
 
-def test_located_steps_end_on_the_events():
+def test_located_steps_end_on_the_events() -> None:
     """After a step that found a contact opening or closing its overlap is zero, to the tolerance of event location."""
     chain = scene("sec2").evolve(f=1130.0)
     engine = Engine(chain, MethodSetting("dop853", tolerance=1e-9), 1)

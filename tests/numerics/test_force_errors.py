@@ -26,7 +26,7 @@ LONGEST = 3e3
 BUDGET = 1.0
 
 
-def test_the_force_jumps_where_the_driver_starts_against_a_bead():
+def test_the_force_jumps_where_the_driver_starts_against_a_bead() -> None:
     """The bead rests against a driver that starts with 2πf A0: the right limit at t = 0 is D·2πf A0, and it is the
     largest force where damping outweighs all else, λ = 45, and the wall is far.
     """
@@ -37,7 +37,7 @@ def test_the_force_jumps_where_the_driver_starts_against_a_bead():
     assert found.maxima[0] == pytest.approx(jump, rel=1e-12)
 
 
-def test_a_touch_shorter_than_a_step_is_seen_where_and_as_hard_as_it_is():
+def test_a_touch_shorter_than_a_step_is_seen_where_and_as_hard_as_it_is() -> None:
     """The driver's crest comes a millionth of A0 farther than to the resting bead, whose wall is far: it is there at
     sin θ = 1 − 1e-6, at 2πf A0 cos θ.
     """
@@ -51,7 +51,7 @@ def test_a_touch_shorter_than_a_step_is_seen_where_and_as_hard_as_it_is():
     assert top == pytest.approx(one.D * omega * one.A0 * np.cos(theta), rel=1e-9)
 
 
-def test_a_collision_with_the_wall_has_the_peak_of_hertz():
+def test_a_collision_with_the_wall_has_the_peak_of_hertz() -> None:
     """1.1432626 K^{2/5} m^{3/5} v^{6/5}, known to its eight digits; half a period holds the first collision only."""
     one = scene("sec2").evolve(N=1, dissipation="none", f=1000.0, A0=1e-9)
     thrown = replace(one, start_velocity=((1, 1e-3),))
@@ -60,7 +60,7 @@ def test_a_collision_with_the_wall_has_the_peak_of_hertz():
     assert located(thrown, 0, 1).maxima[1:] == pytest.approx([peak, peak], rel=5e-8)
 
 
-def test_the_largest_output_force_of_an_overdamped_chain_stands_at_its_closing():
+def test_the_largest_output_force_of_an_overdamped_chain_stands_at_its_closing() -> None:
     """Section 2 with D = 300 at 100 Hz, settled: 0.14733 N, the right limit at the wall's closing, not the top behind
     it.
     """
@@ -71,7 +71,7 @@ def test_the_largest_output_force_of_an_overdamped_chain_stands_at_its_closing()
 
 
 @pytest.mark.parametrize(("law", "tension"), CONTACTS)
-def test_the_computation_scales_and_agrees_with_itself_and_with_scipy(law, tension):
+def test_the_computation_scales_and_agrees_with_itself_and_with_scipy(law: str, tension: str) -> None:
     """(A0, f, D) → (sA0, s^{1/4}f, s^{1/4}D) with forces s^{3/2}; D of an overlap-dependent law is D/s^{q − 1/4} more.
 
     Measured: forces at 1e-10 and 1e-12 differ by less than 1e-9, displacements from SciPy's by 7e-9, which is SciPy's.
@@ -94,7 +94,7 @@ def slice_of(kind: str, count: int) -> list[Verdict]:
 
 @pytest.mark.long
 @pytest.mark.parametrize(("kind", "count"), [("run", 24), ("curve", 3), ("map", 3)])
-def test_largest_forces_are_within_what_is_stated_of_them(kind, count):
+def test_largest_forces_are_within_what_is_stated_of_them(kind: str, count: int) -> None:
     """All but one of these forces at most, and none is wrong by more than 1e-3 plus ten times what is stated. How many
     are in thousands of scenes is measured in docs/accuracy.md (`python -m tests.numerics.forces`).
     """

@@ -8,6 +8,8 @@ events a single one depends on where in a step the events fall.
 from __future__ import annotations
 
 import functools
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import pytest
@@ -23,7 +25,7 @@ TOLERANCES = 10.0 ** np.arange(-4, -12.5, -1)
 ORDER_SLACK = 0.2
 _FREQUENCIES = (340.0, 470.0, 615.0, 900.0, 1130.0, 1576.0)
 #: What the right-hand side is like: never a contact that opens; contacts without damping; with each damping law; cut.
-SMOOTHNESS = {
+SMOOTHNESS: dict[str, dict[str, Any]] = {
     "closed": {"F0": 5.0}, "none": {"dissipation": "none"}, **{law: {"dissipation": law} for law in LAWS},
     "cut": {"tension": "cut"},
 }
@@ -66,7 +68,7 @@ def frequencies(smoothness: str) -> tuple[float, ...]:
     return _FREQUENCIES[2:] if smoothness == "none" else _FREQUENCIES
 
 
-def errors(smoothness: str, settings) -> np.ndarray:
+def errors(smoothness: str, settings: Sequence[MethodSetting]) -> np.ndarray:
     """(settings, scenes): largest relative displacement error, against dop853 at 1e-14 per step."""
     found = np.empty((len(settings), len(frequencies(smoothness))))
     for j, f in enumerate(frequencies(smoothness)):
@@ -94,19 +96,19 @@ def order_by_tolerance(method: str, smoothness: str) -> float:
 
 
 @pytest.mark.parametrize(("method", "smoothness"), THEORY)
-def test_every_method_has_its_order_for_every_smoothness(method, smoothness):
+def test_every_method_has_its_order_for_every_smoothness(method: str, smoothness: str) -> None:
     """At least the theory's, less 0.2 for the fit."""
     assert order(method, smoothness) >= THEORY[method, smoothness] - ORDER_SLACK
 
 
 @pytest.mark.parametrize(("method", "most"), LOST.items())
-def test_contact_events_take_orders_from_a_fixed_step(method, most):
+def test_contact_events_take_orders_from_a_fixed_step(method: str, most: float) -> None:
     """A step across a kink or a jump has a lower order; a measurement that always gave 4 would fail here."""
     assert order(method, "linear") < most
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_the_table_of_methods_claims_no_more_than_is_measured(method):
+def test_the_table_of_methods_claims_no_more_than_is_measured(method: str) -> None:
     """Its orders are not above those measured where no contact opens, across contact events and with a tension cut."""
     with_events = [smoothness for name, smoothness in THEORY if name == method and smoothness not in ("closed", "cut")]
     assert with_events, f"add rows of {method} to THEORY"
@@ -117,13 +119,13 @@ def test_the_table_of_methods_claims_no_more_than_is_measured(method):
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_an_order_with_a_tension_cut_is_stated_exactly_where_it_is_measured(method):
+def test_an_order_with_a_tension_cut_is_stated_exactly_where_it_is_measured(method: str) -> None:
     """A new row, or one whose method refuses the cut, states none."""
     assert np.isfinite(METHODS[method].observed_with_cut) == ((method, "cut") in THEORY)
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_the_table_of_methods_has_the_orders_of_theory(method):
+def test_the_table_of_methods_has_the_orders_of_theory(method: str) -> None:
     """Where no contact opens, and the least of all damping laws across contact events."""
     with_events = [found for (name, smoothness), found in THEORY.items() if name == method and smoothness in LAWS]
     assert METHODS[method].order == THEORY[method, "closed"]
@@ -131,7 +133,7 @@ def test_the_table_of_methods_has_the_orders_of_theory(method):
 
 
 @pytest.mark.parametrize("smoothness", [one for one in SMOOTHNESS if one not in ("none", "cut")])
-def test_error_of_dop853_follows_its_tolerance(smoothness):
+def test_error_of_dop853_follows_its_tolerance(smoothness: str) -> None:
     """At every tolerance the error stays below a thousand times it: each of some hundred events and steps may add one
     tolerance, and the sensitivity of these motions is below 10 (reference.npz). Without damping, and where a force is
     cut, sensitivities are thousands."""

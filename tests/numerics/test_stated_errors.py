@@ -31,7 +31,7 @@ def excess(found: list) -> np.ndarray:
 
 
 @pytest.mark.long
-def test_the_stated_error_bounds_the_true_one():
+def test_the_stated_error_bounds_the_true_one() -> None:
     """At any accuracy from 1e-3 to 1e-9, in each of these scenes; how rare a larger one is in thousands of scenes is
     measured in docs/accuracy.md. Measured here: 0.22 of what is stated at most.
     """
@@ -40,12 +40,12 @@ def test_the_stated_error_bounds_the_true_one():
     assert (ratio <= 1.0).all()
 
 
-def test_a_run_that_is_done_is_as_accurate_as_asked():
+def test_a_run_that_is_done_is_as_accurate_as_asked() -> None:
     """The true error is below what was asked, in each scene. Measured: 0.10 of it at most."""
     assert all(v.error <= v.asked for v in uncut() if v.status == "done")
 
 
-def test_most_scenes_are_done():
+def test_most_scenes_are_done() -> None:
     """33 of the 40 when this was written; that other rounding may lose two is an allowance. The others were asked for
     5e-8 or less, or amplify errors until nothing can be stated, which is an error of 2.
     """
@@ -53,7 +53,7 @@ def test_most_scenes_are_done():
     assert all(v.asked < 5e-8 or v.stated == 2.0 for v in uncut() if v.status != "done")
 
 
-def test_the_stated_error_bounds_the_true_one_with_a_tension_cut():
+def test_the_stated_error_bounds_the_true_one_with_a_tension_cut() -> None:
     """As without the cut, in each scene. Measured: 0.11 of what is stated at most."""
     ratio = excess([v for v in stated_errors.verdicts(20, 21, CUT) if v is not None])
     assert (ratio <= 1.0).all()
@@ -65,12 +65,12 @@ def same_steps() -> Run:
     return run(chain, periods=0, record=3, samples=16, method="dop853")
 
 
-def test_two_computations_by_the_same_steps_are_no_evidence():
+def test_two_computations_by_the_same_steps_are_no_evidence() -> None:
     """An error of exactly nothing is never true: no double-precision motion is that good."""
     assert same_steps().displacement_error > 0.0
 
 
-def test_computations_with_the_same_steps_are_not_compared():
+def test_computations_with_the_same_steps_are_not_compared() -> None:
     """A fast drive sampled 16 times: half the step, asked for from so coarse an accuracy, is still one step a sample.
     """
     chain = scene("sec2").evolve(f=5600.0, A0=1.7e-7, D=64.0, N=5, accuracy=7e-4)
@@ -84,7 +84,7 @@ def test_computations_with_the_same_steps_are_not_compared():
 
 
 @pytest.mark.parametrize("base", curve_errors.BASES)
-def test_the_error_stated_by_a_curve_bounds_the_true_one(base):
+def test_the_error_stated_by_a_curve_bounds_the_true_one(base: str) -> None:
     """Periodic points of batches at random drive, A₀, D and k against the converged orbit, every one of them."""
     found = list(curve_errors.points(60, 9, base))
     assert len(found) >= 15

@@ -22,7 +22,7 @@ def found(driven: bool) -> tuple[np.ndarray, np.ndarray]:
 
 
 @pytest.mark.parametrize("driven", [True, False])
-def test_no_touch_is_missed_and_none_is_invented(driven):
+def test_no_touch_is_missed_and_none_is_invented(driven: bool) -> None:
     """By 1e-7 to 1e-2 of an amplitude, or short of it by as much: exactly those with amplitude above the gap touch.
 
     A thrown bead's own motion is computed to 1e-11 at the worst, a ten-thousandth of the least depth.
@@ -31,7 +31,7 @@ def test_no_touch_is_missed_and_none_is_invented(driven):
     assert len(touches.missed(cases, seen)) == 0
 
 
-def test_the_moment_of_a_touch_is_exact():
+def test_the_moment_of_a_touch_is_exact() -> None:
     """The driver reaches a resting bead at asin(gap)/β to 1e-12 of a period at every tolerance, as slowly as it may
     come: at a depth of 1e-7 a rounding of its displacement is 1e-13 of a period.
     """
@@ -39,7 +39,7 @@ def test_the_moment_of_a_touch_is_exact():
     assert (seen[cases[:, touches.DEPTH] > 0.0, touches.ONSET_ERROR] < 1.2e-12).all()
 
 
-def test_the_moment_of_a_release_is_exact():
+def test_the_moment_of_a_release_is_exact() -> None:
     """Where a touch moves the bead by less than that the driver lets go at π − asin(gap), to the same 1e-12."""
     cases, seen = found(True)
     exact = (cases[:, touches.DEPTH] > 0.0) & (touches.moved(cases) < 1e-13)
@@ -47,7 +47,7 @@ def test_the_moment_of_a_release_is_exact():
     assert (seen[exact, touches.RELEASE_ERROR] < 1.2e-12).all()
 
 
-def test_a_thrown_bead_touches_when_its_own_motion_lets_it():
+def test_a_thrown_bead_touches_when_its_own_motion_lets_it() -> None:
     """asin(gap)/ω, to ten tolerances of its displacement over the speed √(2·depth) at which it arrives."""
     cases, seen = found(False)
     hit = cases[:, touches.DEPTH] > 0.0
@@ -56,7 +56,7 @@ def test_a_thrown_bead_touches_when_its_own_motion_lets_it():
 
 
 @pytest.mark.parametrize("tolerance", [1e-13, 1e-12])
-def test_two_touches_in_one_step_are_both_found(tolerance):
+def test_two_touches_in_one_step_are_both_found(tolerance: float) -> None:
     """1e-13 to 0.03 of a period apart, the one or the other first: each at its own moment, to ten tolerances."""
     seen = touches.run_pairs(300, 3, tolerance)
     assert (seen[:, 1:] < 10.0 * tolerance).all()
@@ -64,7 +64,7 @@ def test_two_touches_in_one_step_are_both_found(tolerance):
 
 @pytest.mark.parametrize("beads", [2, 5, 8])
 @pytest.mark.parametrize("tolerance", [1e-5, 1e-9, 1e-13])
-def test_simultaneous_contacts_stay_symmetric(beads, tolerance):
+def test_simultaneous_contacts_stay_symmetric(beads: int, tolerance: float) -> None:
     """Thrown as mirror images between two walls, the beads stay mirror images through some hundred pairs of events.
 
     1e-13 of an amplitude: what a hundred events leave of roundings.

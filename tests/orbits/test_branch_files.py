@@ -168,6 +168,6 @@ def test_the_command_goes_on_from_its_file(tmp_path: Path, capsys: pytest.Captur
 def test_only_a_doubling_is_switched_at() -> None:
     found = granchain_core.branch(scene("sec2"), "f", 340.0, 348.0, 1)
     grazing = next(s for s in found.special if s.kind == "grazing")
-    assert grazing.contact == 1 and grazing.event == "separation"
+    assert grazing.contact == 1 and grazing.gained == "open interval" and grazing.event == "separation"
     with pytest.raises(BadInput, match="not at a grazing"):
         switch_to_doubled(found, grazing)

@@ -104,3 +104,11 @@ def test_without_damping_stability_changes_only_where_multipliers_leave_the_circ
     assert kinds == ["period_doubling"]
     for point in found.points:
         assert point.unstable == (np.abs(point.multipliers) > 1.001).sum()
+
+
+@pytest.mark.parametrize(("name", "frequency", "amplitude"), [("rig", 100.0, 1e-9), ("sec2", 84.0, 1e-8)])
+def test_a_branch_of_a_small_drive_under_preload_is_found(name: str, frequency: float, amplitude: float) -> None:
+    """Beads that follow a slow drive rest at phase 0: relative to displacements there, rounding was a residual."""
+    shown = scene(name).evolve(N=3, F0=1.0, f=frequency, A0=amplitude)
+    found = branch(shown, "f", frequency, 1.003 * frequency, 1)
+    assert found.half_branches[0].ended == "reached" and check_branch(found) == []

@@ -19,7 +19,7 @@ from granchain_core.orbits import (
     check_branch,
     switch_to_doubled,
 )
-from granchain_core.orbits.branch.walk import Arm, Walk
+from granchain_core.orbits.branch.walk import HalfBranch, Walk
 
 #: What the settled picture is asked for; its converged orbit then agrees with a branch's to some multiples of it.
 _ASKED = 1e-8
@@ -117,7 +117,7 @@ def test_a_doubling_has_a_doubled_branch_that_leads_to_the_next_one(doubling: Br
     assert begun.period == 2 and seed.stable and not once.stable
     assert np.abs(once.x - seed.x).max() > 1e-3 * np.abs(seed.x).max()
     found = Continuation(begun).run()
-    assert found.arms[0].ended == "merged" and "half a period later" in found.arms[0].reason
+    assert found.half_branches[0].ended == "merged" and "half a period later" in found.half_branches[0].reason
     assert check_branch(found) == [] and all(p.stable for p in found.points)
     last = found.special[-1]
     widths = [s.interval[1] - s.interval[0] for s in (last, meeting)]
@@ -156,7 +156,7 @@ def test_special_points_scale_with_the_chain(doubling: Branch) -> None:
 def test_every_continuous_knob_can_be_followed(knob: str, start: float, end: float, changes: dict[str, float]) -> None:
     shown = scene("sec2").evolve(N=3, **changes)
     found = granchain_core.branch(shown, knob, start, end, 1)
-    assert found.arms[0].ended == "reached" and check_branch(found) == []
+    assert found.half_branches[0].ended == "reached" and check_branch(found) == []
     last = found.points[-1]
     direct = orbit(shown.evolve(**{knob: end}), 1, found.state(last))
     # both are fixed points to 1e-11 of the same map; near grazing Newton's basins are small, so it starts there
@@ -191,8 +191,8 @@ def closed_loop() -> tuple[Scene, float, int]:
 def test_an_isola_closes_on_itself() -> None:
     shown, frequency, period = closed_loop()
     found = granchain_core.branch(shown.evolve(f=frequency), "f", 100.0, 3000.0, period, both=True)
-    assert [arm.ended for arm in found.arms] == ["closed"] and check_branch(found) == []
-    assert "the orbit there is the seed's" in found.arms[0].reason
+    assert [half.ended for half in found.half_branches] == ["closed"] and check_branch(found) == []
+    assert "the orbit there is the seed's" in found.half_branches[0].reason
     assert sum(s.kind == "fold" for s in found.special) % 2 == 0
 
 
@@ -202,22 +202,22 @@ def test_the_threads_do_not_decide_which_arm_of_an_isola_is_kept(slow: int, monk
     """
     shown, frequency, period = closed_loop()
     begun = begin_branch(shown.evolve(f=frequency), "f", 100.0, 3000.0, period, both=True)
-    copies = [replace(begun, arms=tuple(Arm(arm.direction, list(arm.points)) for arm in begun.arms)) for _ in range(2)]
+    copies = [replace(begun, half_branches=tuple(HalfBranch(half.direction, list(half.points)) for half in begun.half_branches)) for _ in range(2)]
     alternately = Continuation(copies[0])
     for _ in alternately:
         pass
     step = Walk.__next__
 
     def slowed(walk: Walk) -> BranchPoint:
-        if walk.arm.direction == slow:
+        if walk.half.direction == slow:
             time.sleep(0.05)
         return step(walk)
 
     monkeypatch.setattr(Walk, "__next__", slowed)
     found = Continuation(copies[1]).run()
-    kept, = found.arms
-    assert kept.direction == alternately.branch.arms[0].direction
-    assert [p.knob for p in kept.points] == [p.knob for p in alternately.branch.arms[0].points]
+    kept, = found.half_branches
+    assert kept.direction == alternately.branch.half_branches[0].direction
+    assert [p.knob for p in kept.points] == [p.knob for p in alternately.branch.half_branches[0].points]
 
 
 def test_the_error_for_a_seed_that_is_no_orbit_has_its_residuals() -> None:

@@ -199,7 +199,7 @@ def test_a_grazing_has_no_criticality(doubling: Branch) -> None:
 
 def test_files_and_checkpoints_keep_the_criticality(doubling: Branch, tmp_path: Path) -> None:
     undecided = replace(the(doubling, "period_doubling"), normal_form=NormalForm("not decided", reason=REASONS[0]))
-    doubling = replace(doubling, arms=(replace(doubling.arms[0], special=[*doubling.special, undecided]),))
+    doubling = replace(doubling, half_branches=(replace(doubling.half_branches[0], special=[*doubling.special, undecided]),))
     loaded = load_branch(save_branch(doubling, tmp_path / "b.h5"))
     kept = [special_from_json(json.loads(json.dumps(special_as_json(one)))) for one in doubling.special]
     for special, *others in zip(doubling.special, loaded.special, kept, strict=True):
@@ -223,7 +223,7 @@ def test_a_file_without_criticality_opens(doubling: Branch, tmp_path: Path) -> N
 def test_a_reason_as_earlier_versions_spelled_it_is_read(doubling: Branch, tmp_path: Path, earlier: str, now: str) -> None:
     special = replace(the(doubling, "period_doubling"), normal_form=NormalForm("not decided", reason=earlier))
     assert special_from_json(json.loads(json.dumps(special_as_json(special)))).criticality_words() == f"criticality not decided: {now}"
-    old = replace(doubling, arms=(replace(doubling.arms[0], special=[special]),))
+    old = replace(doubling, half_branches=(replace(doubling.half_branches[0], special=[special]),))
     assert load_branch(save_branch(old, tmp_path / "old.h5")).special[0].criticality_words() == f"criticality not decided: {now}"
 
 

@@ -2,15 +2,24 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 from linear_chain import linear_multipliers
 
 import granchain_core
+from app.cli import main
 from granchain_core import BadInput, ComputationError, scene
+from granchain_core.execution.stop import Stop
+from granchain_core.orbits import check_branch
 from granchain_core.orbits.stroboscopic_map import StroboscopicMap
+from granchain_core.steady.settling.nearby_orbit import orbit_of
 
 pytestmark = pytest.mark.quick
+
+#: A chain whose beads are at rest positions at phase 0, to 3e-8 of their amplitude.
+VANISHING = scene("sec2").evolve(N=3, A0=9.787e-8, D=2.0578, kappa=1.835e-3, F0=0.79338, f=84.05)
 
 
 @pytest.mark.parametrize(("frequency", "period"), [(340.0, 1), (615.0, 2), (1130.0, 3), (1576.0, 4)])
@@ -106,7 +115,44 @@ def test_an_orbit_whose_displacements_vanish_at_phase_0_is_found() -> None:
 
     Relative to displacements there, rounding kept the residual at 1e-7, and Newton's method was said to fail.
     """
-    chain = scene("sec2").evolve(N=3, A0=9.787e-8, D=2.0578, kappa=1.835e-3, F0=0.79338, f=84.05)
-    found = granchain_core.orbit(chain)
+    found = granchain_core.orbit(VANISHING)
     assert found.period == 1 and found.stable and found.residual < 1e-9
     assert found.liouville is not None and abs(found.liouville) < 1e-8
+
+
+def test_its_branch_is_found_too() -> None:
+    """Relative to displacements at phase 0 the residual of the seed stayed at 1e-7, and there was no branch."""
+    found = granchain_core.branch(VANISHING, "f", VANISHING.f, VANISHING.f + 0.5, 1)
+    assert found.arms[0].ended == "reached" and check_branch(found) == []
+
+
+def test_its_multiplier_is_right_where_the_chain_settles() -> None:
+    """A difference relative to these displacements was below the map's noise: |μ| was wrong in its third digit."""
+    exact = abs(granchain_core.orbit(VANISHING).multipliers[0])
+    stroboscopic_map = StroboscopicMap(VANISHING, 1)
+    x = stroboscopic_map.inner(stroboscopic_map.engine.scaled.from_si(granchain_core.orbit(VANISHING).state))
+    for period in (1, 2):
+        found = orbit_of(VANISHING, period, x, Stop())
+        assert found is not None and found.period == 1 and found.point.residual < 1e-9
+        assert found.modulus == pytest.approx(exact, abs=1e-4) and found.distance_of_motion < 1e-6
+
+
+def test_period_1_of_a_motion_without_a_period_is_taken_with_a_reason(capsys: pytest.CaptureFixture[str]) -> None:
+    """sec2 is quasi-periodic at 1700 Hz: the unstable orbit of period 1 is another motion than the one from rest."""
+    chain = scene("sec2").evolve(f=1700.0)
+    found = granchain_core.orbit(chain)
+    reason = "period 1 was taken, because the motion from rest is quasi-periodic"
+    assert found.period == 1 and found.period_note == reason and reason in found.summary()
+    started = granchain_core.orbit(chain, start=found.state)
+    assert started.period_note == "period 1 was taken, because a start was given without a period"
+    assert granchain_core.orbit(chain, 1, found.state).period_note == ""
+    assert main(["orbit", "sec2", "--set", "f=1700", "--json"]) == 0
+    written, said = capsys.readouterr()
+    assert json.loads(written)["period_note"] == reason and reason in said
+    assert main(["branch", "sec2", "--knob", "f", "--from", "1700", "--to", "1710", "--points", "2"]) == 0
+    assert reason in capsys.readouterr().err
+
+
+def test_the_period_of_a_settled_motion_needs_no_reason() -> None:
+    found = granchain_core.orbit(scene("sec2").evolve(N=2, f=2000.0))
+    assert found.period == 1 and found.period_note == ""

@@ -1,4 +1,4 @@
-"""What kind of response an orbit is: a 1:n resonance, an anti-resonance, or in the stop band."""
+"""The pulse ratio of an orbit, and whether its reflected pulse is in step, as at the peaks of the curve."""
 
 from __future__ import annotations
 
@@ -31,4 +31,5 @@ def test_at_the_first_peak_the_push_meets_the_reflected_pulse() -> None:
     assert min(peak.peak_phase, 360.0 - peak.peak_phase) < 15.0
     assert peak.returning > 1.0 > 1.0 / 3.0 > valley.returning
     assert peak.transmission == pytest.approx(0.629 / 0.697, rel=0.01)
-    assert peak.sentence == "1:1 resonance" and response(orbit(at(2500.0))).sentence == "1:1 motion, stop band"
+    assert peak.sentence == "pulse ratio 1:1, in step" and valley.sentence == "pulse ratio 1:1, not in step"
+    assert response(orbit(at(2500.0))).sentence == "pulse ratio 1:1, stop band"

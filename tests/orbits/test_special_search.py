@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from granchain_core import ComputationError, branch, scene
-from granchain_core.orbits import Branch, SpecialPoint, check_branch
+from granchain_core.orbits import Branch, BranchPoint, SpecialPoint, check_branch
 from granchain_core.orbits.branch import special
 from granchain_core.orbits.branch.between import Between
 from granchain_core.orbits.branch.equations import BranchEquations
@@ -41,9 +41,9 @@ def test_the_careful_search_takes_over_and_finds_the_same(fast: Branch, broken: 
     def other_side(self: Between, point: object) -> object:
         return self.b if point is self.a else self.a
 
-    def counted(self: Between, *arguments: object) -> object:
-        used.append(arguments)
-        return careful(self, *arguments)
+    def counted(self: Between, a: BranchPoint, b: BranchPoint, fraction: float) -> BranchPoint:
+        used.append(fraction)
+        return careful(self, a, b, fraction)
 
     monkeypatch.setattr(Between, "made_exact", no_solution if broken == "solution" else other_side)
     monkeypatch.setattr(Between, "careful", counted)

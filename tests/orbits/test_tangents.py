@@ -52,7 +52,7 @@ def test_a_missing_saltation_shows_in_the_columns_and_not_in_the_determinant() -
 
 def test_the_derivative_by_saltation_knows_its_limits() -> None:
     stroboscopic_map = StroboscopicMap(scene("sec2").evolve(dissipation="tsuji"), 1)
-    with pytest.raises(BadInput, match="no constant saltation"):
+    with pytest.raises(BadInput, match="no term for the change of the damping with the overlap"):
         stroboscopic_map.derivative_by_saltation(np.zeros(22))
 
 

@@ -60,6 +60,18 @@ def test_a_map_is_the_same_bytes_though_a_worker_is_killed_midway(client: Any) -
     assert cells.tobytes() == threaded.cells.tobytes()
 
 
+def test_a_map_of_python_is_divided_among_the_workers(client: Any) -> None:
+    """`scheduler=`, as of curves and fits; progress is reported after every block, cells that fail are marked."""
+    wide = (("f", np.linspace(1600.0, 2600.0, 20)), ("A0", np.geomspace(2e-7, 2e-6, 16)))
+    parts: list[float] = []
+    here, there = (parameter_map(CHAIN, *wide, progress=lambda _, part: parts.append(part), scheduler=one) for one in (None, client))
+    assert there.cells.tobytes() == here.cells.tobytes() and there.complete
+    assert len(parts) == 320 + len(dealt(range(320), CELLS_IN_TASK)) and parts[-1] == 1.0
+    stop = Stop()
+    stop.set()
+    assert not parameter_map(CHAIN, *wide, stop=stop, scheduler=client).complete
+
+
 def test_a_curve_is_the_same_and_a_sweep_cannot_be_divided(client: Any) -> None:
     frequencies = np.linspace(400.0, 1600.0, 80)  # more than a task holds
     here, there = (resonance_curve(scene("sec2"), frequencies, scheduler=one) for one in (None, client))

@@ -54,7 +54,7 @@ def test_a_piece_begins_where_the_last_one_ended_and_holds_one_kind_of_orbit(bra
 def test_special_points_are_told_with_their_uncertainty(branch: Branch) -> None:
     told = {s.kind: special_words(s, branch) for s in branch.special}
     assert told["period_doubling"].startswith("period doubling at 255.") and " ± 0.00" in told["period_doubling"]
-    assert "contact 3 has one separation more on one side" in told["grazing"]
+    assert "contact 3 has one open interval more per orbit on one side" in told["grazing"]
     plot = branches([branch], THEMES["light"])
     assert data(plot, "period_doubling")["tooltip"] == [told["period_doubling"]]
     assert data(plot, "period_doubling")["criticality"][0].startswith("subcritical: ")

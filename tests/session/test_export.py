@@ -81,7 +81,8 @@ def test_the_curve_has_the_evidence_for_its_regimes(screen: Screen) -> None:
         assert int(row["periods_run"]) == point.regime.periods_run
         for name in ("decay", "multiplier", "distance", "return_distance", "return_limit"):
             assert (float(row[name]) if row[name] else None) == getattr(point.regime, name)
-    assert curve_csv({}).splitlines()[0].endswith("largest_window_ratio")
+        assert (row["orbit_found_by"] or None) == point.regime.orbit_found_by
+    assert curve_csv({}).splitlines()[0].endswith("largest_window_ratio,orbit_found_by")
 
 
 def test_the_trains_have_every_sample_and_every_jump(screen: Screen) -> None:

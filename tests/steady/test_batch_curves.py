@@ -49,7 +49,7 @@ def test_a_computed_multiplier_is_kept_and_is_what_the_errors_rest_on(monkeypatc
     monkeypatch.setattr("granchain_core.steady.batch.job._SLOW_DECAY", 0.5)
     found = results([400.0])[400.0]
     exact = settle(scene("sec2").evolve(f=400.0, accuracy=1e-6))
-    assert found.regime.followed
+    assert found.regime.followed and found.regime.orbit_found_by == "extrapolation"
     assert found.regime.multiplier == pytest.approx(exact.regime.multiplier, abs=1e-3)
     assert found.errors is not None and found.errors.max() < 2e-4
     assert found.maxima[1] == pytest.approx(exact.run.max_output_force, rel=found.errors[1])
@@ -57,8 +57,8 @@ def test_a_computed_multiplier_is_kept_and_is_what_the_errors_rest_on(monkeypatc
 
 def test_what_batches_call_quasi_periodic_was_measured_twice(monkeypatch: pytest.MonkeyPatch) -> None:
     """At 1640 Hz from rest: 200 periods with a zero exponent are not enough, as for a chain by itself."""
-    real, measured = batch_module.put_with_shadow, []
-    monkeypatch.setattr(batch_module, "put_with_shadow", lambda *words: measured.append(True) or real(*words))
+    real, measured = batch_module.put_with_neighbour, []
+    monkeypatch.setattr(batch_module, "put_with_neighbour", lambda *words: measured.append(True) or real(*words))
     found = results([1640.0])[1640.0]
     assert (found.regime.name, found.undecided) == ("quasi-periodic", False) and len(measured) >= 2
 

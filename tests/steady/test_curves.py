@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from granchain_core import ComputationError, resonance_curve, scene
+from granchain_core import ComputationError, Curve, resonance_curve, scene
 from granchain_core.execution.stop import Stop
 from granchain_core.results.regime import Regime
 from granchain_core.scene.state import State, rest
@@ -23,7 +23,7 @@ def _numbers(words: str) -> list[float]:
 
 
 @pytest.fixture(scope="module")
-def curve():
+def curve() -> Curve:
     """298 points from 30 to 3000 Hz, from rest."""
     return resonance_curve(scene("sec2"), np.linspace(30.0, 3000.0, 298))
 
@@ -38,7 +38,7 @@ EXTREMA = [pair for frequencies, forces in re.findall(r"([\d., and]+) Hz with ([
 
 
 @pytest.mark.parametrize(("frequency", "force"), EXTREMA)
-def test_the_documented_peaks_and_valleys_are_where_they_belong(curve, frequency, force):
+def test_the_documented_peaks_and_valleys_are_where_they_belong(curve: Curve, frequency: float, force: float) -> None:
     """On this grid of frequencies, to the digits that the page gives; the largest or least force within 60 Hz."""
     f, elastic = curve.column("frequency"), curve.column("max_output_force_elastic")
     near = elastic[np.abs(f - frequency) <= 60.0]
@@ -47,12 +47,12 @@ def test_the_documented_peaks_and_valleys_are_where_they_belong(curve, frequency
     assert there == pytest.approx(force, abs=0.0005)
 
 
-def test_five_peaks_and_three_valleys_are_documented():
+def test_five_peaks_and_three_valleys_are_documented() -> None:
     """Those of 1:1 to 1:5, and those between them."""
     assert len(EXTREMA) == 8
 
 
-def test_the_documented_stop_band_lets_little_force_through(curve):
+def test_the_documented_stop_band_lets_little_force_through(curve: Curve) -> None:
     """“less than F N from f Hz on”, to the digits that the page gives."""
     (limit, first), = re.findall(r"less than ([\d.]+) N from ([\d.]+) Hz on", _PARAGRAPH)
     f, elastic = curve.column("frequency"), curve.column("max_output_force_elastic")
@@ -60,7 +60,7 @@ def test_the_documented_stop_band_lets_little_force_through(curve):
     assert elastic[f > float(first) - 11.0].max() > float(limit)  # one point of the grid earlier it is not so yet
 
 
-def test_every_point_of_the_curve_has_its_regime_and_an_error_where_one_can_be_claimed(curve):
+def test_every_point_of_the_curve_has_its_regime_and_an_error_where_one_can_be_claimed(curve: Curve) -> None:
     """Periodic points carry a small error estimate, others none; nothing failed."""
     assert len(curve.points) == 298
     assert not any(p.failure for p in curve.points)
@@ -71,7 +71,7 @@ def test_every_point_of_the_curve_has_its_regime_and_an_error_where_one_can_be_c
     assert np.median(claimed) < 1e-3
 
 
-def test_up_and_down_sweeps_differ_where_there_is_hysteresis():
+def test_up_and_down_sweeps_differ_where_there_is_hysteresis() -> None:
     """The state is carried along: between 1250 and 1700 Hz the two directions sit on different branches somewhere."""
     frequencies = np.arange(1250.0, 1701.0, 25.0)
     up, down = (resonance_curve(scene("sec2"), frequencies, start) for start in ("up", "down"))
@@ -79,7 +79,7 @@ def test_up_and_down_sweeps_differ_where_there_is_hysteresis():
     assert np.abs(a - b).max() > 0.05  # newtons; forces are known to 1e-5, so this is another branch
 
 
-def test_a_chain_that_fails_alone_has_run_what_its_batch_ran(monkeypatch):
+def test_a_chain_that_fails_alone_has_run_what_its_batch_ran(monkeypatch: pytest.MonkeyPatch) -> None:
     """620 periods in a batch and a failure after them are not 0 periods."""
     from granchain_core.steady.settling import single_chain as module
 
@@ -93,7 +93,7 @@ def test_a_chain_that_fails_alone_has_run_what_its_batch_ran(monkeypatch):
     assert (found.failure, found.regime.periods_run) == ("made to fail", 620)
 
 
-def test_a_failing_frequency_does_not_lose_the_curve(monkeypatch):
+def test_a_failing_frequency_does_not_lose_the_curve(monkeypatch: pytest.MonkeyPatch) -> None:
     """Its point carries the sentence and NaN; the others are there, in every start."""
     from granchain_core.steady.settling import single_chain as module
 
@@ -116,7 +116,7 @@ def test_a_failing_frequency_does_not_lose_the_curve(monkeypatch):
 
 @pytest.mark.parametrize("start", ["rest", "up", "down"])
 @pytest.mark.parametrize("count", [2, 20])
-def test_a_curve_of_the_stiffest_foundation_is_computed_or_says_why_not(start, count):
+def test_a_curve_of_the_stiffest_foundation_is_computed_or_says_why_not(start: str, count: int) -> None:
     """k = 1e10 N/m is valid: every point has a force or a sentence, whatever its neighbours do."""
     found = resonance_curve(scene("sec2").evolve(k=1e10, N=2), np.linspace(2000.0, 2500.0, count), start)
     assert len(found.points) == count
@@ -125,7 +125,7 @@ def test_a_curve_of_the_stiffest_foundation_is_computed_or_says_why_not(start, c
 
 
 @pytest.mark.parametrize("start", ["rest", "up", "down"])
-def test_a_cancelled_curve_keeps_what_it_has(start):
+def test_a_cancelled_curve_keeps_what_it_has(start: str) -> None:
     """Stopped after the third point: those points and soon an end."""
     seen: list[float] = []
     stop = Stop()

@@ -13,7 +13,7 @@ from granchain_core.integrate.batch import Batch
 from granchain_core.integrate.scaling import ScaledChain, scale_chain
 from granchain_core.kernels.batch_size import BATCH_SIZE
 from granchain_core.orbits.stroboscopic_map import StroboscopicMap
-from granchain_core.steady.lyapunov import MeasuredGrowth, block_means, growth_along, growth_of, put_with_shadow
+from granchain_core.steady.lyapunov import MeasuredGrowth, block_means, growth_along, growth_of, put_with_neighbour
 from granchain_core.steady.regime_criteria import mean_and_error
 from granchain_core.steady.settling.advance import run_until_settled
 
@@ -27,7 +27,7 @@ def in_pairs(scenes: list[tuple[ScaledChain, np.ndarray]], batch: Batch, periods
     for lane in range(BATCH_SIZE):
         batch.empty(lane)
     for number, (scaled, y) in enumerate(scenes):
-        put_with_shadow(batch, 2 * number, 2 * number + 1, scaled, y, periods)
+        put_with_neighbour(batch, 2 * number, 2 * number + 1, scaled, y, periods)
     for _ in scenes:
         lane, finite = batch.run()
         if finite and np.isfinite(batch.growth(lane)).all():

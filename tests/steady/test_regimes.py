@@ -13,7 +13,7 @@ from granchain_core.steady.poincare import iter_section
 
 
 @pytest.mark.parametrize(("f", "period"), [(340.0, 1), (615.0, 2), (1130.0, 3), (1576.0, 4)])
-def test_section_2_from_rest_has_its_periods(f, period):
+def test_section_2_from_rest_has_its_periods(f: float, period: int) -> None:
     """One push in 1, 2, 3, 4 periods on the peaks (docs/lecture.md); the picture of the orbit closes on itself and says
     how exactly.
     """
@@ -28,7 +28,7 @@ def test_section_2_from_rest_has_its_periods(f, period):
 
 
 @pytest.mark.parametrize("f", [340.0, 1130.0])
-def test_settled_orbit_is_where_a_long_plain_run_ends(f):
+def test_settled_orbit_is_where_a_long_plain_run_ends(f: float) -> None:
     """Extrapolation and relaxation lead to the attractor the chain goes to by itself."""
     chain = scene("sec2").evolve(f=f, accuracy=1e-7)
     found = settle(chain)
@@ -41,7 +41,7 @@ def test_settled_orbit_is_where_a_long_plain_run_ends(f):
     assert distance < 1e-5 * largest  # a hundred times the accuracy: both carry it, amplified by 1/(1 − |μ|)
 
 
-def test_the_founded_rig_at_140_hz_is_chaotic():
+def test_the_founded_rig_at_140_hz_is_chaotic() -> None:
     """κ = 0.001, f = 140 Hz: a positive exponent, and its evidence."""
     found = settle(scene("rig").evolve(f=140.0))
     assert found.regime.name == "chaotic"
@@ -51,7 +51,7 @@ def test_the_founded_rig_at_140_hz_is_chaotic():
 
 
 @pytest.mark.parametrize("f", [45.0, 80.0, 120.0])
-def test_the_rig_without_its_foundation_is_not_periodic(f):
+def test_the_rig_without_its_foundation_is_not_periodic(f: float) -> None:
     """κ = 0: irregular everywhere in 20–160 Hz."""
     assert settle(scene("rig").evolve(f=f, k=0.0)).regime.name != "periodic"
 
@@ -69,7 +69,7 @@ def test_windows_hold_the_largest_changes_oldest_first() -> None:
     assert len(seen) == regime_criteria.LONGEST_PERIOD and len(regime_criteria._windows(strobes[1:])) == 0
 
 
-def test_a_cut_chain_from_rest_comes_to_the_attractor_that_rest_leads_to():
+def test_a_cut_chain_from_rest_comes_to_the_attractor_that_rest_leads_to() -> None:
     """Here an orbit of period 3 coexists, and fixed steps, of order 1 with the cut, lead to it. Period 1 and 8.1983 N
     are those of an independent RK4 with events bisected, at 1500, 6000 and 18,000 steps a period."""
     chain = scene("sec2").evolve(N=2, A0=1.533564291882614e-06, D=30.039042891685526, tension="cut",
@@ -80,7 +80,7 @@ def test_a_cut_chain_from_rest_comes_to_the_attractor_that_rest_leads_to():
     assert settle(chain.evolve(f=742.0479417595108)).regime.period == 1
 
 
-def test_a_cut_chain_is_where_a_finer_computation_is_at_its_next_phase_0_and_in_its_section():
+def test_a_cut_chain_is_where_a_finer_computation_is_at_its_next_phase_0_and_in_its_section() -> None:
     """Both are followed without an accuracy that is asked for; by fixed steps they were wrong by up to a hundredth."""
     chain = scene("sec2").evolve(N=3, tension="cut", k=2e5, f=1500.0, accuracy=1e-10)
     fine = run(chain, periods=20, record=1, samples=4)
@@ -92,24 +92,36 @@ def test_a_cut_chain_is_where_a_finer_computation_is_at_its_next_phase_0_and_in_
         1e-6 * largest)  # a section is kept in single precision
 
 
-def test_a_cut_chain_that_goes_on_from_its_orbit_stays_there():
+def test_a_cut_chain_that_goes_on_from_its_orbit_stays_there() -> None:
     """The fixed-step method's own orbit has period 6."""
     chain = scene("sec2").evolve(tension="cut", f=550.0)
     again = settle(chain, start=settle(chain).state)
     assert (again.regime.name, again.regime.period) == ("periodic", 2)
 
 
-def test_changes_within_the_tolerance_of_a_step_are_no_motion():
+def test_changes_within_the_tolerance_of_a_step_are_no_motion() -> None:
     """With error control an orbit repeats to the tolerance only, with changes that seem to grow."""
     strobes = np.tile([[[1.0], [1.0]], [[-1.0], [-1.0]]], (50, 1, 1))
     strobes[:, 0, 0] += 4e-12 * np.arange(100) / 100 * np.cos(np.arange(100) ** 2)
     found = regime_criteria.find_period(strobes, rounding=regime_criteria.rounding_of(following_setting(True)))
-    assert (found.name, found.period, found.decay) == ("periodic", 2, None)
+    assert (found.name, found.period, found.observed_contraction) == ("periodic", 2, None)
     assert regime_criteria.rounding_of(following_setting(False)) == regime_criteria.ROUNDING
 
 
-def test_the_motion_of_a_cut_chain_without_a_drive_is_known_to_the_accuracy_asked_for():
+def test_the_motion_of_a_cut_chain_without_a_drive_is_known_to_the_accuracy_asked_for() -> None:
     chain = scene("impact").evolve(N=5, tension="cut", dissipation="tsuji", D=30.0, f=2000.0, accuracy=1e-8)
     found, fine = settle(chain).run, run(chain.evolve(accuracy=1e-11), periods=0, record=1, samples=96)
     assert found.displacement_error < 1e-8
     assert np.abs(found.displacement - fine.displacement).max() < 1e-8 * np.abs(fine.displacement).max()
+
+
+def test_the_example_of_the_documentation_goes_through_its_stages() -> None:
+    """docs/regimes.md, "One motion through all stages": it settles so slowly that Newton's method finds its orbit."""
+    chain = scene("sec2").evolve(f=615.0)
+    found = settle(chain)
+    assert found.regime.orbit_found_by == "Newton" and found.regime.observed_contraction is None
+    assert found.regime.sentence == "period 2, orbit found after 400 periods of approach (|μ| 0.9939 per 2 periods)"
+    assert found.run.max_output_force == pytest.approx(1.211561, abs=1e-6)
+    point = resonance_curve(scene("sec2"), [615.0]).points[0]
+    assert point.regime.orbit_found_by == "extrapolation" and point.regime.period == 2
+    assert point.regime.observed_contraction == pytest.approx(0.93, abs=0.02) and point.regime.multiplier is None

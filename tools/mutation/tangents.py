@@ -88,10 +88,10 @@ TANGENTS = (
 ORBITS = (
     Mutant("velocity-of-one-contact", _MAP, "= -inverse * (gate[:-1] + gate[1:])", "= -inverse * gate[1:]",
            "∂v/∂u leaves out the contact on a bead's left", k.ROUTES),
-    Mutant("newton-ends-early", _ORBIT, "CONVERGED = 1e-11", "CONVERGED = 1e-7",
+    Mutant("newton-ends-early", "steady/residuals.py", "RESIDUAL_GOAL = 1e-11", "RESIDUAL_GOAL = 1e-7",
            "an orbit is called found four digits too early",
            k.ORBIT_CLAIMS),
-    Mutant("multipliers-by-real-part", _ORBIT, "np.argsort(-np.abs(found), kind", "np.argsort(-found.real, kind",
+    Mutant("multipliers-by-real-part", _ORBIT, "np.argsort(-np.abs(multipliers), kind", "np.argsort(-multipliers.real, kind",
            "the leading multiplier is the rightmost, not the largest", ("tests/orbits/test_tangents.py", "-k", "sorted_by_modulus")),
     Mutant("stable-by-real-part", _ORBIT, "return bool(np.abs(self.multipliers).max() < 1.0)",
            "return bool(self.multipliers.real.max() < 1.0)", "an orbit that alternates away is called stable",

@@ -9,7 +9,7 @@ from typing import Any
 
 from granchain_core import Scene, Settled
 from granchain_core.execution.stop import Stop
-from granchain_core.orbits import Arm, Branch, Continuation, begin_branch, switch_to_doubled
+from granchain_core.orbits import Branch, Continuation, HalfBranch, begin_branch, switch_to_doubled
 from granchain_core.precompile.pieces import BRANCH_KERNELS, DOP853_KERNELS, FIXED_STEP_KERNELS
 
 from ...plots.branches import BranchRows
@@ -36,7 +36,7 @@ class _Drawn:
     """An arm, and how many of its points and special points the page has been sent."""
 
     branch: Branch
-    arm: Arm
+    arm: HalfBranch
     points: int = 0
     special: int = 0
 
@@ -177,7 +177,7 @@ class BranchesPage(Page):
 
     def _add(self, continuation: Continuation) -> None:
         self._followed.append(continuation)
-        self._drawn.extend(_Drawn(continuation.branch, arm) for arm in continuation.branch.arms)
+        self._drawn.extend(_Drawn(continuation.branch, arm) for arm in continuation.branch.half_branches)
         self.scene_changed()
         self._draw()
 

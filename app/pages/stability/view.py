@@ -160,7 +160,7 @@ def evidence(settled: Settled, analysis: OrbitAnalysis | None, section: Section 
 def _orbit_rows(row: Any, settled: Settled, analysis: OrbitAnalysis) -> None:
     orbit = analysis.orbit
     size = abs(orbit.multipliers[0])
-    seen = settled.regime.decay
+    seen = settled.regime.observed_contraction
     decay = f"; {modulus_words(seen)} per orbit seen while it settled" if analysis.target.followed and seen else ""
     row("|μ| largest", _size_words(float(size), orbit) + decay,
         "The largest multiplier with its error (the change to a map of ten times the tolerance, by the multiplier's "

@@ -26,8 +26,8 @@ _CLOUD_PERIODS = 1200
 _MOST_MODE_VALUES = 60_000
 #: A mode that ends farther than this from μ times itself contradicts μ; correct ones are within about 1e-8.
 _LARGEST_MODE_ERROR = 1e-4
-#: If Newton's method ends farther than this from a settled motion, it has found another orbit.
-_SAME_ORBIT_DISTANCE = 1e-3
+#: An orbit within this distance of a settled motion is that of the motion; one farther away is another.
+_OWN_ORBIT_DISTANCE = 1e-3
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ def analyse(target: OrbitTarget, observer: bool, rank: int, stop: Stop) -> Orbit
     scene = target.scene
     orbit = periodic_orbit(scene, target.period, target.start, observer=observer, stop=stop)
     distance = _apart(orbit.state, target.start)
-    if target.followed and distance > _SAME_ORBIT_DISTANCE:
+    if target.followed and distance > _OWN_ORBIT_DISTANCE:
         raise ComputationError(f"Newton's method ended {distance:.0e} away from the settled motion, on another orbit; "
                                "its multipliers are not those of what the chain does.", "another-orbit")
     orbit.find_errors(stop)  # here, because the words about the orbit are made in the event loop
@@ -108,7 +108,7 @@ def search(settled: Settled, section: Section | None, period: int, stop: Stop) -
     found = search_orbit(scene, period, settled.state, strobes, stop)
     run = settled.run
     here = [State(u, v) for u, v in zip(run.displacement[:: run.samples], run.velocity[:: run.samples], strict=True)]
-    if settled.regime.name == "periodic" and min(_apart(found.state, one) for one in here) < _SAME_ORBIT_DISTANCE:
+    if settled.regime.name == "periodic" and min(_apart(found.state, one) for one in here) < _OWN_ORBIT_DISTANCE:
         raise ComputationError(f"Newton's method ended on the orbit that the chain follows, of {found.period} drive "
                                f"period{'s' if found.period > 1 else ''}; try another period.", "same-orbit")
     return OrbitTarget(scene, found.period, found.state, followed=False, residuals=found.newton_residuals)

@@ -92,7 +92,7 @@ class KnobAxis:
 
     @property
     def _range(self) -> tuple[float, float]:
-        """That power of the smaller end, and its change per unit of p."""
+        """The smaller end to that power, and the change per unit of p."""
         low, high = (end**self._power for end in (self.low, self.high))
         return low, (high - low) / _LENGTH_OF_RANGE
 
@@ -137,5 +137,5 @@ class KnobAxis:
         return f"{self.knob} = {value:.8g}{'' if unit in ('', '1') else ' ' + unit}"
 
     def contains(self, value: float) -> bool:
-        """Whether a value is between the ends, which belong to it."""
+        """Whether a value is between the ends, or at one."""
         return self.low <= value <= self.high

@@ -14,7 +14,7 @@ from .point import BranchPoint, branch_point, rough_point
 
 
 class Between:
-    """The orbits between neighbours a and b; those that are computed help to compute the next ones.
+    """The orbits between neighbours a and b. Each one that is computed helps to compute the next.
 
     `near` are P_x and P_p at both. One thread may use it at a time.
     """
@@ -34,12 +34,12 @@ class Between:
         return self._finished(solved, a.tangent, self._arclength(a, b, fraction))
 
     def exact(self, a: BranchPoint, b: BranchPoint, fraction: float) -> BranchPoint:
-        """Like `careful`, but mostly with derivatives that are known at a and b."""
+        """Like `careful`, but mostly with the known derivatives at a and b."""
         guess, normal, way = self._guess(a, b, fraction)
         return self._solved(guess, normal, a.tangent, self._arclength(a, b, fraction), way)
 
     def rough(self, a: BranchPoint, b: BranchPoint, fraction: float) -> BranchPoint:
-        """Like `careful`, but by the quick map alone. What is alike at a and b is not computed but taken from a."""
+        """Like `careful`, but by the quick map alone. Values that are alike at a and b are taken from a."""
         guess, normal, way = self._guess(a, b, fraction)
         arclength, newton = self._arclength(a, b, fraction), Newton(self.equations, guess, normal, way)
         near = self._near(arclength)
@@ -48,7 +48,7 @@ class Between:
         if a.turning != b.turning:
             slope = self.equations.quick_slope(newton.z, newton.steps)
             newton.matrix[:-1, -1] = slope
-        if a.turning == b.turning and a.unstable == b.unstable:
+        if (a.turning, a.unstable, a.doubling_sign) == (b.turning, b.unstable, b.doubling_sign):
             tangent = self.equations.tangent_by(newton.matrix, a.tangent)
         else:
             derivative = newton.flow(ROUGH_TOLERANCE).derivative
@@ -58,7 +58,7 @@ class Between:
         return rough_point(self.equations, newton.z, tangent, slope, multipliers, newton.residuals, arclength)
 
     def made_exact(self, point: BranchPoint) -> BranchPoint:
-        """The exact orbit at a rough one; always the same."""
+        """The exact orbit at a rough one; a second call returns the same object."""
         if point not in self._exact:
             z = self.equations.point(point.x, point.knob)
             self._exact[point] = self._solved(z, point.tangent, point.tangent, point.arclength, self._way)
@@ -95,7 +95,7 @@ class Between:
         insort(self._known, (arclength, near), key=lambda known: known[0])
 
     def _guess(self, a: BranchPoint, b: BranchPoint, fraction: float) -> tuple[np.ndarray, np.ndarray, float]:
-        """The cubic's point in the plane that the corrected orbit stays in, that plane's normal, and how far b is."""
+        """The cubic's point in the plane of the corrected orbit, the normal of that plane, and the distance of b."""
         za, zb = self.equations.point(a.x, a.knob), self.equations.point(b.x, b.knob)
         way = float(np.linalg.norm(zb - za))
         normal = (zb - za) / way

@@ -30,9 +30,9 @@ from .equations import BranchEquations
 from .point import ON_CIRCLE, BranchPoint, branch_point, state_at
 from .special import SpecialPoint
 from .tables import branch_tables
-from .walk import Arm, Walk
+from .walk import HalfBranch, Walk
 
-#: Points of one arm at most: a branch that folds without end has to stop somewhere.
+#: Points of one half-branch at most: a branch that folds without end has to stop somewhere.
 MOST_POINTS = 20_000
 
 
@@ -46,8 +46,11 @@ class Branch(Labelled):
         The knob, where it starts and where it ends.
     period : int
         Period of its orbits in drive periods.
-    arms : tuple of Arm
+    half_branches : tuple of HalfBranch
         One or two directions from the same seed; `ended` and `reason` say how each ended.
+    period_note : str
+        Why period 1 was taken, in words, where none was given and the steady state has none (`Orbit.period_note`); else
+        empty, as in a branch from a file.
     points : list of BranchPoint
         All orbits in their order along the branch.
     special : list of SpecialPoint
@@ -57,13 +60,19 @@ class Branch(Labelled):
     --------
     >>> from granchain_core import branch, scene
     >>> found = branch(scene("sec2").evolve(N=2), "f", 2000.0, 2020.0)
-    >>> found.arms[0].ended, len(found.points) == len(found.column("knob"))
+    >>> found.half_branches[0].ended, len(found.points) == len(found.column("knob"))
     ('reached', True)
     """
 
     axis: KnobAxis
     period: int
-    arms: tuple[Arm, ...]
+    half_branches: tuple[HalfBranch, ...]
+    period_note: str = ""
+
+    @property
+    def arms(self) -> tuple[HalfBranch, ...]:
+        """The older name of `half_branches`."""
+        return self.half_branches
 
     @property
     def scene(self) -> Scene:
@@ -77,15 +86,15 @@ class Branch(Labelled):
 
     @property
     def points(self) -> list[BranchPoint]:
-        """All orbits in their order along the branch, from the end of the second arm to that of the first."""
-        first = self.arms[0].points
-        return first if len(self.arms) == 1 else [*reversed(self.arms[1].points[1:]), *first]
+        """All orbits in their order along the branch, from the end of the second half-branch to that of the first."""
+        first = self.half_branches[0].points
+        return first if len(self.half_branches) == 1 else [*reversed(self.half_branches[1].points[1:]), *first]
 
     @property
     def special(self) -> list[SpecialPoint]:
         """All special points in the order of the points."""
-        first = self.arms[0].special
-        return first if len(self.arms) == 1 else [*reversed(self.arms[1].special), *first]
+        first = self.half_branches[0].special
+        return first if len(self.half_branches) == 1 else [*reversed(self.half_branches[1].special), *first]
 
     def column(self, name: str) -> np.ndarray:
         """One attribute of every point as an array, for example "knob" or "stable"."""
@@ -97,21 +106,21 @@ class Branch(Labelled):
 
     def tables(self) -> tuple[Table, ...]:
         """`branch`, a row for each orbit; `special` points; `special_before` and `special_after`, the orbits beside."""
-        return branch_tables(self.axis, self.arms)
+        return branch_tables(self.axis, self.half_branches)
 
     def attributes(self) -> dict[str, Attribute]:
-        """Knob, ends and period as JSON, and where it comes from."""
+        """Knob, ends and period as JSON, and the provenance."""
         header = {"knob": self.axis.knob, "start": self.axis.start, "end": self.axis.end, "period": self.period,
-                "arms": [{"direction": arm.direction, "step": arm.step.hex(), "ended": arm.ended, "reason": arm.reason}
-                         for arm in self.arms]}
+                "arms": [{"direction": half.direction, "step": half.step.hex(), "ended": half.ended,
+                          "reason": half.reason} for half in self.half_branches]}
         return {**provenance(self.scene, FLOW_METHOD, None), "branch": json.dumps(header),
                 **amplitude_attribute(self.axis.amplitude),
                 **({"coordinate": STATIC_OVERLAP} if self.axis.by_overlap else {})}
 
     def summary(self) -> list[str]:
-        """How many orbits, where it ended, and the special points."""
-        ends = [arm.reason or arm.ended for arm in self.arms if arm.ended]
-        kinds = [f"{one.kind.replace('_', ' ')} at {self.axis.text(one.knob)}"
+        """Number of orbits, the reasons why it ended, and the special points."""
+        ends = [half.reason or half.ended for half in self.half_branches if half.ended]
+        kinds = [f"{one.kind_words} at {self.axis.text(one.knob)}"
                  + (f", {one.criticality_words()}" if one.normal_form and one.kind != "fold" else "")
                  for one in self.special if one.kind != "grazing"]
         grazings = sum(one.kind == "grazing" for one in self.special)
@@ -119,41 +128,43 @@ class Branch(Labelled):
             "without damping stable orbits have their multipliers on the unit circle: a modulus up to "
             f"1 + {ON_CIRCLE:g} counts as on it, and nothing attracts"]
         return [f"{len(self.points)} orbits of period {self.period}, {sum(p.stable for p in self.points)} stable, from "
-                f"{self.axis.text(self.axis.start)} towards {self.axis.text(self.axis.end)}", *ends, *kinds,
+                f"{self.axis.text(self.axis.start)} towards {self.axis.text(self.axis.end)}",
+                *([self.period_note] if self.period_note else []), *ends, *kinds,
                 *([f"{grazings} grazings"] if grazings else []), *undamped]
 
 
 class Continuation(Iterator[BranchPoint]):
     """A branch as it grows: each `next` is one more orbit; `branch` holds those found so far.
 
-    Of two arms the shorter one grows, so both go on alternately; `run` follows both at once. Iteration may be left and
-    continued at any time. Where the stop flag is set, `Cancelled` ends the present step only.
+    Of two half-branches the shorter one grows, so both go on alternately; `run` follows both at once. Iteration may be
+    left and continued at any time. Where the stop flag is set, `Cancelled` ends the present step only.
 
-    An arm that closes on itself is the whole branch, and the other is dropped once it is as long: that it could not
-    have closed with fewer orbits must be known, or the threads would decide which of the two is kept.
+    A half-branch that closes on itself is the whole branch, and the other is dropped once it is as long: only then is
+    it known that the other could not have closed with fewer orbits, so the threads do not decide which one is kept.
     """
 
     def __init__(self, branch: Branch, stop: Stop | None = None) -> None:
         self.branch = branch
         self.stop = Stop() if stop is None else stop
-        self._walks = [Walk(BranchEquations(branch.axis, branch.period, self.stop), arm) for arm in branch.arms]
+        self._walks = [Walk(BranchEquations(branch.axis, branch.period, self.stop), half)
+                       for half in branch.half_branches]
 
     def __next__(self) -> BranchPoint:
         while left := [walk for walk in self._walks if self._grows(walk)]:
-            shorter: Walk = min(left, key=lambda walk: len(walk.arm.points))
+            shorter: Walk = min(left, key=lambda walk: len(walk.half.points))
             point = next(shorter, None)
             if point is not None:
                 self._drop_double()
                 return point
         raise StopIteration
 
-    def run(self, most_points: int = MOST_POINTS, on_point: Callable[[Arm], None] | None = None) -> Branch:
-        """Follow all arms to their ends, each in a thread, or until one has `most_points`."""
+    def run(self, most_points: int = MOST_POINTS, on_point: Callable[[HalfBranch], None] | None = None) -> Branch:
+        """Follow all half-branches to their ends, each in a thread, or until one has `most_points`."""
 
         def follow(walk: Walk) -> None:
-            while self._grows(walk) and len(walk.arm.points) < most_points and next(walk, None) is not None:
+            while self._grows(walk) and len(walk.half.points) < most_points and next(walk, None) is not None:
                 if on_point is not None:
-                    on_point(walk.arm)
+                    on_point(walk.half)
 
         with ThreadPoolExecutor(len(self._walks)) as pool:
             for future in [pool.submit(follow, walk) for walk in self._walks]:
@@ -162,24 +173,24 @@ class Continuation(Iterator[BranchPoint]):
         return self.branch
 
     def _grows(self, walk: Walk) -> bool:
-        """Whether an arm has not ended, and is shorter than every arm that has closed."""
-        return not walk.arm.ended and len(walk.arm.points) < min(map(len, self._closed), default=math.inf)
+        """Whether a half-branch goes on: it has not ended, and is shorter than every half-branch that has closed."""
+        return not walk.half.ended and len(walk.half.points) < min(map(len, self._closed), default=math.inf)
 
     @property
     def _closed(self) -> list[list[BranchPoint]]:
-        return [walk.arm.points for walk in self._walks if walk.arm.ended == "closed"]
+        return [walk.half.points for walk in self._walks if walk.half.ended == "closed"]
 
     def _drop_double(self) -> None:
-        """Keep the arm that has closed with the fewest orbits, the first of two, when no other can do so any more."""
-        closed = [arm for arm in self.branch.arms if arm.ended == "closed"]
+        """Keep the half-branch that has closed with the fewest orbits, the first of two, once no other can do so."""
+        closed = [half for half in self.branch.half_branches if half.ended == "closed"]
         if closed and not any(self._grows(walk) for walk in self._walks):
-            self.branch = replace(self.branch, arms=(min(closed, key=lambda arm: len(arm.points)),))
+            self.branch = replace(self.branch, half_branches=(min(closed, key=lambda half: len(half.points)),))
 
 
 def begin_branch(scene: Scene, knob: str, start: float, end: float, period: int | None = None,
                  start_state: State | None = None, both: bool = False, stop: Stop | None = None,
                  amplitude: Amplitude | None = None) -> Branch:
-    """The seed of a branch, to be followed by a `Continuation`.
+    """The seed of a branch, from which a `Continuation` goes on.
 
     The seed is the orbit of `period` drive periods at knob = `start` near `start_state`, or near the steady state from
     rest. With `both` it is the orbit at the scene's own value of the knob, and the branch goes both ways, to `start`
@@ -199,26 +210,30 @@ def begin_branch(scene: Scene, knob: str, start: float, end: float, period: int 
     stroboscopic_map = equations.stroboscopic_map(seed_at)
     x = stroboscopic_map.inner(stroboscopic_map.engine.scaled.from_si(orbit.state))
     _refuse_shorter(equations, x, seed_at)
-    return Branch(axis, orbit.period, arms_from(equations, x, seed_at, (1, -1) if both else (axis.direction,)))
+    return Branch(axis, orbit.period, half_branches_from(equations, x, seed_at, (1, -1) if both else (axis.direction,)),
+                  orbit.period_note)
 
 
-def arms_from(equations: BranchEquations, x: np.ndarray, value: float, directions: tuple[int, ...]) -> tuple[Arm, ...]:
-    """Arms with their seed only, the orbit at the knob's `value` near the scaled state x."""
+def half_branches_from(equations: BranchEquations, x: np.ndarray, value: float,
+                       directions: tuple[int, ...]) -> tuple[HalfBranch, ...]:
+    """Half-branches with their seed only, the orbit at the knob's `value` near the scaled state x."""
     fixed = np.zeros(equations.size + 1)
     fixed[-1] = 1.0
     solved = equations.solve(equations.point(x, value), fixed)
-    return tuple(Arm(direction, [branch_point(equations, solved, equations.tangent(solved, direction * fixed), 0.0)])
-                 for direction in directions)
+    return tuple(
+        HalfBranch(direction, [branch_point(equations, solved, equations.tangent(solved, direction * fixed), 0.0)])
+        for direction in directions)
 
 
 def continue_branch(scene: Scene, knob: str, start: float, end: float, period: int | None = None,
                     start_state: State | None = None, both: bool = False, most_points: int = MOST_POINTS,
-                    on_point: Callable[[Arm], None] | None = None, stop: Stop | None = None,
+                    on_point: Callable[[HalfBranch], None] | None = None, stop: Stop | None = None,
                     amplitude: Amplitude | None = None) -> Branch:
     """Continue a periodic orbit over one knob by pseudo-arclength.
 
-    An arm ends when the knob reaches `end` or returns to `start`, when the branch closes on itself or merges with one
-    of half the period, or when it cannot be continued; `branch.arms[0].reason` says which (docs/branches.md).
+    A half-branch ends when the knob reaches `end` or returns to `start`, when the branch closes on itself or merges
+    with one of half the period, or when it cannot be continued; `branch.half_branches[0].reason` says which
+    (docs/branches.md).
 
     Parameters
     ----------
@@ -229,15 +244,16 @@ def continue_branch(scene: Scene, knob: str, start: float, end: float, period: i
     start, end : float
         Values of the knob in SI between which the branch is followed; the first orbit is at `start`.
     period : int, optional
-        Period of the orbits in drive periods; by default that of the steady state at `start`.
+        Period of the orbits in drive periods. By default that of the steady state at `start`; 1 if that is not
+        periodic, or if `start_state` is given. `Branch.period_note` then says why.
     start_state : State, optional
         A state near the first orbit; by default the steady state reached from rest.
     both : bool
         Begin at the scene's own value of the knob and follow both ways, to `start` and to `end`.
     most_points : int
-        Points of an arm at most.
+        Points of a half-branch at most.
     on_point : callable, optional
-        Called with the arm that has grown.
+        Called with the half-branch that has grown.
     stop : Stop, optional
         Ends the computation when another thread sets it.
     amplitude : Amplitude, optional

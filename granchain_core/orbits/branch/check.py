@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...steady.residuals import ACCEPTED_RESIDUAL
 from ..orbit import ROUNDING
 from .branch import Branch
-from .newton import ACCEPTED_RESIDUAL
 from .point import BranchPoint
 from .steps import LONGEST_STEP
-from .walk import Arm
+from .walk import HalfBranch
 
 #: Factor by which neighbours may be farther apart than the longest step, because the correction adds to it.
 _DISTANCE_FACTOR = 1.2
@@ -19,61 +19,63 @@ _LIOUVILLE_ERROR = 1e-5
 
 
 def check_branch(branch: Branch) -> list[str]:
-    """Sentences for each violated invariant; empty for a correct branch.
+    """A sentence for each violated invariant; no sentence for a correct branch.
 
     Residuals are small, neighbours are near, Liouville's formula holds; stability, direction and the closings of each
     contact change at reported special points only, and each of those lies in its interval, between the two orbits that
     differ by it.
     """
-    found = []
-    for arm in branch.arms:
-        for point in arm.points:
-            found.extend(_orbit_wrong(branch, point))
-        for i in range(1, len(arm.points)):
-            found.extend(_step_wrong(branch, arm, i))
-        found.extend(_special_wrong(branch, arm))
-    return found
+    faults = []
+    for half in branch.half_branches:
+        for point in half.points:
+            faults.extend(_orbit_wrong(branch, point))
+        for i in range(1, len(half.points)):
+            faults.extend(_step_wrong(branch, half, i))
+        faults.extend(_special_wrong(branch, half))
+    return faults
 
 
 def _orbit_wrong(branch: Branch, point: BranchPoint) -> list[str]:
-    where, found = branch.axis.text(point.knob), []
+    where, faults = branch.axis.text(point.knob), []
     if not point.residual <= ACCEPTED_RESIDUAL:
-        found.append(f"residual {point.residual:.1e} at {where}")
+        faults.append(f"residual {point.residual:.1e} at {where}")
     smallest, largest = np.abs(point.multipliers[-1]), max(1.0, float(np.abs(point.multipliers[0])))
     # where the smallest multiplier is rounding, its logarithm says nothing
     if (smallest >= ROUNDING * largest
             and point.liouville > _LIOUVILLE_ERROR + len(point.multipliers) * np.finfo(float).eps * largest / smallest):
-        found.append(f"Liouville is off by {point.liouville:.1e} at {where}")
-    return found
+        faults.append(f"Liouville is off by {point.liouville:.1e} at {where}")
+    return faults
 
 
-def _step_wrong(branch: Branch, arm: Arm, i: int) -> list[str]:
-    a, b, found = arm.points[i - 1], arm.points[i], []
+def _step_wrong(branch: Branch, half: HalfBranch, i: int) -> list[str]:
+    a, b, faults = half.points[i - 1], half.points[i], []
     where = f"between {branch.axis.text(a.knob)} and {branch.axis.text(b.knob)}"
     moved = np.append((b.x - a.x) / np.sqrt(len(a.x)), branch.axis.coordinate(b.knob) - branch.axis.coordinate(a.knob))
     if np.linalg.norm(moved) > _DISTANCE_FACTOR * LONGEST_STEP or not b.arclength > a.arclength:
-        found.append(f"neighbours are {np.linalg.norm(moved):.2g} apart {where}")
-    between = [s for s in arm.special if a.arclength <= s.before.arclength and s.after.arclength <= b.arclength
+        faults.append(f"neighbours are {np.linalg.norm(moved):.2g} apart {where}")
+    between = [s for s in half.special if a.arclength <= s.before.arclength and s.after.arclength <= b.arclength
                and s.before.arclength < b.arclength]
     if a.stable != b.stable and not any(s.multiplier is not None for s in between):
-        found.append(f"stability changes without a special point {where}")
+        faults.append(f"stability changes without a special point {where}")
+    if a.doubling_sign != b.doubling_sign and not any(s.kind == "period_doubling" for s in between):
+        faults.append(f"a multiplier passes -1 without a period doubling {where}")
     if a.turning != b.turning and not any(s.kind == "fold" for s in between):
-        found.append(f"the knob turns without a fold {where}")
+        faults.append(f"the knob turns without a fold {where}")
     for contact in np.flatnonzero(a.closings != b.closings):
         if not any(s.contact == contact for s in between):
-            found.append(f"contact {contact} closes more or less often without a grazing {where}")
-    return found
+            faults.append(f"contact {contact} closes more or less often without a grazing {where}")
+    return faults
 
 
-def _special_wrong(branch: Branch, arm: Arm) -> list[str]:
-    found = []
-    for s in arm.special:
+def _special_wrong(branch: Branch, half: HalfBranch) -> list[str]:
+    faults = []
+    for s in half.special:
         where, (low, high) = f"{s.kind} at {branch.axis.text(s.knob)}", s.interval
         if not low <= s.knob <= high:
-            found.append(f"{where} is outside its interval")
+            faults.append(f"{where} is outside its interval")
         if s.before.signature == s.after.signature:
-            found.append(f"{where} lies between orbits that are alike")
+            faults.append(f"{where} lies between orbits that are alike")
         inside = [low - 1e-12 * abs(low) <= p.knob <= high + 1e-12 * abs(high) for p in (s.before, s.after)]
         if s.before.turning == s.after.turning and not all(inside):
-            found.append(f"{where} has orbits outside its interval")
-    return found
+            faults.append(f"{where} has orbits outside its interval")
+    return faults

@@ -56,11 +56,11 @@ def _normal_form(special: SpecialPoint, between: Between, amplitudes: Mapping[st
 
 
 def same_sequence(kind: str, one: np.ndarray, other: np.ndarray) -> bool:
-    """Whether the derivatives that the normal form of this kind needs are continuous from one sequence to the other.
+    """Whether the derivatives in the normal form of this kind are continuous from one sequence to the other.
 
-    A sequence has contact + 1 for each closing, its negative for each opening. The events of each contact must be the
-    same, which no grazing and no event that passes phase 0 leaves; so must those of any two neighbouring contacts, but
-    for a fold, which needs no third derivative.
+    A sequence has contact + 1 for each closing and its negative for each opening. The events of each contact must be
+    the same in both; a grazing, or an event that passes phase 0, changes them. The events of any two neighbouring
+    contacts must come in the same order too, except for a fold, which needs no third derivative.
     """
     together = 1 if kind == "fold" else 2
     last = int(max(abs(one).max(initial=0), abs(other).max(initial=0)))

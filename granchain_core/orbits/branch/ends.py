@@ -1,4 +1,4 @@
-"""How a branch ends: at an end of the axis, at its own seed, or where it merges with one of half its period."""
+"""The ends of a branch: at an end of the axis, at its own seed, or where it merges with one of half its period."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _CLOSING_DISTANCE = 1e-7
 
 @dataclass(frozen=True, eq=False)
 class Ending:
-    """The last orbit of a step with P_x and P_p, and how and why the branch ends there: "" where it does not."""
+    """The last orbit of a step with P_x and P_p. `ended` and `reason` are "" unless the branch ends there."""
 
     point: BranchPoint
     near: Near
@@ -36,9 +36,9 @@ class Ends:
         self._seeds = _images(equations, seed)
 
     def of_step(self, last: Ending, beyond: Ending, z: np.ndarray, may_close: bool) -> Ending:
-        """Where a step from `last` to `beyond`, at z, ends: there, or before, if it passes the seed or the axis's end.
+        """The end of a step from `last` to `beyond`, at z; an earlier orbit if it passes the seed or the axis's end.
 
-        z tells whether the end is passed, because the knob's value does not go beyond what the knob may take.
+        z shows that the end is passed; the knob's value does not, because it is limited to the allowed range.
         """
         axis = self.equations.axis
         closing = self._closing(last, beyond) if may_close else None
@@ -55,11 +55,11 @@ class Ends:
         return Ending(point, near, "reached", f"reached {axis.text(point.knob)}")
 
     def merging(self, special: list[SpecialPoint]) -> int | None:
-        """Index of a fold that is a merging: the difference of the orbit's two halves changes sign there."""
+        """Index of the passage through +1 at which the difference of the orbit's halves changes sign: a merging."""
         if self.equations.period % 2:
             return None
         for place, one in enumerate(special):
-            if one.kind == "fold" and self._halves(one.before) @ self._halves(one.after) < 0.0:
+            if one.kind in ("fold", "plus_one") and self._halves(one.before) @ self._halves(one.after) < 0.0:
                 return place
         return None
 

@@ -13,7 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...execution.stop import Stop
-from ...integrate.scaling import scale_chain, scale_like
+from ...integrate.scaling import scale_chain, scale_like, scales_of
+from ...steady.residuals import least_displacement
 from ...steady.returns import least_period
 from ..stroboscopic_map import SAME_ORBIT_DISTANCE, TOLERANCE, Flow, StroboscopicMap
 from .axis import KnobAxis
@@ -38,7 +39,7 @@ class Solved:
 
     @property
     def near(self) -> Near:
-        """Its derivatives, for an orbit nearby."""
+        """The derivatives, for the search of an orbit nearby."""
         return Near(self.flow.derivative, self.knob_slope)
 
 
@@ -78,12 +79,17 @@ class BranchEquations:
             found.move(self.axis.scene_at(value), tolerance)
         return found
 
+    def drive_rate(self, z: np.ndarray) -> float:
+        """The drive's rate β in scaled time near z."""
+        scene = self.axis.scene_at(self.value(z))
+        return 2.0 * np.pi * scene.f / scales_of(scene).phi
+
     def quick_steps(self, z: np.ndarray) -> int:
         """Steps in a period of the quick map near z, 0 where the flow takes its place."""
         return quick_steps(scale_like(self._scaled, self.axis.scene_at(self.value(z))))
 
     def quick_end(self, x: np.ndarray, value: float, steps: int) -> np.ndarray:
-        """Where the quick map leads from x, or a rough flow where there are 0 steps."""
+        """The end of the quick map from x, or of a rough flow if there are 0 steps."""
         if steps == 0:
             return self.reused_map(value, ROUGH_TOLERANCE).end(x)
         quick: QuickMap | None = getattr(self._reused, "quick", None)
@@ -99,8 +105,9 @@ class BranchEquations:
         return change / (self.axis.coordinate(above) - self.axis.coordinate(below))
 
     def least_period(self, x: np.ndarray, value: float, back: float = SAME_ORBIT_DISTANCE) -> int:
-        """The drive periods after which the orbit through x is `back` again, relatively, at most `period`."""
-        return least_period(lambda periods: self.stroboscopic_map(value, periods).end(x), x, self.period, back)
+        """Number of drive periods, at most `period`, after which the orbit is within `back` of x, relatively."""
+        least = least_displacement(x, self.drive_rate(self.point(x, value)))
+        return least_period(lambda periods: self.stroboscopic_map(value, periods).end(x), x, self.period, back, least)
 
     def solve(self, z: np.ndarray, normal: np.ndarray, slope: np.ndarray | None = None,
               farthest: float = np.inf) -> Solved:
@@ -114,7 +121,7 @@ class BranchEquations:
         return Solved(newton.z, flow, self.knob_slope(newton.z, flow.end, TOLERANCE), tuple(newton.residuals))
 
     def solve_near(self, z: np.ndarray, normal: np.ndarray, near: Near, farthest: float = np.inf) -> Solved:
-        """Like `solve`, where P_x and P_p are known nearby, so that few further derivatives are needed."""
+        """Like `solve`, with P_x and P_p of an orbit nearby, so that few further derivatives are needed."""
         newton = Newton(self, z, normal, farthest)
         newton.solve_quick(near)
         flow = newton.solve_exact()
@@ -125,7 +132,7 @@ class BranchEquations:
         return self.tangent_of(solved.flow.derivative, solved.knob_slope, towards)
 
     def tangent_of(self, derivative: np.ndarray, slope: np.ndarray, towards: np.ndarray) -> np.ndarray:
-        """Unit tangent of the branch where P_x and P_p are these, on the side of `towards`."""
+        """Unit tangent of the branch for given P_x and P_p, on the side of `towards`."""
         return self.tangent_by(self.matrix(derivative, slope, towards), towards)
 
     def tangent_by(self, matrix: np.ndarray, towards: np.ndarray) -> np.ndarray:

@@ -19,7 +19,7 @@ from typing import Protocol
 import numpy as np
 
 from ...errors import ComputationError
-from ...steady.returns import relative_change
+from ...steady.residuals import ACCEPTED_RESIDUAL, RESIDUAL_GOAL, orbit_change
 from ..stroboscopic_map import TOLERANCE, Flow, StroboscopicMap
 
 #: [branch] Tolerance of the rough map, the flow where exactness is not needed.
@@ -29,10 +29,6 @@ _ROUGHEST_ABOVE = 1e-3
 #: [branch] Tolerance of the rough map where the residual is large. The map is then good to 1e-6 (measured: 7e-7 on the
 #: branch of sec2 over f).
 _ROUGHEST_TOLERANCE = 1e-7
-#: [branch] Relative residual at which Newton's method stops.
-RESIDUAL_GOAL = 1e-11
-#: [branch] Largest residual that is accepted where rounding does not let it fall that far.
-ACCEPTED_RESIDUAL = 1e-10
 #: [branch] Residual at which the quick map is left. Its own error is as large.
 QUICK_RESIDUAL = 1e-8
 #: [branch] Largest residual at which a derivative from nearby is used.
@@ -71,7 +67,7 @@ class Near:
 
 
 class Equations(Protocol):
-    """What Newton's method needs of the equations (equations.py)."""
+    """The equations as Newton's method uses them (equations.py)."""
 
     def state(self, z: np.ndarray) -> np.ndarray:
         """The scaled state in z."""
@@ -88,15 +84,18 @@ class Equations(Protocol):
     def reused_map(self, value: float, tolerance: float) -> StroboscopicMap:
         """The map at a knob value."""
 
+    def drive_rate(self, z: np.ndarray) -> float:
+        """The drive's rate in scaled time near z."""
+
     def quick_steps(self, z: np.ndarray) -> int:
         """Steps in a period of the quick map near z."""
 
     def quick_end(self, x: np.ndarray, value: float, steps: int) -> np.ndarray:
-        """Where the quick map leads from x."""
+        """The end of the quick map from x."""
 
 
 class Newton:
-    """The iteration from one start: the point `z` it has come to, J, and the residuals of all maps.
+    """The iteration from one start: the present point `z`, J, and the residuals of all maps so far.
 
     `z` goes at most `farthest` from the start. `steps` is the number of steps in a period of the quick map.
     """
@@ -104,7 +103,7 @@ class Newton:
     def __init__(self, equations: Equations, z: np.ndarray, normal: np.ndarray, farthest: float = np.inf) -> None:
         self.equations, self.start, self.normal, self.farthest = equations, z, normal, farthest
         self.z, self.residuals = z, list[float]()
-        self.matrix, self.steps = np.empty(0), equations.quick_steps(z)
+        self.matrix, self.steps, self._rate = np.empty(0), equations.quick_steps(z), equations.drive_rate(z)
         self._quick_end_here: np.ndarray | None = None
 
     def solve_quick(self, near: Near) -> None:
@@ -178,7 +177,7 @@ class Newton:
         return flow
 
     def _reuse_derivative(self, near: Near) -> bool:
-        """Try steps with a derivative from nearby; returns whether they lead to the orbit.
+        """Try steps with a derivative from nearby; True if they lead to the orbit.
 
         If they lead away, z is the start again.
         """
@@ -197,7 +196,7 @@ class Newton:
             return False
 
     def _steps_without_derivative(self, end: np.ndarray) -> bool:
-        """Take steps without a derivative, from a map that led to `end`; returns whether they come near enough."""
+        """Take steps without a derivative, from a map that led to `end`; True if they come near enough."""
         while True:
             before = self.residuals[-1]
             moved = self._checked_step(end)
@@ -214,7 +213,7 @@ class Newton:
         self.matrix[:-1] += np.outer(end - self.equations.state(self.z), moved) / (moved @ moved)
 
     def _checked_step(self, end: np.ndarray) -> np.ndarray:
-        """Newton's step with the present matrix, where the map leads to `end`; it is refused if it goes too far."""
+        """Newton's step with the present matrix from a map that led to `end`; a step that goes too far is refused."""
         moved = self._step(end)
         far = float(np.linalg.norm(self.z - self.start))
         if not far <= self.farthest:
@@ -229,11 +228,11 @@ class Newton:
         return moved
 
     def _exact_end(self, tolerance: float) -> np.ndarray:
-        """Where the exact map leads from z."""
+        """The end of the exact map from z."""
         return self.equations.reused_map(self.equations.value(self.z), tolerance).end(self.equations.state(self.z))
 
     def _quick_end(self) -> np.ndarray:
-        """Where the quick map leads from z; it is remembered until the next step."""
+        """The end of the quick map from z, remembered until the next step."""
         self._quick_end_here = self.equations.quick_end(self.equations.state(self.z), self.equations.value(self.z),
                                                         self.steps)
         return self._quick_end_here
@@ -241,7 +240,7 @@ class Newton:
     def _residual(self, end: np.ndarray) -> float:
         """Relative residual of z, from which a map leads to `end`."""
         x = self.equations.state(self.z)
-        return relative_change(end - x, x)
+        return orbit_change(end - x, x, self._rate)
 
     def _record(self, end: np.ndarray) -> float:
         """The same residual, added to `residuals`."""
@@ -249,7 +248,7 @@ class Newton:
         return self.residuals[-1]
 
     def _stalled(self) -> bool:
-        """Whether the last step has lowered the residual too little."""
+        """Whether the last step lowered the residual too little."""
         return self.residuals[-1] > _STALLED_DECREASE * self.residuals[-2]
 
     def flow(self, tolerance: float) -> Flow:

@@ -52,7 +52,7 @@ _STRONG_RESONANCE = 0.02
 
 
 class NotSmooth(Exception):
-    """Between the fixed point and a displaced state the map is not smooth, or not known; the argument says why."""
+    """The map is not smooth, or not known, between the fixed point and a displaced state; the argument says why."""
 
 
 @dataclass(frozen=True)
@@ -179,12 +179,12 @@ def _nearest(kind: str, multiplier: complex, matrix: np.ndarray) -> tuple[comple
 
 
 def _alike(one: _Critical, other: _Critical) -> _Critical:
-    """With q on the side of that of `other`."""
+    """The same with q on the side of the q of `other`."""
     return one if one.q @ other.q > 0.0 else _Critical(one.multiplier, -one.q, -one.p)
 
 
 def _resonant(multiplier: complex) -> bool:
-    """Whether μᵏ is 1 for a k up to 4, for which no invariant closed curve is proved."""
+    """Whether μᵏ is 1 for a k up to 4: a strong resonance, at which no closed curve is proved."""
     on_circle = multiplier / abs(multiplier)
     return any(abs(on_circle**k - 1.0) < _STRONG_RESONANCE for k in (1, 2, 3, 4))
 

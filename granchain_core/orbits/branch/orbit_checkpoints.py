@@ -1,7 +1,7 @@
 """Checkpoints of a branch (checkpoints.py): finished orbits on disk as JSON, exact to the last bit.
 
-A piece is what an arm has gained: its new orbits and special points, the numbers of the first of each, and the step
-with which it goes on or the reason why it ended.
+A piece is what a half-branch has gained: its new orbits and special points, the numbers of the first of each, and the
+step with which it goes on or the reason why it ended.
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ from .axis import STATIC_OVERLAP, KnobAxis
 from .branch import Branch
 from .normal_forms import EARLIER_REASONS, NormalForm
 from .point import BranchPoint
-from .special import SpecialPoint
-from .walk import Arm
+from .special import EVENTS, SpecialPoint
+from .walk import HalfBranch
 
 #: Entries of a point that are arrays.
 _ARRAYS = ("x", "tangent", "multipliers", "closings", "slope", "turns")
 
 
 def asked_digest(axis: KnobAxis, both: bool) -> str:
-    """Hash of everything that changes a branch but for its period, which may be left to the settled motion."""
+    """Hash of all arguments that change a branch, except its period, which may be that of the settled motion."""
     driven = {} if axis.amplitude is None else {"amplitude": axis.amplitude.to_json()}
     coordinate = {"coordinate": STATIC_OVERLAP} if axis.by_overlap else {}
     return digest_of({"scene": axis.scene.digest, "knob": axis.knob, "from": axis.start, "to": axis.end, "both": both,
@@ -34,54 +34,53 @@ def asked_digest(axis: KnobAxis, both: bool) -> str:
 
 
 class OrbitCheckpoints:
-    """The folder of one branch, which grows while the branch is followed; each arm may have a thread of its own."""
+    """The folder of one branch, which grows while the branch is continued; each half-branch may have its own thread."""
 
     def __init__(self, axis: KnobAxis, both: bool, out: str | Path) -> None:
-        self._axis, self._arms = axis, 1 + both
+        self._axis, self._directions = axis, 1 + both
         words = f"{axis.scene.name} over {axis.knob} = {axis.start:g} … {axis.end:g}{', both ways' if both else ''}"
         self.kept: Kept[dict[str, Any]] = Kept(out, "branch", asked_digest(axis, both), words, _packed)
         self._written: dict[int, tuple[int, int]] = {}
 
     def asks_for(self, branch: Branch) -> bool:
-        """Whether a branch is the one of this folder; where it has closed on itself, one arm is all there is of two."""
-        both = self._arms > 1 if branch.arms[0].ended == "closed" else len(branch.arms) > 1
-        return asked_digest(branch.axis, both) == asked_digest(self._axis, self._arms > 1)
+        """Whether a branch is the one of this folder; one that has closed on itself has one half-branch left of two."""
+        both = self._directions > 1 if branch.half_branches[0].ended == "closed" else len(branch.half_branches) > 1
+        return asked_digest(branch.axis, both) == asked_digest(self._axis, self._directions > 1)
 
-    def add(self, period: int, arm: Arm) -> None:
-        """Add what an arm has grown by since the last call."""
-        points, special = self._written.get(arm.direction, (0, 0))
-        self._written[arm.direction] = len(arm.points), len(arm.special)
-        self.kept.add({"period": period, "direction": arm.direction, "first": [points, special],
-                       "points": [_as_json(point) for point in arm.points[points:]],
-                       "special": [special_as_json(one) for one in arm.special[special:]],
-                       "step": arm.step.hex(), "ended": arm.ended, "reason": arm.reason})
+    def add(self, period: int, half: HalfBranch) -> None:
+        """Add the orbits and special points by which a half-branch has grown since the last call."""
+        points, special = self._written.get(half.direction, (0, 0))
+        self._written[half.direction] = len(half.points), len(half.special)
+        self.kept.add({"period": period, "direction": half.direction, "first": [points, special],
+                       "points": [_as_json(point) for point in half.points[points:]],
+                       "special": [special_as_json(one) for one in half.special[special:]],
+                       "step": half.step.hex(), "ended": half.ended, "reason": half.reason})
 
     def begin(self, branch: Branch) -> None:
-        """Add what there is of a branch before it is followed."""
-        for arm in branch.arms:
-            if self._written.get(arm.direction) != (len(arm.points), len(arm.special)):
-                self.add(branch.period, arm)
+        """Add a branch as it is before it is continued."""
+        for half in branch.half_branches:
+            if self._written.get(half.direction) != (len(half.points), len(half.special)):
+                self.add(branch.period, half)
 
     def branch(self) -> Branch | None:
-        """The branch as far as it is in the blocks, each arm up to the first orbit that is missing.
-
-        None where not even the seed is there.
+        """The branch in the blocks, each half-branch up to the first orbit that is missing; None without a seed.
         """
-        arms: dict[int, Arm] = {}
+        halves: dict[int, HalfBranch] = {}
         period = 0
         for content in self.kept.blocks():
             for record in json.loads(content):
-                arm = arms.setdefault(record["direction"], Arm(record["direction"], []))
-                if record["first"] == [len(arm.points), len(arm.special)]:
-                    arm.points += [_point(one) for one in record["points"]]
-                    arm.special += [special_from_json(one) for one in record["special"]]
-                    arm.step, arm.ended, arm.reason = float.fromhex(record["step"]), record["ended"], record["reason"]
+                half = halves.setdefault(record["direction"], HalfBranch(record["direction"], []))
+                if record["first"] == [len(half.points), len(half.special)]:
+                    half.points += [_point(one) for one in record["points"]]
+                    half.special += [special_from_json(one) for one in record["special"]]
+                    half.step = float.fromhex(record["step"])
+                    half.ended, half.reason = record["ended"], record["reason"]
                     period = record["period"]
-        arms = {direction: arm for direction, arm in arms.items() if arm.points}
-        if len(arms) < self._arms:
+        halves = {direction: half for direction, half in halves.items() if half.points}
+        if len(halves) < self._directions:
             return None
-        self._written = {direction: (len(arm.points), len(arm.special)) for direction, arm in arms.items()}
-        return Branch(self._axis, period, tuple(arms[direction] for direction in sorted(arms, reverse=True)))
+        self._written = {direction: (len(half.points), len(half.special)) for direction, half in halves.items()}
+        return Branch(self._axis, period, tuple(halves[direction] for direction in sorted(halves, reverse=True)))
 
 
 def _packed(pieces: list[dict[str, Any]]) -> bytes:
@@ -115,11 +114,14 @@ def special_as_json(one: SpecialPoint) -> dict[str, Any]:
 
 
 def special_from_json(record: dict[str, Any]) -> SpecialPoint:
-    """The special point that `special_as_json` made a record of."""
+    """The special point of a record by `special_as_json`."""
     multiplier = None if record["multiplier"] is None else complex(*record["multiplier"])
     form = record.get("normal_form")  # earlier versions had none
     if form:
         form = {**form, "reason": EARLIER_REASONS.get(form["reason"], form["reason"])}
-    return SpecialPoint(**{**record, "interval": tuple(record["interval"]), "before": _point(record["before"]),
-                           "after": _point(record["after"]), "multiplier": multiplier,
+    gained = {event: gained for gained, event in EVENTS.items()}.get(record["event"])
+    known = {name: value for name, value in record.items() if name != "event"}
+    return SpecialPoint(**{**known, "gained": gained, "interval": tuple(record["interval"]),
+                           "before": _point(record["before"]), "after": _point(record["after"]),
+                           "multiplier": multiplier,
                            "normal_form": NormalForm(**form) if form else None})

@@ -66,8 +66,13 @@ class BranchPoint:
 
     @property
     def unstable(self) -> int:
-        """How many multipliers are outside the unit circle; without damping, by more than `ON_CIRCLE`."""
-        return int((np.abs(self.multipliers) >= (1.0 if self.damped else 1.0 + ON_CIRCLE)).sum())
+        """Number of multipliers outside the unit circle; without damping, outside by more than `ON_CIRCLE`."""
+        return int((np.abs(self.multipliers) >= self._circle).sum())
+
+    @property
+    def _circle(self) -> float:
+        """Least modulus of a multiplier that counts as outside the unit circle."""
+        return 1.0 if self.damped else 1.0 + ON_CIRCLE
 
     @property
     def stable(self) -> bool:
@@ -80,9 +85,15 @@ class BranchPoint:
         return 1 if self.tangent[-1] > 0.0 else -1
 
     @property
+    def doubling_sign(self) -> int:
+        """Sign of det(M + I) of the monodromy matrix M: it changes where a real multiplier passes −1."""
+        real = self.multipliers.real[self.multipliers.imag == 0.0]
+        return -1 if (real <= -self._circle).sum() % 2 else 1
+
+    @property
     def signature(self) -> tuple[int, ...]:
         """Numbers that change at special points and nowhere else."""
-        return (self.turning, self.unstable, *(int(n) for n in self.closings))
+        return (self.turning, self.unstable, self.doubling_sign, *(int(n) for n in self.closings))
 
 
 def branch_point(equations: BranchEquations, solved: Solved, tangent: np.ndarray, arclength: float) -> BranchPoint:
@@ -91,7 +102,7 @@ def branch_point(equations: BranchEquations, solved: Solved, tangent: np.ndarray
 
 
 def unrecorded(equations: BranchEquations, solved: Solved, tangent: np.ndarray, arclength: float) -> BranchPoint:
-    """The point without what a run along the orbit tells: its forces are NaN, its closings not counted."""
+    """The point without a run along its orbit: its forces are NaN and its closings are not counted."""
     multipliers = sorted_multipliers(solved.flow.derivative)
     return BranchPoint(
         knob=equations.value(solved.z), x=equations.state(solved.z), tangent=tangent, arclength=arclength,
@@ -119,7 +130,7 @@ def state_at(scene: Scene, x: np.ndarray) -> State:
 
 def rough_point(equations: BranchEquations, z: np.ndarray, tangent: np.ndarray, slope: np.ndarray,
                 multipliers: np.ndarray, residuals: list[float], arclength: float) -> BranchPoint:
-    """A point near the branch with its contacts, to find others by; it has no forces and no Liouville."""
+    """A point near the branch with its contacts, for the search only, without forces and Liouville's sum."""
     x, value = equations.state(z), equations.value(z)
     _, record = record_along(equations, x, value, _ROUGH_TOLERANCE)
     return BranchPoint(

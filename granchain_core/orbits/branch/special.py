@@ -4,7 +4,9 @@ fold             the knob turns; a real multiplier passes +1 (LP in AUTO, LPC in
 period_doubling  a real multiplier passes −1 (PD); at the end of a doubled branch, where AUTO and MatCont have a branch
                  point (BP, BPC), one of its own passes +1 (ends.py)
 neimark_sacker   a complex pair passes the unit circle (TR in AUTO, NS in MatCont)
-grazing          a contact touches or separates once more, or once less, along the orbit; not in AUTO and MatCont
+plus_one         a real multiplier passes +1 and the knob does not turn: no fold, and not classified further (a branch
+                 point, BP and BPC, would be one)
+grazing          a contact has one closed or one open interval more, or less, along the orbit; not in AUTO and MatCont
 
 Each change lies between two computed orbits (docs/branches.md says what the interval is). Test functions only choose
 the next orbit to compute, so a wrong test function cannot make an interval wrong.
@@ -12,7 +14,7 @@ the next orbit to compute, so a wrong test function cannot make an interval wron
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -24,7 +26,9 @@ from .point import CONTACT, OVERLAP, TIME, TURN_SIGN, BranchPoint
 
 #: Where stability changes, and all kinds of special points; results, files and JSON spell them so.
 BIFURCATIONS = ("fold", "period_doubling", "neimark_sacker")
-SPECIAL_KINDS = (*BIFURCATIONS, "grazing")
+SPECIAL_KINDS = (*BIFURCATIONS, "plus_one", "grazing")
+#: What a contact has once more on one side of a grazing, and how JSON and files spell it.
+EVENTS = {"closed interval": "touch", "open interval": "separation"}
 #: [branch] Width of an interval that is narrow enough, relative to the knob or to a thousandth of the range's larger
 #: end.
 RELATIVE_WIDTH = 1e-5
@@ -51,9 +55,10 @@ class SpecialPoint:
     """A special point: its kind, the interval of the knob that holds it, and the two orbits around it.
 
     `kind` is one of `SPECIAL_KINDS`, `knob` the middle of the interval.
-    `contact` and `event` ("touch" or "separation") belong to a grazing; `multiplier` is the one that passes the unit
-    circle. `normal_form` has the criticality and its coefficient; it is None for a grazing, at the end of a doubled
-    branch, and in older files.
+    `contact` and `gained` belong to a grazing: on one side of it the contact has one `gained` more per orbit, a "closed
+    interval" or an "open interval". `multiplier` is the one that passes the unit circle. `normal_form` has the
+    criticality and its coefficient; it is None for a grazing, for `plus_one`, at the end of a doubled branch, and in
+    older files.
     """
 
     kind: str
@@ -63,8 +68,18 @@ class SpecialPoint:
     after: BranchPoint
     multiplier: complex | None = None
     contact: int | None = None
-    event: str | None = None
+    gained: str | None = None
     normal_form: NormalForm | None = None
+
+    @property
+    def event(self) -> str | None:
+        """The older name of `gained`, as JSON and files spell it: "touch" for a closed interval, else "separation"."""
+        return None if self.gained is None else EVENTS[self.gained]
+
+    @property
+    def kind_words(self) -> str:
+        """The kind in words."""
+        return "multiplier +1 without a fold" if self.kind == "plus_one" else self.kind.replace("_", " ")
 
     @property
     def criticality(self) -> str | None:
@@ -102,13 +117,13 @@ def special_between(between: Between) -> list[SpecialPoint]:
         kept = False
     if not kept:
         brackets = _brackets(axis, a, b, between, careful=True)
-    found = [special for bracket in brackets for special in _classified(axis, *bracket)]
-    return _merged(found)
+    special_points = [special for bracket in brackets for special in _classified(axis, *bracket)]
+    return _merged(special_points)
 
 
 def _brackets(axis: KnobAxis, a: BranchPoint, b: BranchPoint, between: Between, depth: int = 0,
               beyond: BranchPoint | None = None, careful: bool = False) -> list[tuple[BranchPoint, BranchPoint]]:
-    """Narrow brackets of all changes between a and b; `beyond` is an orbit next to one of them outside."""
+    """Narrow brackets of all changes between a and b; `beyond` is an orbit outside, next to a or to b."""
     if a.signature == b.signature:
         return []
     if _narrow(axis, a, b) or depth >= _MOST_LEVELS:
@@ -152,12 +167,12 @@ def _distance(axis: KnobAxis, a: BranchPoint, b: BranchPoint) -> float:
 
 def _fraction(axis: KnobAxis, a: BranchPoint, b: BranchPoint, depth: int,
               beyond: BranchPoint | None) -> tuple[float, bool]:
-    """Where to compute the next orbit, as a fraction of the bracket from a to b, and whether to solve it exactly.
+    """Place of the next orbit, as a fraction of the bracket from a to b, and whether to solve it exactly.
 
     The orbit lies just beyond the estimated root of the test function, on the side of the longer part, so that the
     bracket shrinks from both ends; at times, or without a test function, it is the middle. The first root is that of a
-    straight line. With a third value the root is known so well that the orbits on both sides of it can be as near to
-    each other as the bracket is to be narrow; then they are its ends and are solved exactly.
+    straight line. With a third value the root is known so well that the orbits on both sides of it are the ends of the
+    narrow bracket; these are solved exactly.
     """
     values = _test_values(a, b)
     if depth % _LEVELS_TO_MIDDLE == _LEVELS_TO_MIDDLE - 1 or values is None or not values[0] * values[1] < 0.0:
@@ -193,6 +208,8 @@ def _test_values(a: BranchPoint, b: BranchPoint) -> tuple[float, float] | None:
     if a.unstable != b.unstable:
         k = max(a.unstable, b.unstable) - 1
         return float(np.log(abs(a.multipliers[k]))), float(np.log(abs(b.multipliers[k])))
+    if a.doubling_sign != b.doubling_sign:
+        return float(np.prod(1.0 + a.multipliers).real), float(np.prod(1.0 + b.multipliers).real)
     contact = int(np.flatnonzero(a.closings != b.closings)[0])
     return _turning_values(a, b, contact)
 
@@ -228,51 +245,60 @@ def _turns(point: BranchPoint, contact: int) -> np.ndarray:
 
 
 def _closings(point: BranchPoint, contact: int) -> int:
-    """How often a contact closes along the orbit."""
+    """Number of closings of a contact along the orbit."""
     return max(0, int(point.closings[contact]))
 
 
 def _classified(axis: KnobAxis, a: BranchPoint, b: BranchPoint) -> list[SpecialPoint]:
     """The special points inside a narrow bracket, usually one."""
     low, high = _interval(axis, a, b)
-    found = []
+    special_points = []
     left = _passing(a, b)
     if a.turning != b.turning:
         mine = next((mu for mu in left if mu.imag == 0.0 and mu.real > 0.0), None)
         left = [mu for mu in left if mu is not mine]
-        found.append(SpecialPoint("fold", 0.5 * (low + high), (low, high), a, b, multiplier=mine))
+        special_points.append(SpecialPoint("fold", 0.5 * (low + high), (low, high), a, b, multiplier=mine))
     interval = min(low, a.knob, b.knob), max(high, a.knob, b.knob)
     knob = 0.5 * (interval[0] + interval[1])
     for mu in left:
         kind = "neimark_sacker" if mu.imag != 0.0 else "fold" if mu.real > 0.0 else "period_doubling"
-        found.append(SpecialPoint(kind, knob, interval, a, b, multiplier=mu))
+        special_points.append(SpecialPoint(kind, knob, interval, a, b, multiplier=mu))
     for contact in np.flatnonzero(a.closings != b.closings):
-        found.append(SpecialPoint("grazing", knob, interval, a, b, contact=int(contact),
-                                  event=_event(a, b, int(contact))))
-    return found
+        special_points.append(SpecialPoint("grazing", knob, interval, a, b, contact=int(contact),
+                                  gained=_gained(a, b, int(contact))))
+    return special_points
 
 
 def _passing(a: BranchPoint, b: BranchPoint) -> list[complex]:
-    """Multipliers that pass the unit circle between a and b; of a complex pair the one above the real axis."""
+    """Multipliers that pass the unit circle between a and b; of a complex pair the one above the real axis.
+
+    Of two that pass in opposite directions, one of them through −1, those at a that are nearest to −1 and to +1.
+    """
+    if a.unstable == b.unstable and a.doubling_sign != b.doubling_sign:
+        real = a.multipliers[a.multipliers.imag == 0.0]
+        return [complex(real[np.argmin(np.abs(real - through))]) for through in (-1.0, 1.0)]
     more, fewer = (a, b) if a.unstable > b.unstable else (b, a)
     passing = more.multipliers[fewer.unstable : more.unstable]
     return [complex(mu) for mu in passing if mu.imag >= 0.0]
 
 
-def _event(a: BranchPoint, b: BranchPoint, contact: int) -> str:
-    """"touch" where a contact's closed piece appears or vanishes, "separation" where an open piece does."""
+def _gained(a: BranchPoint, b: BranchPoint, contact: int) -> str:
+    """The interval of a contact that one of two orbits has and the other has not, a key of `EVENTS`."""
     more, fewer = (a, b) if _closings(a, contact) > _closings(b, contact) else (b, a)
     if _closings(fewer, contact) == 0:
-        return "separation" if fewer.closings[contact] < 0 else "touch"
+        return "open interval" if fewer.closings[contact] < 0 else "closed interval"
     nearest = _slightest_crossing(more, contact)
     assert nearest is not None
-    return "touch" if nearest[TURN_SIGN] > 0.0 else "separation"
+    return "closed interval" if nearest[TURN_SIGN] > 0.0 else "open interval"
 
 
-def _merged(found: list[SpecialPoint]) -> list[SpecialPoint]:
-    """A fold's turning and its multiplier's passage through 1 are one, also where a bracket ended between them."""
+def _merged(special_points: list[SpecialPoint]) -> list[SpecialPoint]:
+    """A fold's turning and its multiplier's passage through 1 are one, also where a bracket ended between them.
+
+    A multiplier that passes 1 without a turn is `plus_one`.
+    """
     merged: list[SpecialPoint] = []
-    for one in found:
+    for one in special_points:
         last = merged[-1] if merged else None
         if last is not None and one.kind == last.kind == "fold" and one.before is last.after \
                 and (one.multiplier is None) != (last.multiplier is None):
@@ -281,4 +307,5 @@ def _merged(found: list[SpecialPoint]) -> list[SpecialPoint]:
                                       multiplier=one.multiplier or last.multiplier)
         else:
             merged.append(one)
-    return merged
+    return [replace(one, kind="plus_one") if one.kind == "fold" and one.before.turning == one.after.turning else one
+            for one in merged]

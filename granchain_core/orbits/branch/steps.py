@@ -35,7 +35,7 @@ LARGEST_CORRECTION = 0.3
 
 def predicted(step: float, z: np.ndarray, tangent: np.ndarray,
               before: tuple[np.ndarray, np.ndarray] | None) -> np.ndarray:
-    """The point a step on from z along its tangent, bent as the cubic from the point and tangent before is at z."""
+    """The predicted point one step from z: along the tangent, with the curvature at z of the cubic through `before`."""
     guess = z + step * tangent
     if before is not None:
         way = float(np.linalg.norm(z - before[0]))
@@ -47,7 +47,7 @@ def predicted(step: float, z: np.ndarray, tangent: np.ndarray,
 
 
 def next_step(step: float, off: float, cosine: float, failed: bool) -> float:
-    """The step after one that ended `off` from where it was predicted and turned by an angle of this cosine.
+    """The length of the next step, after one that ended `off` its prediction and turned by an angle of this cosine.
 
     The turn grows with the step, the distance off relative to the step with its square. `failed` says that longer steps
     from there had failed.

@@ -14,7 +14,7 @@ from .branch import Branch
 from .equations import BranchEquations, Solved
 from .point import branch_point
 from .special import SpecialPoint
-from .walk import Arm
+from .walk import HalfBranch
 
 #: Distances ε along the eigenvector that are tried, in arclength.
 _DISTANCES = (0.02, 0.005, 0.05, 0.001)
@@ -25,7 +25,7 @@ _LEAST_DOUBLING = 0.5
 
 
 def switch_to_doubled(branch: Branch, special: SpecialPoint, stop: Stop | None = None) -> Branch:
-    """A branch of twice the period, begun near the period doubling `special` of `branch` and leading away from it.
+    """The branch of twice the period that leads away from the period doubling `special` of `branch`.
 
     Raises `BadInput` for another kind of point and `ComputationError` where no doubled orbit is found.
     """
@@ -49,7 +49,7 @@ def switch_to_doubled(branch: Branch, special: SpecialPoint, stop: Stop | None =
         x = twice.state(solved.z)
         halves = once.stroboscopic_map(twice.value(solved.z)).end(x) - x
         if np.linalg.norm(halves) / once.weight > _LEAST_DOUBLING * 2.0 * distance:
-            return Branch(branch.axis, 2 * branch.period, (_arm(twice, solved, direction),))
+            return Branch(branch.axis, 2 * branch.period, (_half(twice, solved, direction),))
         tried.append("the orbit found repeats after half of its period.")
     raise ComputationError(f"No orbit of {2 * branch.period} drive periods was found beside the period doubling at "
                            f"{branch.axis.text(special.knob)}: {tried[-1]}", "no-convergence")
@@ -62,7 +62,7 @@ def doubling_direction(equations: BranchEquations, x: np.ndarray, value: float) 
     return vector / np.linalg.norm(vector)
 
 
-def _arm(equations: BranchEquations, solved: Solved, away: np.ndarray) -> Arm:
+def _half(equations: BranchEquations, solved: Solved, away: np.ndarray) -> HalfBranch:
     tangent = equations.tangent(solved, away)
     seed = branch_point(equations, solved, tangent, 0.0)
-    return Arm(seed.turning, [seed])
+    return HalfBranch(seed.turning, [seed])

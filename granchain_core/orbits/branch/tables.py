@@ -12,8 +12,8 @@ from ...tables.words import multiplier_columns
 from .axis import KnobAxis
 from .normal_forms import NormalForm
 from .point import BranchPoint
-from .special import BIFURCATIONS, SpecialPoint
-from .walk import Arm
+from .special import SPECIAL_KINDS, SpecialPoint
+from .walk import HalfBranch
 
 #: What is told of a special point without a normal form.
 _NO_NORMAL_FORM = NormalForm("")
@@ -21,17 +21,18 @@ _NO_NORMAL_FORM = NormalForm("")
 NO_CONTACT = -1
 
 
-def branch_tables(over: KnobAxis, arms: Sequence[Arm]) -> tuple[Table, ...]:
-    """All tables of a branch; orbits arm by arm, each from the seed."""
-    points = [(place, point) for place, arm in enumerate(arms) for point in arm.points]
-    special = [(place, one) for place, arm in enumerate(arms) for one in arm.special]
+def branch_tables(over: KnobAxis, half_branches: Sequence[HalfBranch]) -> tuple[Table, ...]:
+    """All tables of a branch. Orbits come half-branch by half-branch, each from the seed."""
+    points = [(place, point) for place, half in enumerate(half_branches) for point in half.points]
+    special = [(place, one) for place, half in enumerate(half_branches) for one in half.special]
     return (_orbits("branch", over, [point for _, point in points], [place for place, _ in points]),
             _special(over, [one for _, one in special], [place for place, _ in special]),
             _orbits("special_before", over, [one.before for _, one in special]),
             _orbits("special_after", over, [one.after for _, one in special]))
 
 
-def _orbits(name: str, over: KnobAxis, points: Sequence[BranchPoint], arms: Sequence[int] | None = None) -> Table:
+def _orbits(name: str, over: KnobAxis, points: Sequence[BranchPoint],
+            half_branches: Sequence[int] | None = None) -> Table:
     """A table with one row for each orbit. Components are the beads' displacements, then their w, scaled."""
     n, along, knob = over.scene.N, ("point",), QUANTITIES[over.knob]
 
@@ -48,8 +49,8 @@ def _orbits(name: str, over: KnobAxis, points: Sequence[BranchPoint], arms: Sequ
         row[: len(point.residuals)] = point.residuals
     forces = np.array([[getattr(point, one) for one in MAXIMA] for point in points]).reshape(-1, 3)
     of_state, of_tangent = ("point", "component"), ("point", "coordinate")
-    which = {} if arms is None else {
-        "arm": Column(np.array(arms, dtype=np.int64), along, "1", "which way from the seed")}
+    which = {} if half_branches is None else {
+        "arm": Column(np.array(half_branches, dtype=np.int64), along, "1", "which way from the seed")}
     return Table(name, {
         **axis("point", np.arange(len(points)), "1", "orbit along the branch"),
         **axis("component", np.arange(2 * n), "1", "displacements, then w"), **contact_axis(n),
@@ -70,7 +71,7 @@ def _orbits(name: str, over: KnobAxis, points: Sequence[BranchPoint], arms: Sequ
                            "closings of each contact; 0 always open, -1 always closed"), **which})
 
 
-def _special(over: KnobAxis, special: Sequence[SpecialPoint], arms: Sequence[int]) -> Table:
+def _special(over: KnobAxis, special: Sequence[SpecialPoint], half_branches: Sequence[int]) -> Table:
     along, unit = ("special",), QUANTITIES[over.knob].unit
     multipliers = np.array([np.nan if s.multiplier is None else s.multiplier for s in special], dtype=complex)
     forms = [_NO_NORMAL_FORM if s.normal_form is None else s.normal_form for s in special]
@@ -84,7 +85,7 @@ def _special(over: KnobAxis, special: Sequence[SpecialPoint], arms: Sequence[int
 
     return Table("special", axis("special", np.arange(len(special)), "1", "special point along the branch"), {
         "kind": Column(words([s.kind for s in special]), along, "",
-                       f"{', '.join(BIFURCATIONS)} or grazing"),
+                       f"{', '.join(SPECIAL_KINDS[:-1])} or {SPECIAL_KINDS[-1]}"),
         "knob": Column(number([s.knob for s in special]), along, unit,
                        "knob at the special point, the middle of its interval"),
         "knob_low": Column(number([s.interval[0] for s in special]), along, unit,
@@ -94,7 +95,9 @@ def _special(over: KnobAxis, special: Sequence[SpecialPoint], arms: Sequence[int
                                   "multiplier that passes the unit circle, real part"),
         "multiplier_imag": Column(multipliers.imag, along, "1", "its imaginary part"),
         "contact": Column(contacts, along, "1", "contact that grazes, -1 if none"),
-        "event": Column(words([s.event or "" for s in special]), along, "", "touch or separation"),
+        "event": Column(words([s.event or "" for s in special]), along, "",
+                        "what the contact has once more on one side: touch (a closed interval) or separation (an open "
+                        "one)"),
         "criticality": Column(words([form.criticality for form in forms]), along, "",
                               "supercritical, subcritical, generic (a fold) or not decided"),
         "coefficient": Column(number([form.coefficient for form in forms]), along, "1",
@@ -102,4 +105,4 @@ def _special(over: KnobAxis, special: Sequence[SpecialPoint], arms: Sequence[int
         "coefficient_error": Column(number([form.error for form in forms]), along, "1",
                                     "error of the coefficient"),
         "undecided": Column(words([form.reason for form in forms]), along, "", "why it is not decided"),
-        "arm": Column(np.array(arms, dtype=np.int64), along, "1", "which way from the seed")})
+        "arm": Column(np.array(half_branches, dtype=np.int64), along, "1", "which way from the seed")})

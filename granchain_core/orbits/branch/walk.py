@@ -39,8 +39,8 @@ _THREADS = 2
 
 
 @dataclass
-class Arm:
-    """One direction of a branch from its seed: points (the seed first), special points, and how it ended.
+class HalfBranch:
+    """One direction of a branch from its seed: points (the seed first), special points, and its end.
 
     `ended` is "" while there is more to come, else "reached", "returned", "closed", "merged" or "lost"; `reason` is
     a sentence. `step` is the next step in arclength: with it and the last point the walk goes on as if it had
@@ -57,7 +57,7 @@ class Arm:
 
 @dataclass(frozen=True)
 class _Ahead:
-    """An orbit whose special points are still looked for, and the steps to and from it.
+    """An orbit ahead of the half-branch, whose special points are still sought, and the steps to and from it.
 
     `found` will be the orbit with its forces and contacts, and the special points before it.
     """
@@ -69,21 +69,21 @@ class _Ahead:
 
 
 class Walk(Iterator[BranchPoint]):
-    """The points of one arm, one after the other; each `next` adds one to the arm, with the special points before it.
+    """The points of one half-branch, one after the other; each `next` adds one, with the special points before it.
 
     A walk that is not iterated is paused; one whose stop flag is set raises `Cancelled` and can go on later.
     """
 
-    def __init__(self, equations: BranchEquations, arm: Arm) -> None:
-        self.equations, self.arm = equations, arm
-        self._ends = Ends(equations, arm.points[0])
+    def __init__(self, equations: BranchEquations, half: HalfBranch) -> None:
+        self.equations, self.half = equations, half
+        self._ends = Ends(equations, half.points[0])
         self._pool = ThreadPoolExecutor(min(_THREADS, usable_cores()))
         self._known: tuple[BranchPoint, Near] | None = None
-        self._go_back(arm.step)
+        self._go_back(half.step)
 
     def __next__(self) -> BranchPoint:
-        arm = self.arm
-        while not arm.ended:
+        half = self.half
+        while not half.ended:
             try:
                 while len(self._ahead) < _ORBITS_AHEAD and self._goes_on:
                     self._advance()
@@ -97,16 +97,16 @@ class Walk(Iterator[BranchPoint]):
                     self._go_back(0.5 * one.tried, problem)
                     continue
             except Cancelled:
-                self._go_back(arm.step)
+                self._go_back(half.step)
                 raise
             self._add(one, point, special)
-            return arm.points[-1]
+            return half.points[-1]
         raise StopIteration
 
-    # --- ahead of the arm ----------------------------------------------------------------------------------
+    # --- ahead of the half-branch --------------------------------------------------------------------------
 
     def _go_back(self, step: float, failure: Exception | None = None) -> None:
-        """Forget what is ahead, and go on from the arm's last orbit with this step."""
+        """Drop all orbits ahead, and go on from the half-branch's last orbit with this step."""
         self._ahead: deque[_Ahead] = deque()
         self._step, self._failure = step, failure
 
@@ -117,7 +117,7 @@ class Walk(Iterator[BranchPoint]):
     @property
     def _last_two(self) -> list[BranchPoint]:
         """The last two orbits, or the seed alone."""
-        return [*self.arm.points[-2:], *(one.ending.point for one in self._ahead)][-2:]
+        return [*self.half.points[-2:], *(one.ending.point for one in self._ahead)][-2:]
 
     def _advance(self) -> None:
         """Compute the next orbit ahead; halve the step where it is too long."""
@@ -128,13 +128,13 @@ class Walk(Iterator[BranchPoint]):
             self._step, self._failure = 0.5 * tried, problem
             return
         before = self._ahead[-1].found if self._ahead else last.point
-        found = self._pool.submit(self._completed, before, ending.point, contact_events, (last.near, ending.near))
-        self._ahead.append(_Ahead(ending, tried, self._step, found))
+        completed = self._pool.submit(self._completed, before, ending.point, contact_events, (last.near, ending.near))
+        self._ahead.append(_Ahead(ending, tried, self._step, completed))
 
     def _completed(self, before: BranchPoint | Future[tuple[BranchPoint, list[SpecialPoint]]], point: BranchPoint,
                    contact_events: np.ndarray | None,
                    near: tuple[Near, Near]) -> tuple[BranchPoint, list[SpecialPoint]]:
-        """The orbit with its forces and contacts, and the special points between the one before and itself."""
+        """The orbit with its forces and contacts, and the special points between the orbit before and this one."""
         last = before.result()[0] if isinstance(before, Future) else before
         if contact_events is not None:
             point = recorded(self.equations, point, contact_events)
@@ -146,28 +146,28 @@ class Walk(Iterator[BranchPoint]):
         """P_x and P_p at the last orbit. Where P_x is not known it is computed again, to the same bits."""
         if self._ahead:
             return self._ahead[-1].ending.near
-        last = self.arm.points[-1]
+        last = self.half.points[-1]
         if self._known is None or self._known[0] is not last:
             self._known = last, Near(self.equations.stroboscopic_map(last.knob)(last.x).derivative, last.slope)
         return self._known[1]
 
     def _next_orbit(self, last: Ending) -> tuple[Ending, np.ndarray | None]:
-        """The next orbit, and whether the branch ends there; `ComputationError` where the step is too long.
+        """The next orbit and, if the branch ends there, the reason. Raises `ComputationError` if the step is too long.
 
-        With it come its contact events, where its forces and contacts are still to be found. Sets the next step.
+        Its contact events are None if its forces and contacts are known already. Sets the next step.
         """
-        equations, step, here = self.equations, self._step, last.point
-        guess = predicted(step, self._z(here), here.tangent, self._before_last)
-        solved = equations.solve_near(guess, here.tangent, last.near, LARGEST_CORRECTION * step)
+        equations, step, before = self.equations, self._step, last.point
+        guess = predicted(step, self._z(before), before.tangent, self._before_last)
+        solved = equations.solve_near(guess, before.tangent, last.near, LARGEST_CORRECTION * step)
         self._refuse_shorter(solved)
-        tangent = equations.tangent(solved, here.tangent)
-        cosine = float(tangent @ here.tangent)
+        tangent = equations.tangent(solved, before.tangent)
+        cosine = float(tangent @ before.tangent)
         if cosine < LEAST_COSINE:
             turn = np.degrees(np.arccos(np.clip(cosine, -1, 1)))
             raise ComputationError(f"the branch turns by {turn:.0f}° in one step", "no-convergence")
-        chord = float(np.linalg.norm(solved.z - self._z(here)))
-        beyond = Ending(unrecorded(equations, solved, tangent, here.arclength + chord), solved.near)
-        may_close = len(self.arm.points) + len(self._ahead) >= _POINTS_BEFORE_CLOSING
+        chord = float(np.linalg.norm(solved.z - self._z(before)))
+        beyond = Ending(unrecorded(equations, solved, tangent, before.arclength + chord), solved.near)
+        may_close = len(self.half.points) + len(self._ahead) >= _POINTS_BEFORE_CLOSING
         ending = self._ends.of_step(last, beyond, solved.z, may_close)
         off = float(np.linalg.norm(solved.z - guess))
         self._step, self._failure = next_step(step, off, cosine, self._failure is not None), None
@@ -179,11 +179,11 @@ class Walk(Iterator[BranchPoint]):
         before = self._last_two[:-1]
         return (self._z(before[0]), before[0].tangent) if before else None
 
-    # --- the arm -------------------------------------------------------------------------------------------
+    # --- the half-branch -----------------------------------------------------------------------------------
 
     def _add(self, one: _Ahead, point: BranchPoint, special: list[SpecialPoint]) -> None:
-        """Add an orbit and the special points before it to the arm, which ends at a merging."""
-        arm, ended, reason = self.arm, one.ending.ended, one.ending.reason
+        """Add an orbit and the special points before it to the half-branch, which ends at a merging."""
+        half, ended, reason = self.half, one.ending.ended, one.ending.reason
         merging = self._ends.merging(special)
         if merging is not None:
             special, point = special[: merging + 1], special[merging].before
@@ -192,24 +192,24 @@ class Walk(Iterator[BranchPoint]):
             reason = (f"merged with the branch of period {self.equations.period // 2}, whose period doubles at "
                       f"{self.equations.axis.text(special[merging].knob)}: beyond it are the same orbits, half a "
                       "period later")
-        arm.special.extend(special)
-        if point is not arm.points[-1]:
-            arm.points.append(point)
+        half.special.extend(special)
+        if point is not half.points[-1]:
+            half.points.append(point)
             self._known = point, one.ending.near
-        arm.step, arm.ended, arm.reason = one.step, ended, reason
+        half.step, half.ended, half.reason = one.step, ended, reason
 
     def _lose(self) -> None:
-        last, arm = self.arm.points[-1], self.arm
+        last, half = self.half.points[-1], self.half
         singular = isinstance(self._failure, np.linalg.LinAlgError)
         failure = ("the equations became singular" if singular else
                    "it bends ever more sharply" if self._failure is None else str(self._failure))
-        arm.step, arm.ended = self._step, "lost"
-        arm.reason = (f"the branch could not be followed beyond {self.equations.axis.text(last.knob)} although "
+        half.step, half.ended = self._step, "lost"
+        half.reason = (f"the branch could not be followed beyond {self.equations.axis.text(last.knob)} although "
                       f"steps were shortened to {SHORTEST_STEP:g}: {failure.rstrip('.')}; residuals at the last orbit: "
                       f"{formatted(last.residuals)}")
 
     def _refuse_shorter(self, solved: Solved) -> None:
-        """Raise `ComputationError` where a step fell onto another branch, whose orbits have a part of the period."""
+        """Raise `ComputationError` for an orbit of another branch, whose period is a part of this one's."""
         n = self.equations.period
         x, value = self.equations.state(solved.z), self.equations.value(solved.z)
         least = self.equations.least_period(x, value, _SHORTER_PERIOD_DISTANCE)

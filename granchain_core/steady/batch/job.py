@@ -238,7 +238,8 @@ def _periodic(check: np.ndarray, slowest_decay: float, periods_run: int) -> Regi
     """The periodic regime of a coarse run, from its last check; `followed` where extrapolations led to it."""
     period, decay, distance = check
     return Regime(name="periodic", period=int(period), decay=float(decay) if decay >= 0.0 else None,
-                  distance=float(distance), periods_run=periods_run, followed=bool(slowest_decay > 0.0))
+                  distance=float(distance), periods_run=periods_run, followed=bool(slowest_decay > 0.0),
+                  followed_by="extrapolation" if slowest_decay > 0.0 else None)
 
 
 def _to_measure(job: BatchJob, batch: Batch, member: int, periods_run: int, record: np.ndarray) -> BatchJob:

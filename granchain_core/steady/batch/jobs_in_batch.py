@@ -31,7 +31,7 @@ from ...scene import Scene
 from ...scene.refusals import refuse_undriven
 from ...scene.state import rest
 from ..exponent_measurements import MEASURED_PERIODS
-from ..lyapunov import growth_of, put_with_shadow
+from ..lyapunov import growth_of, put_with_neighbour
 from ..regime_criteria import converging, find_period
 from ..settling.nearby_orbit import is_almost_periodic
 from ..settling.regime_decisions import EXAMINED_AFTER, MOST_MEASUREMENTS, MOST_PERIODS, REMEMBERED
@@ -136,7 +136,7 @@ class _JobsInBatch:
         """
         if job.stage is Stage.EXPONENT:
             shadow = self.shadows[member] = self.free.pop()
-            put_with_shadow(self.batch, member, shadow, job.scaled, job.y, MEASURED_PERIODS, job.measurements.offset)
+            put_with_neighbour(self.batch, member, shadow, job.scaled, job.y, MEASURED_PERIODS, job.measurements.offset)
             return
         if job.stage is Stage.COARSE:
             return_at = min(_DRAFT_PERIODS if self.draft else EXAMINED_AFTER, job.affordable_periods - job.periods_run)

@@ -78,7 +78,7 @@ class CurvePoint:
 
     @property
     def error_estimate(self) -> float | None:
-        """`force_errors.output` by the name that it has in the command line's JSON.
+        """`force_errors.output`, by its name in the command line's JSON.
 
         Of a motion this name is the error of the displacements (docs/result-files.md, "Which name is which error").
         """
@@ -156,7 +156,7 @@ class Curve(Labelled):
                 "wall_s": self.wall_s, **amplitude_attribute(self.amplitude)}
 
     def summary(self) -> list[str]:
-        """The highest point, and what kinds of motion there are."""
+        """The highest point, and the number of points by regime."""
         known = [p for p in self.points if math.isfinite(p.max_output_force)]
         if not known:
             return [f"{len(self.points)} points, none with a force"]

@@ -19,7 +19,7 @@ _LOWEST = 16
 
 
 def coarse_first(count: int) -> list[int]:
-    """Indices 0..count−1 so that the curve's shape is there early: ends, middle, quarters, …"""
+    """Indices 0..count−1 in an order that shows the curve's shape early: ends, middle, quarters, …"""
     step = 1 << max(0, (count - 1).bit_length())
     order = [0, count - 1] if count > 1 else list(range(count))
     seen = set(order)

@@ -20,7 +20,7 @@ _NUMBERS = ("frequency", "max_output_force", "max_output_force_elastic", "max_in
 
 
 def point_checkpoints(asked: CurveRequest, out: str | Path) -> Kept[CurvePoint]:
-    """The folder for the points of the curve that is to be written to `out`."""
+    """The folder for the points of the curve that will be in `out`."""
     frequencies = asked.frequencies
     words = f"{asked.scene.name} from {frequencies[0]:g} to {frequencies[-1]:g} Hz ({len(frequencies)}, {asked.start})"
     return Kept(out, "curve", asked.digest, words, _packed)

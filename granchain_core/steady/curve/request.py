@@ -1,4 +1,4 @@
-"""What is asked of a curve: one object for the computation, for its checkpoints and for a finished file."""
+"""A request for a curve: one object for the computation, for its checkpoints and for a finished file."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .resonance_curve import resonance_curve
 
 @dataclass(frozen=True)
 class CurveRequest:
-    """Everything that changes the points of a curve, as arguments of `resonance_curve`.
+    """The arguments of `resonance_curve` that change the points of a curve.
 
     A new field enters the digest and the computation by itself; its default must be what curves were before it.
     """
@@ -25,7 +25,7 @@ class CurveRequest:
 
     @classmethod
     def answered_by(cls, curve: Curve) -> CurveRequest:
-        """The request whose answer a curve is."""
+        """The request that a curve answers."""
         asked = {field.name: getattr(curve, field.name) for field in fields(cls) if field.name != "frequencies"}
         return cls(frequencies=tuple(curve.column("frequency").tolist()), **asked)
 

@@ -109,7 +109,7 @@ def place_of(frequency: Sequence[float] | np.ndarray, force: Sequence[float] | n
 
 @lru_cache(maxsize=64)
 def _shape(force: tuple[float, ...]) -> tuple[list[int], list[int], list[int]]:
-    """Extrema, peaks and valleys of a curve, on which a page asks for a place at every move of a knob."""
+    """Extrema, peaks and valleys of a curve, cached: a page asks for a place at every move of a knob."""
     values = np.array(force)
     return extrema(values), *peaks_and_valleys(values)
 
@@ -135,7 +135,7 @@ def peaks_and_valleys(force: np.ndarray) -> tuple[list[int], list[int]]:
 
 
 def push_words(pushed: tuple[int, int]) -> str:
-    """What a ratio such as 1:3 counts: "one strong push of the driver in 3 drive periods"."""
+    """A ratio such as 1:3 in words: "one strong push of the driver in 3 drive periods"."""
     count, periods = pushed
     number = "one strong push" if count == 1 else f"{count} strong pushes"
     return f"{number} of the driver in {'every drive period' if periods == 1 else f'{periods} drive periods'}"
@@ -144,8 +144,8 @@ def push_words(pushed: tuple[int, int]) -> str:
 def place_words(pushed: tuple[int, int] | None, place: Place | None) -> str:
     """A periodic motion in the paper's words: strong pushes per periods, and its place on the curve.
 
-    `place` is None while the curve is being computed. Peak and valley have the paper's names where the pushes are those
-    it gives them: one strong push in n periods on a peak, one in every period in a valley.
+    `place` is None while the curve is being computed. A peak with one strong push in n periods, and a valley with one
+    in every period, have the paper's names.
     """
     if pushed is None:
         return ""

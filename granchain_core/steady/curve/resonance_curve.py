@@ -113,11 +113,11 @@ def _carried(scene: Scene, left: list[Knobs], before: CurvePoint | None, stop: S
         if stop:
             return
         try:
-            found = settle_or_failure(scene.evolve(**knobs), state, stop)
+            steady_state = settle_or_failure(scene.evolve(**knobs), state, stop)
         except Cancelled:
             return
-        state = found.state if not found.failure else None
-        yield CurvePoint.of(found)
+        state = steady_state.state if not steady_state.failure else None
+        yield CurvePoint.of(steady_state)
 
 
 def _from_rest(scene: Scene, left: list[Knobs], stop: Stop | None, workers: int | None) -> Iterator[CurvePoint]:
@@ -135,8 +135,8 @@ def _from_rest(scene: Scene, left: list[Knobs], stop: Stop | None, workers: int 
 def _points(scene: Scene, left: Iterator[Knobs], ended: Stop) -> Iterator[CurvePoint]:
     """Points from rest in one thread, which makes the scenes: made beforehand, all other threads would wait for them.
     """
-    for found in settle_starts((Start(scene.evolve(**knobs)) for knobs in left), ended):
-        yield CurvePoint.of(found)
+    for steady_state in settle_starts((Start(scene.evolve(**knobs)) for knobs in left), ended):
+        yield CurvePoint.of(steady_state)
 
 
 def _scheduled(scheduler: Any, scene: Scene, left: list[Knobs], stop: Stop | None) -> Iterator[CurvePoint]:

@@ -32,7 +32,7 @@ _BETWEEN_CHECKS = 8
 
 
 class SettlingRun:
-    """Runs a chain towards its steady state, chunk by chunk, until the regime is decided.
+    """A chain on its way to its steady state, run chunk by chunk until the regime is decided.
 
     `periods_run` is the number of drive periods after which `start` was reached: they count as run.
     """
@@ -50,7 +50,7 @@ class SettlingRun:
         self.decided = False
 
     def _begin(self, periods_run: int) -> None:
-        """A new record of strobes from where the engine is, after `periods_run` periods; `_here` counts its own."""
+        """Begin a new record of strobes at the engine's state, after `periods_run` periods; `_here` counts its own."""
         first, scales = self.engine.state, self.engine.scaled.scales
         self.strobes = np.array([[first.displacement / scales.length, first.velocity / scales.velocity]])
         self._run_before, self._here, self._stop_at = periods_run, 0, EXAMINED_AFTER
@@ -66,7 +66,7 @@ class SettlingRun:
                 return
 
     def advance_for(self, seconds: float) -> bool:
-        """Run until a decision is due, which may need other kernels, or for `seconds`; returns whether one is due."""
+        """Run until a decision is due, which may need other kernels, or for `seconds`; True if one is due."""
         end, per_period = time.perf_counter() + seconds, 0.0
         while not self._finished:
             left = end - time.perf_counter()
@@ -85,8 +85,8 @@ class SettlingRun:
     def _note(self, strobes: np.ndarray) -> None:
         """Add strobes to the record, of which only the last are kept, and check for a period when it is time for that.
 
-        An eighth of the periods so far are run between two checks, so that they cost little. When they come depends on
-        the motion alone, and not on how long a chunk of periods takes on this machine.
+        An eighth of the periods so far are run between two checks, so that checks cost little. Their times depend on
+        the motion alone, and not on the speed of this machine.
         """
         self._here += len(strobes)
         self.strobes = np.concatenate([self.strobes[-REMEMBERED:], strobes])

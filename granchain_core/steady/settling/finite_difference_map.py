@@ -16,7 +16,8 @@ from ...errors import ComputationError
 from ...execution.stop import Stop
 from ...integrate import Engine, fixed_step_setting, following_setting
 from ...scene import Scene
-from ..returns import relative_change, sizes
+from ..residuals import ACCEPTED_FIXED_STEP_RESIDUAL, FIXED_STEP_RESIDUAL_GOAL, least_displacement, orbit_change
+from ..returns import sizes
 
 #: [no threshold] Steps in place of one default step: multipliers then differ from those of a tangent flow by about
 #: 1e-6.
@@ -27,8 +28,6 @@ _REFINEMENT = 4.0
 _DIFFERENCE = 1e-5
 #: [no threshold] The same for a one-sided difference, whose error is the difference times the map's second derivative.
 _ONE_SIDED_DIFFERENCE = 1e-6
-#: [period n, followed] Newton's method ends at this relative residual, and fails above a hundred times as much.
-_FIXED_POINT_RESIDUAL = 1e-9
 #: [period n, followed] Most iterations of Newton's method.
 _MOST_ITERATIONS = 10
 #: [no threshold] The derivative is renewed if an iteration leaves more than this fraction of the residual.
@@ -69,9 +68,14 @@ class FiniteDifferenceMap:
         """The beads' part of a whole state array."""
         return self.engine.scaled.beads_of(y)
 
+    def relative(self, change: np.ndarray, x: np.ndarray) -> float:
+        """A change of the state x (2N,), relative to the sizes of displacements and of w (steady/residuals.py)."""
+        return orbit_change(change, x, self.engine.scaled.beta)
+
     def derivative(self, x: np.ndarray, central: bool = True) -> np.ndarray:
         """The derivative (2N, 2N) by differences; one-sided ones take half the time and are good to about 1e-4."""
-        matrix, width = np.zeros((len(x), len(x))), (_DIFFERENCE if central else _ONE_SIDED_DIFFERENCE) * sizes(x)
+        matrix, difference = np.zeros((len(x), len(x))), _DIFFERENCE if central else _ONE_SIDED_DIFFERENCE
+        width = difference * sizes(x, least_displacement(x, self.engine.scaled.beta))
         middle = None if central else self(x)
         for i in range(len(x)):
             step = np.zeros(len(x))
@@ -109,26 +113,26 @@ def fixed_point(stroboscopic_map: FiniteDifferenceMap, x: np.ndarray) -> FixedPo
 
 
 def _newton(stroboscopic_map: FiniteDifferenceMap, x: np.ndarray) -> FixedPoint | None:
-    start, change = x, stroboscopic_map(x) - x
-    residual, matrix, here = relative_change(change, start), stroboscopic_map.derivative(x), True
+    start, change, relative = x, stroboscopic_map(x) - x, stroboscopic_map.relative
+    residual, matrix, here = relative(change, start), stroboscopic_map.derivative(x), True
     for _ in range(_MOST_ITERATIONS):
-        if residual <= _FIXED_POINT_RESIDUAL:
+        if residual <= FIXED_STEP_RESIDUAL_GOAL:
             break
         step = np.linalg.solve(matrix - np.eye(len(x)), -change)
         for halving in range(_HALVINGS):
             trial = x + step / 2**halving
             after = stroboscopic_map(trial) - trial
-            if relative_change(after, start) < residual:
+            if relative(after, start) < residual:
                 break
         else:
             if here:
                 break
             matrix, here = stroboscopic_map.derivative(x), True
             continue
-        gained = relative_change(after, start) / residual
+        gained = relative(after, start) / residual
         x, change, residual, here = trial, after, gained * residual, False
-        if gained > _RENEWAL_FRACTION and residual > _FIXED_POINT_RESIDUAL:
+        if gained > _RENEWAL_FRACTION and residual > FIXED_STEP_RESIDUAL_GOAL:
             matrix, here = stroboscopic_map.derivative(x), True
-    if residual > 100.0 * _FIXED_POINT_RESIDUAL:
+    if residual > ACCEPTED_FIXED_STEP_RESIDUAL:
         return None
     return FixedPoint(x, matrix if here else stroboscopic_map.derivative(x), residual)

@@ -18,7 +18,8 @@ from ...execution.stop import Stop
 from ...kernels.strobes.periodicity import LONGEST_PERIOD
 from ...scene import Scene
 from ..regime_criteria import changes, window_changes
-from ..returns import relative_change, shorter_periods
+from ..residuals import least_displacement
+from ..returns import shorter_periods
 from .finite_difference_map import FiniteDifferenceMap, FixedPoint, fixed_point
 
 #: [period n] A chain alone: an unconfirmed claim needs multipliers up to this many beads. Up to there the derivative of
@@ -85,21 +86,21 @@ class NearbyOrbit:
 
     @property
     def unstable(self) -> bool:
-        """Whether one is outside by more than its error."""
+        """Whether a multiplier is outside the unit circle by more than its error."""
         return self.modulus > 1.0 + MODULUS_ERROR
 
     @property
     def distance_of_motion(self) -> float:
-        """How far the motion is from the orbit, relative to the largest displacement and w."""
-        return relative_change(self.x - self.point.x, self.point.x)
+        """Distance of the motion from the orbit, relative to the sizes of displacements and of w."""
+        return self.stroboscopic_map.relative(self.x - self.point.x, self.point.x)
 
     @property
     def orbit_error(self) -> float:
-        """How far the orbit found may be from the map's own: its residual over 1 − |μ|."""
+        """Distance of this orbit from the exact fixed point of the map: its residual over 1 − |μ|."""
         return self.point.residual / max(MODULUS_ERROR, 1.0 - self.modulus)
 
     def approached(self) -> bool:
-        """Whether the motion goes to this orbit: from where it is and from all shorter distances it comes nearer."""
+        """Whether the motion goes to this orbit: it comes nearer from its present and from all shorter distances."""
         if not self.stable or self.distance_of_motion > NEAR_AN_ORBIT:
             return False
         rows = _slow_coordinates(self.point.derivative, max(_SLOW_DIRECTION, _SLOW_DIRECTION * self.modulus))
@@ -111,7 +112,7 @@ class NearbyOrbit:
             if not after <= left * before:
                 return False
             offset = offset * _DISTANCE_FACTOR
-            if relative_change(offset, self.point.x) < _SMALLEST_DISTANCE:
+            if self.stroboscopic_map.relative(offset, self.point.x) < _SMALLEST_DISTANCE:
                 return True
 
     def _largest_lengths(self, rows: np.ndarray, offset: np.ndarray, orbits: int) -> tuple[float, float]:
@@ -126,7 +127,7 @@ class NearbyOrbit:
     def amplified_departure(self) -> np.ndarray | None:
         """A later state of a motion that leaves this orbit, with its part along the growing directions enlarged.
 
-        None if it is that far away already.
+        None if the motion is as far away already.
         """
         values, right = np.linalg.eig(self.point.derivative)
         grows = np.abs(values) > 1.0
@@ -134,7 +135,7 @@ class NearbyOrbit:
         if not np.abs(parts).max() > 0.0:  # on the orbit itself: any direction will do
             parts = np.ones(len(parts), dtype=complex)
         leaving = np.real(right[:, grows] @ parts)
-        length = relative_change(leaving, self.point.x)
+        length = self.stroboscopic_map.relative(leaving, self.point.x)
         return None if length >= _ENLARGED_LENGTH else self.point.x + leaving * (_ENLARGED_LENGTH / length)
 
 
@@ -149,17 +150,18 @@ def _lengths(rows: np.ndarray, offsets: np.ndarray) -> np.ndarray:
 
 
 def orbit_of(scene: Scene, period: int, x: np.ndarray, stop: Stop) -> NearbyOrbit | None:
-    """The orbit of `period` drive periods, or of a part of them, that Newton's method leads to from x; if any."""
+    """The orbit of `period` drive periods, or of a part of them, that Newton's method finds from x; else None."""
     stroboscopic_map = FiniteDifferenceMap(scene, period, stop)
-    found = fixed_point(stroboscopic_map, x)
-    if found is None:
+    point = fixed_point(stroboscopic_map, x)
+    if point is None:
         return None
     parts = {n: FiniteDifferenceMap(scene, n, stop) for n in range(1, period) if period % n == 0}
-    for shorter in shorter_periods(lambda n: parts[n](found.x), found.x, period, _SAME_ORBIT_DISTANCE):
-        again = fixed_point(parts[shorter], found.x)
+    least = least_displacement(point.x, stroboscopic_map.engine.scaled.beta)
+    for shorter in shorter_periods(lambda n: parts[n](point.x), point.x, period, _SAME_ORBIT_DISTANCE, least):
+        again = fixed_point(parts[shorter], point.x)
         if again is not None:
             return NearbyOrbit(parts[shorter], again, x, again.modulus)
-    return NearbyOrbit(stroboscopic_map, found, x, found.modulus)
+    return NearbyOrbit(stroboscopic_map, point, x, point.modulus)
 
 
 def seen_modulus(scene: Scene, period: int, x: np.ndarray, stop: Stop, refine: float) -> float:
@@ -169,10 +171,10 @@ def seen_modulus(scene: Scene, period: int, x: np.ndarray, stop: Stop, refine: f
 
 
 def is_almost_periodic(strobes: np.ndarray) -> bool:
-    """Whether a motion with these last strobes (P, 2, N) changes so little over some period that an orbit may be near.
+    """Whether an orbit may be near a motion with these last strobes (P, 2, N): it changes little over some period.
 
-    It may approach the orbit so slowly that its Lyapunov exponent is neutral (`is_neutral`). False for a record that is
-    too short to tell.
+    Such a motion may approach the orbit so slowly that its Lyapunov exponent is neutral (`is_neutral`). A record that
+    is too short gives False.
     """
     if len(strobes) < _ALMOST_PERIODIC_CHANGES + LONGEST_PERIOD:
         return False
@@ -194,6 +196,6 @@ def orbits_beside(scene: Scene, strobes: np.ndarray, x: np.ndarray, stop: Stop) 
     tried = {next(n for n, change in enumerate(moved, 1) if change <= _CHANGE_FACTOR * min(moved)),
              1 + int(np.argmin(moved))}
     for n in sorted(tried):
-        found = orbit_of(scene, n, x, stop)
-        if found is not None and found.distance_of_motion <= NEAR_AN_ORBIT:
-            yield found
+        orbit = orbit_of(scene, n, x, stop)
+        if orbit is not None and orbit.distance_of_motion <= NEAR_AN_ORBIT:
+            yield orbit

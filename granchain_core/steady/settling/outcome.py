@@ -54,11 +54,11 @@ class Settled(Labelled):
 
     @property
     def start(self) -> str:
-        """Where the motion came from: "rest", also with initial velocities of the scene, or "previous state"."""
+        """The start of the motion: "rest", also with initial velocities of the scene, or "previous state"."""
         return "previous state" if self.run.start == GIVEN_STATE else "rest"
 
     def tables(self) -> tuple[Table, ...]:
-        """The tables of its run, and `state`, where the chain is at drive phase 0."""
+        """The tables of its run, and `state`, the state at drive phase 0."""
         state = Table("state", bead_axis(self.scene.N),
                       state_columns(self.state.displacement, self.state.velocity, ("bead",)))
         return (*self.run.tables(), state)

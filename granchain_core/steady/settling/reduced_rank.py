@@ -15,7 +15,7 @@ from ...kernels.strobes import extrapolation
 
 
 def reduced_rank(states: np.ndarray) -> np.ndarray:
-    """The limit of the states x_0..x_k (k + 1, 2, N) as reduced rank extrapolation sees it."""
+    """The limit of the states x_0..x_k (k + 1, 2, N) by reduced rank extrapolation."""
     k, size = len(states) - 1, states[0].size
     limit = np.zeros_like(states[0])
     extrapolation.reduced_rank(np.ascontiguousarray(states), np.zeros((k, size)), np.zeros((k, k)), limit)
@@ -23,7 +23,7 @@ def reduced_rank(states: np.ndarray) -> np.ndarray:
 
 
 def within_reach(here: np.ndarray, there: np.ndarray, change: float, contraction: float) -> bool:
-    """Whether `there` is at most `FARTHEST_EXTRAPOLATION` times as far from `here` as the decay predicts."""
+    """Whether `there` is at most `FARTHEST_EXTRAPOLATION` times as far from `here` as the contraction predicts."""
     if not np.isfinite(there).all() or not 0.0 < contraction < 1.0:
         return False
     return float(np.abs(there - here).max()) <= FARTHEST_EXTRAPOLATION * change / (1.0 - contraction)

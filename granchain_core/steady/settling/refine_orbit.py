@@ -40,12 +40,12 @@ def orbit_setting(scene: Scene, accuracy: float, contraction: float) -> MethodSe
 
 
 def refined_orbit(settling: SettlingRun, accuracy: float, samples: int = 1) -> tuple[Engine, float]:
-    """The finer method on its own orbit, and the bound on the distance left.
+    """An engine of the finer method on its own orbit, and the bound on the distance left.
 
     The orbit that the chain settled on differs from the true one by the error of its steps; a few more periods remove
-    it. With r the contraction of the regime (|μ| where it was computed, else the decay) and `change` from one n-period
-    map to the next, the distance left is change·r/(1 − r). After an extrapolation it is known from the changes that
-    follow; if these are not smaller, the extrapolation is undone.
+    it. With r the contraction of the regime (|μ| where it was computed, else the observed factor) and `change` from one
+    n-period map to the next, the distance left is change·r/(1 − r). After an extrapolation it is known from the changes
+    that follow; if these are not smaller, the extrapolation is undone.
     """
     scene, n = settling.scene, settling.regime.period
     assert n is not None
@@ -81,7 +81,7 @@ def refined_orbit(settling: SettlingRun, accuracy: float, samples: int = 1) -> t
 
 
 def move_to_limit(engine: Engine, states: np.ndarray, change: float, contraction: float) -> bool:
-    """Put the engine where successive states (k, 2, N) lead, if that is within reach; returns whether it was."""
+    """Put the engine at the limit of successive states (k, 2, N), if that is within reach; True if it was."""
     there = reduced_rank(states)
     largest = np.abs(states).max(axis=(0, 2))[:, None]
     if not within_reach(states[-1] / largest, there / largest, change, contraction):

@@ -49,7 +49,7 @@ _MOST_DEPARTURES = 6
 
 @dataclass(frozen=True, eq=False)
 class Decision:
-    """A regime, a scaled state (2N,) to go on from, strobes of periods that were run meanwhile, or nothing yet."""
+    """A regime, or a scaled state (2N,) to go on from, or strobes of periods that were run meanwhile, or nothing."""
 
     regime: Regime | None = None
     state: np.ndarray | None = None
@@ -80,7 +80,7 @@ class Decisions:
         return self._measure(engine, strobes, regime)
 
     def _confirmed(self, engine: Engine, strobes: np.ndarray, regime: Regime) -> Decision:
-        """A motion that seems settled: on an orbit that is stable, or near one that it will leave.
+        """The decision on a motion that seems settled: on a stable orbit, or near one that it will leave.
 
         A motion that settles alternating about an orbit is nearer to itself after two of its periods than after one,
         and may be taken for one of twice the period: where a part of the period almost repeats it, Newton's method
@@ -108,7 +108,8 @@ class Decisions:
         """The decision by an orbit near the motion, if it allows one."""
         if orbit.approached():
             return Decision(replace(regime, name="periodic", period=orbit.period, multiplier=orbit.modulus, decay=None,
-                                    distance=orbit.orbit_error, followed=True, approaches=None), orbit.point.x)
+                                    distance=orbit.orbit_error, followed=True, followed_by="Newton",
+                                    approaches=None), orbit.point.x)
         self._leaves = self._leaves or orbit.unstable
         if not orbit.unstable or self._departures >= _MOST_DEPARTURES:
             return None
@@ -127,19 +128,20 @@ class Decisions:
 
 
 def _may_repeat_sooner(strobes: np.ndarray, period: int) -> bool:
-    """Whether a part of the period almost repeats the state."""
+    """Whether the state almost repeats after a part of the period."""
     return any(period % n == 0 and float(changes(strobes, n, n).max()) <= NEAR_AN_ORBIT for n in range(1, period))
 
 
 def _decays_clearly(regime: Regime) -> bool:
-    """Whether the decay per drive period leaves no doubt of a periodic regime where the motion began at rest."""
+    """Whether the observed contraction leaves no doubt of a periodic regime where the motion began at rest."""
     assert regime.period is not None
-    return (regime.decay or 0.0) ** (1.0 / regime.period) <= CLEAR_DECAY
+    return (regime.observed_contraction or 0.0) ** (1.0 / regime.period) <= CLEAR_DECAY
 
 
 def _on(orbit: NearbyOrbit, regime: Regime) -> Regime:
     """The periodic regime of a motion on a stable orbit that Newton's method has found from it."""
-    decay = regime.decay if orbit.period == regime.period else None  # it is that of the longer period
+    # that of the longer period says nothing of a shorter one
+    decay = regime.observed_contraction if orbit.period == regime.period else None
     return replace(regime, period=orbit.period, multiplier=orbit.modulus, decay=decay)
 
 
@@ -151,9 +153,9 @@ def _orbits_beside(engine: Engine, strobes: np.ndarray) -> Iterator[NearbyOrbit]
 
 
 def regime_without_continuing(engine: Engine, strobes: np.ndarray, regime: Regime) -> Regime:
-    """The regime of a motion that is not followed any further: an orbit that it only approaches is not claimed.
+    """The regime of a motion that is not run any further: an orbit that it only approaches is not claimed.
 
-    `engine` is a live one where the strobes (P, 2, N) end; it goes on where a Lyapunov exponent is measured.
+    `engine` is live and at the end of the strobes (P, 2, N); it goes on if a Lyapunov exponent is measured.
     """
     scene = engine.scaled.scene
     if regime.period is not None:

@@ -127,7 +127,7 @@ def settle(scene: Scene, start: State | None = None, samples: int = PICTURE_SAMP
 
 
 def _checked(scene: Scene, samples: int) -> int:
-    """The number of samples as an int; `BadInput` where it or the scene cannot be one."""
+    """The number of samples as an int. Raises `BadInput` for another number, or for no scene."""
     require_scene(scene)
     return whole_number("samples =", samples, 1, MOST_SAMPLES)
 

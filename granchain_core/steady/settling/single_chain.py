@@ -55,7 +55,7 @@ def _on_its_orbit(settling: SettlingRun) -> SteadyState:
 
 
 def settle_or_failure(scene: Scene, start: State | None, stop: Stop, periods_run: int = 0) -> SteadyState:
-    """A steady state, or one that says why there is none: one failed frequency does not lose a curve."""
+    """A steady state, or one with a failure: a frequency that fails does not lose the curve."""
     try:
         return settle_to_forces(scene, start, stop, periods_run)
     except ComputationError as failed:

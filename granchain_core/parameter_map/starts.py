@@ -1,0 +1,22 @@
+"""Cells of a parameter map as the starts of batches."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from ..steady.batch.job import Start
+from .grid import Grid
+
+
+def starts_of(grid: Grid, numbers: Iterable[int]) -> Iterator[Start]:
+    """Cells as starts from rest."""
+    return (Start(grid.cell(number), number=number) for number in numbers)
+
+
+def by_structure(grid: Grid, numbers: Iterable[int]) -> list[list[int]]:
+    """The cells in groups that share a kernel: an axis that reaches 0, or equal beads, switches its effect off."""
+    groups: dict[tuple[bool, tuple[str, ...]], list[int]] = {}
+    for number in numbers:
+        cell = grid.cell(number)
+        groups.setdefault((cell.is_uniform, tuple(cell.effects)), []).append(number)
+    return list(groups.values())

@@ -1,0 +1,79 @@
+"""Kinds of special points on branches whose multipliers are given: what a count misses, and what is no fold."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from granchain_core import scene
+from granchain_core.orbits import BranchPoint, KnobAxis
+from granchain_core.orbits.branch.special import SpecialPoint, special_between
+
+pytestmark = pytest.mark.quick
+
+Multipliers = Callable[[float], list[complex]]
+AXIS = KnobAxis.of(scene("sec2").evolve(N=2), "f", 1000.0, 2000.0)
+
+
+class GivenOrbits:
+    """Orbits along 1000 to 1001 Hz, at arclength s from 0 to 1, with the multipliers and the turn that are given."""
+
+    def __init__(self, multipliers: Multipliers, turn: float | None = None) -> None:
+        self.axis, self.equations, self.multipliers, self.turn = AXIS, self, multipliers, turn
+        self.a, self.b = self.at(0.0), self.at(1.0)
+
+    def at(self, s: float) -> BranchPoint:
+        knob = 1000.0 + s if self.turn is None else 1000.0 - (s - self.turn) ** 2
+        direction = 1.0 if self.turn is None else self.turn - s
+        tangent = np.array([0.0, 0.0, 0.0, 0.0, direction])
+        values = np.array(sorted(self.multipliers(s), key=abs, reverse=True), dtype=complex)
+        return BranchPoint(knob=knob, x=np.zeros(4), tangent=tangent, arclength=s, multipliers=values,
+                           max_input_force=1.0, max_output_force=1.0, max_output_force_elastic=1.0,
+                           closings=np.zeros(3, dtype=int), slope=np.zeros(4), residuals=(0.0,), liouville=0.0,
+                           turns=np.zeros((0, 4)))
+
+    def careful(self, a: BranchPoint, b: BranchPoint, fraction: float) -> BranchPoint:
+        return self.at(a.arclength + fraction * (b.arclength - a.arclength))
+
+    exact = rough = careful
+
+    def made_exact(self, point: BranchPoint) -> BranchPoint:
+        return point
+
+
+def found(multipliers: Multipliers, turn: float | None = None) -> list[SpecialPoint]:
+    """The special points between both ends."""
+    return special_between(GivenOrbits(multipliers, turn))  # type: ignore[arg-type]
+
+
+def test_a_multiplier_that_passes_one_without_a_turn_is_not_called_a_fold() -> None:
+    special, = found(lambda s: [0.9 + 0.2 * s, 0.5, 0.1, 0.1])
+    assert special.kind == "plus_one" and special.kind_words == "multiplier +1 without a fold"
+    assert special.knob == pytest.approx(1000.5, abs=0.01) and special.multiplier == pytest.approx(1.0, abs=0.01)
+    assert special.normal_form is None
+
+
+def test_a_fold_is_still_a_fold() -> None:
+    special, = found(lambda s: [0.92 + 0.2 * s, 0.5, 0.1, 0.1], turn=0.4)
+    assert special.kind == "fold" and special.multiplier == pytest.approx(1.0, abs=0.01)
+
+
+@pytest.mark.parametrize("doubling", [0.3, 0.62])
+def test_a_period_doubling_is_found_though_another_multiplier_comes_back_in_the_same_step(doubling: float) -> None:
+    """The number outside is 1 at both ends."""
+    special = found(lambda s: [1.05 - 0.1 * s, -1.0 - 0.2 * (s - doubling), 0.1, 0.1])
+    kinds = {one.kind: one.knob for one in special}
+    assert len(special) == 2 and set(kinds) == {"period_doubling", "plus_one"}
+    assert kinds["period_doubling"] == pytest.approx(1000.0 + doubling, abs=0.01)
+    assert kinds["plus_one"] == pytest.approx(1000.5, abs=0.01)
+
+
+def test_both_are_reported_where_they_pass_within_one_narrow_interval() -> None:
+    special = found(lambda s: [1.05 - 0.1 * s, -1.0 - 0.2 * (s - 0.5), 0.1, 0.1])
+    assert sorted(one.kind for one in special) == ["period_doubling", "plus_one"]
+
+
+def test_a_pair_that_becomes_real_outside_is_no_period_doubling() -> None:
+    assert found(lambda s: [-1.2 + np.emath.sqrt(0.01 * (s - 0.4)), -1.2 - np.emath.sqrt(0.01 * (s - 0.4)), 0.1, 0.1]) == []
