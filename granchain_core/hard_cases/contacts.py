@@ -21,11 +21,11 @@ def brushed(quick: bool) -> list[Measurement]:
     wrong = len(touches.missed(driver, by_driver)) + len(touches.missed(thrown, by_throw))
     touched, hit = driver[:, touches.DEPTH] > 0.0, thrown[:, touches.DEPTH] > 0.0
     still = touched & (touches.moved(driver) < 1e-10)
-    onset = max(by_driver[touched, touches.ONSET_ERROR].max(), by_throw[hit, touches.ONSET_ERROR].max())
+    closing = max(by_driver[touched, touches.CLOSING_ERROR].max(), by_throw[hit, touches.CLOSING_ERROR].max())
     return [
         Measurement(f"of {count} random brushes missed or invented", float(wrong), 0.0),
-        Measurement("moment of the onset, in periods", float(onset), 1e-9),
-        Measurement("moment of the release, in periods", float(by_driver[still, touches.RELEASE_ERROR].max()), 1e-9),
+        Measurement("moment of the closing, in periods", float(closing), 1e-9),
+        Measurement("moment of the opening, in periods", float(by_driver[still, touches.OPENING_ERROR].max()), 1e-9),
     ]
 
 
@@ -34,7 +34,7 @@ def brushed_picture() -> Picture:
     depths = np.linspace(-7.0, -2.0, 21)
     cases = touches.draw(2_000, 5, True)
     cases[:, touches.DEPTH] = np.abs(cases[:, touches.DEPTH])
-    seen = touches.run(cases, True)[:, touches.ONSETS] == 1
+    seen = touches.run(cases, True)[:, touches.CLOSINGS] == 1
     logs = np.log10(cases[:, touches.DEPTH])
     ours = np.array([seen[np.abs(logs - d) < 0.25].mean() for d in depths])
     traces = [Trace("granchain", ours)]

@@ -86,18 +86,18 @@ def driven_chaos(quick: bool) -> list[Measurement]:
     count = 16 if quick else 200
     points = list(iter_curve(undamped(), np.linspace(200.0, 1200.0, count)))
     periodic = sum(p.regime.name == "periodic" for p in points)
-    difference, shadow, tangent = two_exponents(12 if quick else 40)
+    difference, neighbour, tangent = two_exponents(12 if quick else 40)
     return [
         Measurement("energy balance", float(np.abs(work - lost - stored).max() / largest), 1e-8),
         Measurement("Lyapunov exponents of two methods, difference over its standard error", difference, 3.0,
-                    f"per period {shadow[0]:.3f} ± {shadow[1]:.3f} by a shadow, "
+                    f"per period {neighbour[0]:.3f} ± {neighbour[1]:.3f} by a neighbour, "
                     f"{tangent[0]:.3f} ± {tangent[1]:.3f} else"),
         Measurement(f"of {count} undamped motions called periodic", float(periodic), 0.0),
     ]
 
 
 def two_exponents(starts: int) -> tuple[float, tuple[float, float], tuple[float, float]]:
-    """The exponent of three undamped beads by a shadow trajectory and by the map's derivative, each ± standard error.
+    """The exponent of three undamped beads by a neighbour and by the map's derivative, each ± standard error.
 
     Returns their difference over its standard error, and both. Both methods begin in each of several states of one
     motion and follow it for `_EXPONENT_PERIODS`: what they differ by varies from state to state independently, while
@@ -105,15 +105,15 @@ def two_exponents(starts: int) -> tuple[float, tuple[float, float], tuple[float,
     """
     chosen = undamped(1000.0, 3)
     stroboscopic_map = StroboscopicMap(chosen, 1)
-    shadow, tangent = np.zeros(starts), np.zeros(starts)
+    neighbour, tangent = np.zeros(starts), np.zeros(starts)
     for k in range(starts):
         engine = Engine(chosen, fixed_step_setting(), 1)
         engine.periods(50 + 30 * k)
         x = stroboscopic_map.inner(engine.y)
-        shadow[k] = growth_along(engine, _EXPONENT_PERIODS)[0][_EXPONENT_TURNING:].mean()
+        neighbour[k] = growth_along(engine, _EXPONENT_PERIODS)[0][_EXPONENT_TURNING:].mean()
         tangent[k] = _growth_by_derivative(stroboscopic_map, x)[_EXPONENT_TURNING:].mean()
-    difference, error = _mean(shadow - tangent)
-    return abs(difference) / error, _mean(shadow), _mean(tangent)
+    difference, error = _mean(neighbour - tangent)
+    return abs(difference) / error, _mean(neighbour), _mean(tangent)
 
 
 def _growth_by_derivative(stroboscopic_map: StroboscopicMap, x: np.ndarray) -> np.ndarray:

@@ -118,7 +118,7 @@ def restitution(law: str, strength: float, cut: bool) -> float:
     """Speed after over speed before of a bead of mass 1 that meets a contact K = 1 at speed 1.
 
     The force is δ^{3/2} + strength·g(δ)·δ̇ with g = δ^a. Integrated in s = t^{1/4}, in which the motion after the
-    onset is smooth; with a cut it ends where the force does, else where the overlap does.
+    closing is smooth; with a cut it ends where the force does, else where the overlap does.
     """
     from scipy.integrate import solve_ivp
 

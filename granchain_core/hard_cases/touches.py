@@ -25,8 +25,8 @@ from ..kernels.error_control.step import DriveCycle, evaluate
 #: Columns of a drawn case: the driver's rate β (or the bead's own ω), depth, phase it starts at, tolerance, largest
 #: step as a part of the period, first step as a part of the largest.
 RATE, DEPTH, PHASE, TOLERANCE, LARGEST, FIRST = range(6)
-#: Columns of a result: touches counted by onsets, error of the onset and of the release as parts of the period.
-ONSETS, ONSET_ERROR, RELEASE_ERROR = range(3)
+#: Columns of a result: touches counted by closings, error of the closing and of the opening as parts of the period.
+CLOSINGS, CLOSING_ERROR, OPENING_ERROR = range(3)
 
 
 def draw(count: int, seed: int, driven: bool) -> np.ndarray:
@@ -47,7 +47,7 @@ def draw(count: int, seed: int, driven: bool) -> np.ndarray:
 def touch(cases, driven, work, y, counts, static, chain, found):  # type: ignore[no-untyped-def]
     """Run every case from its phase until the driver, or the bead, is back at middle position.
 
-    The gap is 1 − depth. A bead that rests is where it was until the touch, so the analytic onset is asin(gap); the
+    The gap is 1 − depth. A bead that rests is where it was until the touch, so the analytic closing is asin(gap); the
     same is true of a bead on a spring of stiffness ω² with velocity ω. It separates at π − asin(gap), apart from the
     displacement by the touch.
     """
@@ -72,15 +72,15 @@ def touch(cases, driven, work, y, counts, static, chain, found):  # type: ignore
             before = y[contact] - y[contact + 1] + static[contact] > 0.0
             status, h, changed = located_step(method, trajectory, t, end, counts)
             if status != 0:
-                found[n, ONSETS] = -1.0
+                found[n, CLOSINGS] = -1.0
                 break
             t += h
             after = work.end[contact] - work.end[contact + 1] + static[contact] > 0.0
             if after and not before:
-                found[n, ONSET_ERROR] = abs(t - asin(gap) / rate) / period if changed == contact else 1.0
-                found[n, ONSETS] += 1.0
+                found[n, CLOSING_ERROR] = abs(t - asin(gap) / rate) / period if changed == contact else 1.0
+                found[n, CLOSINGS] += 1.0
             if before and not after:
-                found[n, RELEASE_ERROR] = abs(t - (pi - asin(gap)) / rate) / period if changed == contact else 1.0
+                found[n, OPENING_ERROR] = abs(t - (pi - asin(gap)) / rate) / period if changed == contact else 1.0
             copy(work.end, y)
             copy(work.k[STAGES], work.k[0])
 
@@ -104,7 +104,7 @@ def workspace(row: int) -> Dop853Workspace:
 
 def missed(cases: np.ndarray, found: np.ndarray) -> np.ndarray:
     """Numbers of the cases whose touch was missed, or invented."""
-    return np.flatnonzero((found[:, ONSETS] == 1) != (cases[:, DEPTH] > 0.0))
+    return np.flatnonzero((found[:, CLOSINGS] == 1) != (cases[:, DEPTH] > 0.0))
 
 
 def moved(cases: np.ndarray) -> np.ndarray:

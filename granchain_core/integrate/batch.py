@@ -23,7 +23,7 @@ from ..kernels.batch.begin import (
 )
 from ..kernels.batch.checks import check_member
 from ..kernels.batch.record import MAXIMA, STROBES_KEPT
-from ..kernels.batch.run import IS_SHADOW, NO_SHADOW, BatchState, Members, run_batch
+from ..kernels.batch.run import IS_NEIGHBOUR, NO_NEIGHBOUR, BatchState, Members, run_batch
 from ..kernels.batch.unequal import Unequal
 from ..kernels.batch_size import BATCH_SIZE
 from ..kernels.compiling.by_address import address_of
@@ -87,7 +87,7 @@ class Batch:
         rows = 2 * (n + 2)
         counts = {name: np.zeros(BATCH_SIZE, dtype=np.int64) for name in (
             "begins", "steps", "steps_left", "finer_steps", "periods", "return_at", "next_check", "extrapolate_from",
-            "wait_after_undo", "due", "shadow", "strobe_count", "tested_period")}
+            "wait_after_undo", "due", "neighbour", "strobe_count", "tested_period")}
         numbers = {name: np.zeros(BATCH_SIZE) for name in (
             "drive_period", "slowest_decay", "slowest_decay_before", "change_before_extrapolation", "distance")}
         self.state = BatchState(
@@ -135,7 +135,7 @@ class Batch:
         state.begins[member], state.y[:, member], state.drive_period[member] = 1, y, scaled.period
         state.steps[member], state.finer_steps[member] = steps, steps * finer
         state.return_at[member], state.next_check[member] = return_at, earliest
-        state.fine_record[member], state.shadow[member] = 0.0, NO_SHADOW
+        state.fine_record[member], state.neighbour[member] = 0.0, NO_NEIGHBOUR
 
     def put_fine(self, member: int, scaled: ScaledChain, y: np.ndarray, refine: float, period: int, decay: float,
                  maxima: np.ndarray) -> None:
@@ -148,26 +148,26 @@ class Batch:
         self.put(member, scaled, y, refine, NEVER, orbits * period)
         self.state.fine_record[member] = period, contraction, *maxima, orbits, 0.0, 0.0
 
-    def put_pair(self, member: int, shadow: int, scaled: ScaledChain, y: np.ndarray, offset: np.ndarray,
+    def put_pair(self, member: int, neighbour: int, scaled: ScaledChain, y: np.ndarray, offset: np.ndarray,
                  distance: float, periods: int) -> None:
-        """Make a scene a member, with a shadow in another lane: a trajectory that begins at y + offset.
+        """Make a scene a member, with a neighbour in another lane: a trajectory that begins at y + offset.
 
-        After each period the shadow is brought back to `distance`, the length of `offset`. The member is due after
+        After each period the neighbour is brought back to `distance`, the length of `offset`. The member is due after
         `periods` periods. Raises `ValueError` for more than STROBES_KEPT of them, for whose growth there is no place.
         """
         if periods > STROBES_KEPT:
             raise ValueError(f"a pair runs for at most {STROBES_KEPT} periods, not for {periods}")
         self.put(member, scaled, y, 1, periods, NEVER)
-        self.put(shadow, scaled, y + offset, 1, NEVER, NEVER)
+        self.put(neighbour, scaled, y + offset, 1, NEVER, NEVER)
         state = self.state
-        state.shadow[member], state.shadow[shadow], state.distance[member] = shadow, IS_SHADOW, distance
+        state.neighbour[member], state.neighbour[neighbour], state.distance[member] = neighbour, IS_NEIGHBOUR, distance
 
     def checks_address(self) -> int:
         """Address of the kernel that checks a member's regime, compiled first where it is not there yet."""
         return address_of(check_member, self.state, 0)
 
     def growth(self, member: int) -> np.ndarray:
-        """Logarithm of the growth of the distance to the member's shadow in each period (periods,); NaN if lost."""
+        """Logarithm of the growth of the distance to the member's neighbour in each period (periods,); NaN if lost."""
         return self.state.growth[member, : int(self.state.periods[member])]
 
     def run(self) -> tuple[int, bool]:

@@ -92,7 +92,7 @@ def _checks(short: Scene) -> None:
 
 
 def _curve(short: Scene) -> None:
-    """A curve: located jumps, the shadow of irregular motions, and the batch if the scene can use it."""
+    """A curve: located jumps, the neighbour of irregular motions, and the batch if the scene can use it."""
     if short.forces_jump:
         Engine(short, fixed_step_setting(), 1).record(1)
     growth_along(Engine(short, following_setting(short.cuts_tension), 1), 1)

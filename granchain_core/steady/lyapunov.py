@@ -27,8 +27,7 @@ def put_with_neighbour(batch: Batch, member: int, lane: int, scaled: ScaledChain
                        offset: np.ndarray | None = None) -> None:
     """Make a scene a member of a batch for `growth_of`, from the scaled state y, its neighbour in another lane.
 
-    The neighbour begins at y + `offset` (2(N+2),), where an earlier measurement ended, or in a random direction. The
-    kernels of a batch call it the member's shadow.
+    The neighbour begins at y + `offset` (2(N+2),), where an earlier measurement ended, or in a random direction.
     """
     begin = _offset(scaled.bodies) if offset is None else offset
     batch.put_pair(member, lane, scaled, y, begin, _DISTANCE, periods)
@@ -72,7 +71,7 @@ def growth_of(batch: Batch, member: int) -> MeasuredGrowth:
     strobes = state.strobes[member, : periods + 1]
     last = np.arange(periods - LONGEST_PERIOD + 1, periods + 1) % STROBES_KEPT
     return MeasuredGrowth(growth.copy(), strobes[1:, :, 1:-1].copy(), state.maxima[member, last, :3].copy(),
-                          strobes[-1].ravel().copy(), state.y[:, state.shadow[member]] - state.y[:, member])
+                          strobes[-1].ravel().copy(), state.y[:, state.neighbour[member]] - state.y[:, member])
 
 
 @functools.cache

@@ -71,7 +71,7 @@ def test_steps_over_brief_touches_are_noticed(monkeypatch: pytest.MonkeyPatch) -
 
     def blind(cases: np.ndarray, driven: bool) -> np.ndarray:
         found = real(cases, driven)
-        found[(cases[:, touches.DEPTH] > 0.0) & (cases[:, touches.DEPTH] < 2e-7), touches.ONSETS] = 0.0
+        found[(cases[:, touches.DEPTH] > 0.0) & (cases[:, touches.DEPTH] < 2e-7), touches.CLOSINGS] = 0.0
         return found
 
     monkeypatch.setattr(touches, "run", blind)

@@ -36,7 +36,7 @@ def test_the_moment_of_a_touch_is_exact() -> None:
     come: at a depth of 1e-7 a rounding of its displacement is 1e-13 of a period.
     """
     cases, seen = found(True)
-    assert (seen[cases[:, touches.DEPTH] > 0.0, touches.ONSET_ERROR] < 1.2e-12).all()
+    assert (seen[cases[:, touches.DEPTH] > 0.0, touches.CLOSING_ERROR] < 1.2e-12).all()
 
 
 def test_the_moment_of_a_release_is_exact() -> None:
@@ -44,7 +44,7 @@ def test_the_moment_of_a_release_is_exact() -> None:
     cases, seen = found(True)
     exact = (cases[:, touches.DEPTH] > 0.0) & (touches.moved(cases) < 1e-13)
     assert exact.sum() > 50
-    assert (seen[exact, touches.RELEASE_ERROR] < 1.2e-12).all()
+    assert (seen[exact, touches.OPENING_ERROR] < 1.2e-12).all()
 
 
 def test_a_thrown_bead_touches_when_its_own_motion_lets_it() -> None:
@@ -52,7 +52,7 @@ def test_a_thrown_bead_touches_when_its_own_motion_lets_it() -> None:
     cases, seen = found(False)
     hit = cases[:, touches.DEPTH] > 0.0
     allowed = 1e-12 + 10.0 * cases[hit, touches.TOLERANCE] / np.sqrt(2.0 * cases[hit, touches.DEPTH])
-    assert (seen[hit, touches.ONSET_ERROR] < allowed).all()
+    assert (seen[hit, touches.CLOSING_ERROR] < allowed).all()
 
 
 @pytest.mark.parametrize("tolerance", [1e-13, 1e-12])

@@ -14,10 +14,10 @@ from math import pi
 import numpy as np
 
 from granchain_core.hard_cases.touches import (
+    CLOSING_ERROR,
+    CLOSINGS,
     DEPTH,
-    ONSET_ERROR,
-    ONSETS,
-    RELEASE_ERROR,
+    OPENING_ERROR,
     TOLERANCE,
     draw,
     missed,
@@ -35,7 +35,7 @@ from granchain_core.kernels.equations.motion import Slots, Trajectory, copy
 from granchain_core.kernels.error_control.located_step import located_step
 from granchain_core.kernels.error_control.step import DriveCycle, evaluate
 
-__all__ = ["DEPTH", "ONSETS", "ONSET_ERROR", "RELEASE_ERROR", "TOLERANCE", "draw", "missed", "moved", "run", "run_pairs"]
+__all__ = ["CLOSINGS", "CLOSING_ERROR", "DEPTH", "OPENING_ERROR", "TOLERANCE", "draw", "missed", "moved", "run", "run_pairs"]
 
 
 @kernel
@@ -81,7 +81,7 @@ def run_pairs(count: int, seed: int, tolerance: float) -> np.ndarray:
 
 
 def main() -> None:
-    """Print what was missed and how near the onsets are."""
+    """Print what was missed and how near the closings are."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--count", type=int, default=100_000)
     parser.add_argument("--seed", type=int, default=1)
@@ -92,13 +92,13 @@ def main() -> None:
         cases = draw(args.count, args.seed, driven)
         found = run(cases, driven)
         wrong, touches = missed(cases, found), cases[:, DEPTH] > 0.0
-        onset = found[touches, ONSET_ERROR]
+        closing = found[touches, CLOSING_ERROR]
         print(f"{'driver' if driven else 'thrown bead'}: {touches.sum()} touches and {(~touches).sum()} near misses, "
-              f"{len(wrong)} wrong, onset within {np.median(onset):.1e} (median), {onset.max():.1e} (worst) of a period, "
-              f"{(onset > 1e-12).sum()} above 1e-12, {time.perf_counter() - began:.1f} s")
+              f"{len(wrong)} wrong, closing within {np.median(closing):.1e} (median), {closing.max():.1e} (worst) of a period, "
+              f"{(closing > 1e-12).sum()} above 1e-12, {time.perf_counter() - began:.1f} s")
         if driven:
             exact = touches & (moved(cases) < 1e-12)
-            print(f"  {exact.sum()} of these hardly move the bead, and end within {found[exact, RELEASE_ERROR].max():.1e} of a "
+            print(f"  {exact.sum()} of these hardly move the bead, and end within {found[exact, OPENING_ERROR].max():.1e} of a "
                   "period of where they should")
         for n in wrong[:10]:
             print("  ", dict(zip(("rate", "depth", "phase", "tolerance", "largest", "first"), cases[n], strict=True)),

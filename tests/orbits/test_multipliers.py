@@ -86,20 +86,20 @@ def test_map_derivative_and_multipliers_agree_with_the_reference(name: str) -> N
 def test_a_bead_that_meets_a_dashpot_has_the_closed_form_which_a_naive_tangent_misses() -> None:
     # One bead flies freely, then meets a wall that is a dashpot 2ζ and nothing else, at t* = −u/v; s is the rest.
     zeta, period, u, v = 0.2, 2.0, -0.7, 1.0
-    damping, onset = 2.0 * zeta, -u / v
-    rest = period - onset
+    damping, closing = 2.0 * zeta, -u / v
+    rest = period - closing
     left = np.exp(-damping * rest)
     end = np.array([v * (1.0 - left) / damping, v * left])
-    exact = np.array([[left, (1.0 - left) / damping + onset * left],
-                      [-damping * left, left * (1.0 - damping * onset)]])
-    # The (u, v) equations linearised on either side of the onset, without the jump δv −= (D/m) δu at it.
+    exact = np.array([[left, (1.0 - left) / damping + closing * left],
+                      [-damping * left, left * (1.0 - damping * closing)]])
+    # The (u, v) equations linearised on either side of the closing, without the jump δv −= (D/m) δu at it.
     closed = np.array([[1.0, (1.0 - left) / damping], [0.0, left]])
-    naive = closed @ np.array([[1.0, onset], [0.0, 1.0]])
+    naive = closed @ np.array([[1.0, closing], [0.0, 1.0]])
     jump = np.array([[1.0, 0.0], [-damping, 1.0]])
-    assert closed @ jump @ np.array([[1.0, onset], [0.0, 1.0]]) == pytest.approx(exact, abs=1e-14)
+    assert closed @ jump @ np.array([[1.0, closing], [0.0, 1.0]]) == pytest.approx(exact, abs=1e-14)
 
     flow = dashpot_wall(damping, period)(np.array([u, v]))
-    found = np.array([[1.0, 0.0], [-damping, 1.0]]) @ flow.derivative  # w = v before the onset
+    found = np.array([[1.0, 0.0], [-damping, 1.0]]) @ flow.derivative  # w = v before the closing
     assert flow.end - [0.0, damping * flow.end[0]] == pytest.approx(end, abs=1e-12)
     assert found == pytest.approx(exact, abs=1e-10)
     assert flow.log_determinant == pytest.approx(-damping * rest, abs=1e-10)
@@ -111,7 +111,7 @@ def test_a_bead_that_meets_a_dashpot_has_the_closed_form_which_a_naive_tangent_m
 
 @pytest.mark.parametrize("side", [-1.0, 1.0])
 def test_the_second_derivative_jumps_where_a_contact_closes_at_the_strobe(side: float) -> None:
-    """u' = w − γu while the contact is closed and u' = w before it; the onset at −u/w is in the period if u < 0.
+    """u' = w − γu while the contact is closed and u' = w before it; the closing at −u/w is in the period if u < 0.
 
     So ∂u_end/∂u is e^{−γ(T + u/w)} for u < 0 and e^{−γT} for u > 0: continuous, and no contact grazes.
     """

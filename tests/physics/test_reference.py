@@ -44,7 +44,7 @@ def test_a_finer_accuracy_comes_nearer_to_the_reference(name):
     true = reference(name)
     result = run(reference_scene(name).evolve(accuracy=1e-11), 0, true["record"]["scene"]["periods"], 8)
     error = worst(result.displacement, true["displacement"])
-    # Kuwabara–Kono has no dashpot at onset to calm what rounding does there: it ends near 4e-12, the others below 1e-12
+    # Kuwabara–Kono has no dashpot at closing to calm rounding there: it ends near 4e-12, the others below 1e-12
     assert error < 1.2e-11
     # the difference of two such computations is near their rounding; what is stated is no less than the rounding of all
     # steps as it may have grown (granchain_core/integrate/stated.py), in half of these scenes 3e-11 to 2.2e-10

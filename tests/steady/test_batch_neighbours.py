@@ -55,7 +55,7 @@ def test_members_that_are_due_together_are_all_returned_before_one_goes_on() -> 
     assert list(batch.state.periods) == [3] * BATCH_SIZE
 
 
-@pytest.mark.parametrize("lost", ["chain", "shadow"])
+@pytest.mark.parametrize("lost", ["chain", "neighbour"])
 @pytest.mark.parametrize("wrong", [0, 2])
 def test_a_pair_that_is_not_finite_leaves_the_others_theirs(wrong: int, lost: str) -> None:
     chain = scene("sec2").evolve(f=1130.0)
@@ -72,7 +72,7 @@ def test_a_pair_that_is_not_finite_leaves_the_others_theirs(wrong: int, lost: st
         growth[member] = batch.growth(member).copy()
         batch.empty(member)
         batch.empty(member + 1)
-    assert finite == {wrong: lost == "shadow", 2 - wrong: True}
+    assert finite == {wrong: lost == "neighbour", 2 - wrong: True}
     assert np.isfinite(growth[2 - wrong]).all() and len(growth[2 - wrong]) == 4
     assert np.isnan(growth[wrong]).all() and len(growth[wrong]) == 1  # it is given back at once
 

@@ -1,4 +1,4 @@
-"""Lyapunov exponents by the shadow against an independent way: products of the stroboscopic map's derivatives with QR.
+"""Lyapunov exponents by a neighbour against an independent way: products of the stroboscopic map's derivatives with QR.
 """
 
 from __future__ import annotations
@@ -52,8 +52,8 @@ def by_tangents(shown: Scene, state: State, blocks: int, block: int, count: int 
     return means.mean(axis=0), means.std(axis=0, ddof=1) / np.sqrt(blocks)
 
 
-def by_shadow(shown: Scene, state: State) -> list[tuple[float, float]]:
-    """Mean and standard error by the one-scene shadow and by the one in a batch."""
+def by_neighbour(shown: Scene, state: State) -> list[tuple[float, float]]:
+    """Mean and standard error by the one-scene neighbour and by the one in a batch."""
     engine = Engine(shown, MethodSetting("rk4-split"), 1)
     engine.start(state)
     scaled = scale_chain(shown)
@@ -68,7 +68,7 @@ def test_a_chaotic_chain_has_the_exponent_of_its_tangent_flow() -> None:
     assert settling.regime.name == "chaotic"
     exact, error = by_tangents(CHAOTIC, settling.engine.state, 10, 12)
     assert exact[0] > 0.5
-    for mean, spread in by_shadow(CHAOTIC, settling.engine.state):
+    for mean, spread in by_neighbour(CHAOTIC, settling.engine.state):
         assert abs(mean - exact[0]) <= 3.0 * np.hypot(spread, error[0])
 
 
@@ -78,7 +78,7 @@ def test_a_quasi_periodic_chain_has_one_zero_exponent_and_the_rest_below() -> No
     exact, error = by_tangents(QUASI, settling.engine.state, 10, 30)
     # on a closed curve tangents turn into it within the first block; what is left of that dies as 1/periods
     assert abs(exact[0]) <= 3.0 * error[0] + 0.01 and exact[1] < -3.0 * error[1]
-    for mean, spread in by_shadow(QUASI, settling.engine.state):
+    for mean, spread in by_neighbour(QUASI, settling.engine.state):
         assert abs(mean - exact[0]) <= 3.0 * np.hypot(spread, error[0]) and abs(mean) < 0.01
 
 

@@ -34,7 +34,7 @@ STEADY = (
            "an error of the map is taken for one of its fixed point", k.FIXED_POINT),
     Mutant("relaxed-by-change", "steady/settling/refine_orbit.py", "unproved, bound = None, change * contraction / (1.0 - contraction)", "unproved, bound = None, change",
            "the converged orbit is left too early", k.RELAXING),
-    Mutant("shadow-not-pulled-back", "steady/lyapunov.py", "offset *= _DISTANCE / distance", "offset *= 1.0",
+    Mutant("neighbour-not-pulled-back", "steady/lyapunov.py", "offset *= _DISTANCE / distance", "offset *= 1.0",
            "the exponent is that of a distance long since large", k.LYAPUNOV),
 )
 

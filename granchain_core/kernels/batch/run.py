@@ -25,8 +25,8 @@ from .period_end import end_period
 from .record import is_finite_member
 from .step import Values, batch_step, update_batch_peaks
 
-#: `shadow` of a member that has none, and of one that is a shadow itself.
-NO_SHADOW, IS_SHADOW = -1, -2
+#: `neighbour` of a member that has no neighbouring trajectory, and of one that is a neighbouring trajectory itself.
+NO_NEIGHBOUR, IS_NEIGHBOUR = -1, -2
 
 
 class Members(NamedTuple):
@@ -64,8 +64,8 @@ class BatchState(NamedTuple):
     extrapolate_from (L,)    period from which a transient may be extrapolated
     wait_after_undo (L,)     periods without extrapolation after the next one that is undone
     due (L,)                 1 where the member is to be returned to the caller, else 0
-    shadow (L,)              lane of the member's shadow, a neighbouring trajectory; NO_SHADOW, or IS_SHADOW
-    distance (L,)            distance to which the shadow is brought back after each period
+    neighbour (L,)           lane of the member's neighbouring trajectory; NO_NEIGHBOUR, or IS_NEIGHBOUR
+    distance (L,)            distance to which the neighbour is brought back after each period
     growth (L, R)            logarithm of the factor by which that distance has grown in each period; NaN if lost
     strobe_count (L,)        strobes kept
     first_strobe (2, L)      place of the first strobe since the member was last moved to another state, and of the
@@ -106,7 +106,7 @@ class BatchState(NamedTuple):
     extrapolate_from: np.ndarray
     wait_after_undo: np.ndarray
     due: np.ndarray
-    shadow: np.ndarray
+    neighbour: np.ndarray
     distance: np.ndarray
     growth: np.ndarray
     strobe_count: np.ndarray
@@ -159,19 +159,19 @@ def take_steps(members, state, count):
 
 @inline_numba
 def bring_back(state, member):
-    """Record how far a member and its shadow have parted in a period, and bring the shadow back."""
-    y, shadow, rows = state.y, state.shadow[member], state.y.shape[0]
-    if not (is_finite_member(y, member) and is_finite_member(y, shadow)):
+    """Record how far a member and its neighbour have parted in a period, and bring the neighbour back."""
+    y, neighbour, rows = state.y, state.neighbour[member], state.y.shape[0]
+    if not (is_finite_member(y, member) and is_finite_member(y, neighbour)):
         state.growth[member, :] = np.nan
         state.due[member] = 1
         return
     total = 0.0
     for i in range(rows):
-        total += (y[i, shadow] - y[i, member]) ** 2
+        total += (y[i, neighbour] - y[i, member]) ** 2
     start, now = state.distance[member], max(sqrt(total), 1e-300)
     state.growth[member, state.periods[member] - 1] = log(now / start)
     for i in range(rows):
-        y[i, shadow] = y[i, member] + (y[i, shadow] - y[i, member]) * (start / now)
+        y[i, neighbour] = y[i, member] + (y[i, neighbour] - y[i, member]) * (start / now)
 
 
 @kernel
@@ -187,12 +187,12 @@ def run_batch(members, state, stop, check):
     Returns (status, member). Every member that is due is returned before any of them continues. `check` is the address
     of `check_member`.
     """
-    steps_left, due, shadow = state.steps_left, state.due, state.shadow
-    some_due, some_shadow = True, False
+    steps_left, due, neighbour = state.steps_left, state.due, state.neighbour
+    some_due, some_neighbour = True, False
     for member in range(BATCH_SIZE):
         if state.begins[member] != 0:
             call_at(check, (state, member))
-        some_shadow = some_shadow or shadow[member] >= 0
+        some_neighbour = some_neighbour or neighbour[member] >= 0
     while True:
         if some_due:
             for member in range(BATCH_SIZE):
@@ -208,10 +208,10 @@ def run_batch(members, state, stop, check):
         take_steps(members, state, count)
         for member in range(BATCH_SIZE):
             steps_left[member] -= count
-            if steps_left[member] == 0 and end_period(state, member, check) and shadow[member] != IS_SHADOW:
+            if steps_left[member] == 0 and end_period(state, member, check) and neighbour[member] != IS_NEIGHBOUR:
                 due[member], some_due = 1, True
-        if some_shadow:
+        if some_neighbour:
             for member in range(BATCH_SIZE):
-                if shadow[member] >= 0 and steps_left[member] == state.steps[member]:
+                if neighbour[member] >= 0 and steps_left[member] == state.steps[member]:
                     bring_back(state, member)
                     some_due = some_due or due[member] != 0

@@ -62,7 +62,7 @@ class Stage(Enum):
 
     COARSE = "with coarse steps, until its regime is decided"
     FINE = "with fine steps, on the periodic orbit of its coarse run"
-    EXPONENT = "with coarse steps, beside a shadow, so that its Lyapunov exponent is measured"
+    EXPONENT = "with coarse steps, beside a neighbour, so that its Lyapunov exponent is measured"
 
 
 @dataclass(eq=False)

@@ -71,7 +71,7 @@ class _JobsInBatch:
         Starts that are not taken yet.
     jobs : dict of int to BatchJob
         Jobs by the lane of their member.
-    shadows : dict of int to int
+    neighbours : dict of int to int
         Lane of the neighbouring trajectory, by the lane of the member whose exponent is measured.
     waiting, to_measure : list of BatchJob
         Jobs that wait for one lane; jobs that wait for two.
@@ -91,7 +91,7 @@ class _JobsInBatch:
         self.jobs: dict[int, BatchJob] = {}
         self.free = list(reversed(range(BATCH_SIZE)))
         self.newly_free = set[int]()
-        self.shadows: dict[int, int] = {}
+        self.neighbours: dict[int, int] = {}
         self.to_measure: list[BatchJob] = []
 
     def fill(self) -> None:
@@ -132,11 +132,12 @@ class _JobsInBatch:
         """Make a job a member.
 
         A coarse run is due after `EXAMINED_AFTER` periods at the latest, a finer run once the difference has decayed. A
-        job whose exponent is measured gets a shadow.
+        job whose exponent is measured gets a neighbour.
         """
         if job.stage is Stage.EXPONENT:
-            shadow = self.shadows[member] = self.free.pop()
-            put_with_neighbour(self.batch, member, shadow, job.scaled, job.y, MEASURED_PERIODS, job.measurements.offset)
+            neighbour = self.neighbours[member] = self.free.pop()
+            put_with_neighbour(self.batch, member, neighbour, job.scaled, job.y, MEASURED_PERIODS,
+                               job.measurements.offset)
             return
         if job.stage is Stage.COARSE:
             return_at = min(_DRAFT_PERIODS if self.draft else EXAMINED_AFTER, job.affordable_periods - job.periods_run)
@@ -179,7 +180,7 @@ class _JobsInBatch:
     def _free(self, member: int) -> None:
         """Take a job out of its lanes; `fill` gives these lanes to other jobs or empties them."""
         del self.jobs[member]
-        lanes = [member, self.shadows.pop(member)] if member in self.shadows else [member]
+        lanes = [member, self.neighbours.pop(member)] if member in self.neighbours else [member]
         self.free += lanes
         self.newly_free.update(lanes)
 
