@@ -262,8 +262,8 @@ def cosines(values: np.ndarray, repeats: bool) -> np.ndarray:
         mean = float(np.average(values, weights=window))
         amplitudes = np.fft.rfft((values - mean) * window) * (2.0 / window.sum())
         amplitudes[0] = mean
-        return np.asarray(amplitudes)
-    amplitudes = np.fft.rfft(values) * (2.0 / len(values))
-    amplitudes[0] *= 0.5
-    amplitudes[-1] *= 0.5
+    else:
+        amplitudes = np.fft.rfft(values) * (2.0 / len(values))
+        amplitudes[0] *= 0.5
+    amplitudes[-1] *= 0.5  # at half the sampling frequency: one line, where others have one at −f besides
     return np.asarray(amplitudes)

@@ -198,7 +198,7 @@ def searched(problem: Problem, design: int, enough: Callable[[np.ndarray], bool]
     ends: list[np.ndarray] = []
     for turn in range(_MOST_ROUNDS):
         new = sequence.random_base2(size) if turn == 0 else sequence.random(len(tried))
-        tried += list(0.02 + 0.96 * (new + 0.5 * 2.0**-size) % 1.0)
+        tried += list(_inner_points(new, 2.0**-size))
         ends += [_down(problem, start) for start in _apart(problem, tried, starts)]
         best = min(ends, key=problem.misfit)
         if enough(best):
@@ -206,6 +206,11 @@ def searched(problem: Problem, design: int, enough: Callable[[np.ndarray], bool]
     if problem.target.smooth and problem.jumps_beside(best):
         best = descended(problem, simplex(problem, best, 0.02), range(count))
     return best
+
+
+def _inner_points(points: np.ndarray, spacing: float) -> np.ndarray:
+    """Points of [0, 1)ⁿ moved by half their spacing, cyclically, and into 0.02 to 0.98: none begins on a bound."""
+    return np.asarray(0.02 + 0.96 * ((points + 0.5 * spacing) % 1.0))
 
 
 def _apart(problem: Problem, tried: list[np.ndarray], starts: list[np.ndarray]) -> list[np.ndarray]:

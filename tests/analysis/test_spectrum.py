@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from granchain_core import BadInput, Run, Scene, run, scene, spectrum, transfer
+from granchain_core.analysis.spectrum import cosines
 from granchain_core.results.regime import Regime
 
 #: Small waves on a chain that is precompressed by 50 N: every contact stays closed and is nearly a linear spring.
@@ -34,6 +35,12 @@ def test_a_window_gives_the_lines_their_height(period_3: Run) -> None:
     window = spectrum(replace(period_3, regime=Regime.unsettled(300)))
     assert window.period is None and window.resolution == pytest.approx(2.0 * 1130.0 / 12.0)
     np.testing.assert_allclose(window.amplitude[4:200:4], lines.amplitude[1:50], rtol=1e-3, atol=1e-6 * lines.amplitude.max())
+
+
+@pytest.mark.parametrize("repeats", [True, False])
+def test_the_line_at_half_the_sampling_frequency_has_its_own_height(repeats: bool) -> None:
+    alternating = np.cos(np.pi * np.arange(64))
+    assert abs(cosines(alternating, repeats)[-1]) == pytest.approx(1.0, rel=1e-12)
 
 
 def test_what_is_folded_back_is_estimated() -> None:
