@@ -91,8 +91,8 @@ class Batch:
         numbers = {name: np.zeros(BATCH_SIZE) for name in (
             "drive_period", "slowest_decay", "slowest_decay_before", "change_before_extrapolation", "distance")}
         self.state = BatchState(
-            **counts, **numbers, y=_rows(rows), h=_rows(1), turn=_rows(2), overlaps=_rows(n + 1), end_contacts=_rows(4),
-            phase=_rows(2),
+            **counts, **numbers, y=_rows(rows), h=_rows(1), turn=_rows(2), overlaps=_rows(n + 1),
+            static_overlap=_rows(n + 1), end_contacts=_rows(4), phase=_rows(2),
             first_strobe=np.zeros((2, BATCH_SIZE), dtype=np.int64),
             peaks=_rows(BATCH_PEAKS), growth=np.zeros((BATCH_SIZE, STROBES_KEPT)),
             state_before=np.zeros((BATCH_SIZE, 2, n + 2)),
@@ -117,16 +117,21 @@ class Batch:
 
         It is due after `return_at` periods at the latest; from period `earliest` on its regime is checked. Once its
         orbit is found, it goes on with `finer` times the steps, or is due if that is 0 (kernels/batch/begin.py). Raises
-        `ValueError` for a chain whose driver is at rest: in all lanes the driver's displacement is sin θ.
+        `ValueError` for a chain of another structure, and for one whose driver is at rest: in all lanes the driver's
+        displacement is sin θ.
         """
         slots, members, state = scaled.slots, self.members, self.state
         if slots.driver.amplitude != 1.0:
             raise ValueError("a batch drives all its members; this chain's driver is at rest")
+        if not self._takes(scaled):
+            raise ValueError("a batch has one structure; this chain has other effects, or unequal beads or contacts")
         steps = math.ceil(refine * scaled.steps_per_period())
         members.wall[0, member] = slots.chain.stiffness[-1]
         if members.unequal is not None:
             members.unequal.inverse_mass[:, member] = slots.chain.inverse_mass
             members.unequal.stiffness[:, member] = slots.chain.stiffness
+        if slots.preload is not None:
+            state.static_overlap[:, member] = slots.preload.static
         for slot, its in zip(members.slots, slots, strict=True):
             if slot is not None:
                 for rows, value in zip(slot, its, strict=True):
@@ -136,6 +141,12 @@ class Batch:
         state.steps[member], state.finer_steps[member] = steps, steps * finer
         state.return_at[member], state.next_check[member] = return_at, earliest
         state.fine_record[member], state.neighbour[member] = 0.0, NO_NEIGHBOUR
+
+    def _takes(self, scaled: ScaledChain) -> bool:
+        """Whether a chain has the structure of the batch."""
+        chain, example = scaled.slots.chain, self.example
+        alike = chain is example.slots.chain or self.members.unequal is not None or is_uniform(scaled)
+        return alike and scaled.slot_types == example.slot_types
 
     def put_fine(self, member: int, scaled: ScaledChain, y: np.ndarray, refine: float, period: int, decay: float,
                  maxima: np.ndarray) -> None:

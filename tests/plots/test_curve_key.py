@@ -54,7 +54,7 @@ def test_a_curve_without_a_point_has_no_key() -> None:
 
 def test_every_start_looks_different_with_and_without_colour() -> None:
     assert len({style.colour for style in SWEEPS.values()}) == len({style.width for style in SWEEPS.values()}) == 3
-    assert len({(style["marker"], style["filled"]) for style in SPECIAL_STYLES.values()}) == 4
+    assert len({(style["marker"], style["filled"]) for style in SPECIAL_STYLES.values()}) == len(SPECIAL_STYLES)
     assert LINES["stable"][1] == "solid" != LINES["unstable"][1]
     assert all(style.line_words.lower() in KEY.lower() for style in SWEEPS.values())
     assert [(name, label) for name, label, _ in CHOICES[:3]] == [(name, style.label) for name, style in SWEEPS.items()]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,7 +13,8 @@ from granchain_core import CurvePoint, iter_curve, scene
 from granchain_core.errors import Cancelled
 from granchain_core.execution.stop import Stop
 from granchain_core.integrate import Engine
-from granchain_core.steady.batch import job as batch_job
+from granchain_core.steady.batch import jobs_in_batch
+from granchain_core.steady.batch.job import LocatedOrbits
 from granchain_core.steady.batch.jobs_in_batch import batch_results
 from granchain_core.steady.settling import advance
 
@@ -55,12 +57,13 @@ def test_a_stop_reaches_the_located_jumps_of_a_batch(monkeypatch: pytest.MonkeyP
     """Set when the orbit with located events is begun, the last computation of a point whose force jumps."""
     stop, located = Stop(), []
 
-    def engine(*words: object, **names: object) -> Engine:
-        located.append(True)
-        stop.set()
-        return Engine(*words, **names)  # type: ignore[arg-type]
+    class Stopped(LocatedOrbits):
+        def maxima(self, *words: Any) -> Any:
+            located.append(True)
+            stop.set()
+            return super().maxima(*words)
 
-    monkeypatch.setattr(batch_job, "Engine", engine)
+    monkeypatch.setattr(jobs_in_batch, "LocatedOrbits", Stopped)
     with pytest.raises(Cancelled):
         list(batch_results(iter([scene("sec2").evolve(D=300.0, f=100.0)]), stop))
     assert located == [True]

@@ -1,10 +1,10 @@
 """Checks of a batch member's regime, between its periods: is its motion periodic, may its transient be extrapolated?
 
-Coarse run. An extrapolation reaches at most three times as far as the decay predicts (`FARTHEST_EXTRAPOLATION`). If the
-change per orbit is not smaller after it than before, the extrapolation is undone, and the record goes on from where it
-was. A chain may approach an unstable orbit before it leaves it, and an extrapolation could end on that orbit. So an
-orbit found by extrapolation is disturbed, and accepted only if the disturbance decays. If it decays slowly, multipliers
-decide (steady/batch/job.py).
+Coarse run. An extrapolation reaches at most three times the distance that its decay predicts
+(`FARTHEST_EXTRAPOLATION`). If the change per orbit is not smaller after it than before, the extrapolation is undone,
+and the record goes on from where it was. A chain may approach an unstable orbit before it leaves it, and an
+extrapolation could end on that orbit. So an orbit found by extrapolation is disturbed, and accepted only if the
+disturbance decays. If it decays slowly, multipliers decide (steady/batch/job.py).
 
 Finer run. It starts on the orbit of the coarse run and is extrapolated to its own orbit; each extrapolation is checked
 in the same way.

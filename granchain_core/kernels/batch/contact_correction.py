@@ -78,7 +78,7 @@ def correct_two_beads(values, y, c, row, error):
 
 @inline_llvm
 def correct_contacts(values, y, overlaps, h, u0):
-    """Correct the last step at contacts that changed in it; `overlaps` are the overlaps before it."""
+    """Correct a step at contacts that changed in it; `overlaps` are those before the step, then those after it."""
     law, bodies = values.slots.dissipation, values.last + 2
     left = u0
     for c in range(values.last + 1):

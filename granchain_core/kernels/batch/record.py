@@ -51,9 +51,10 @@ def set_state(state, member, there):
 
 @internal
 def forget_last_step(state, member):
-    """Forget the overlaps and ends of the step before, so that no contact event is seen in a member's next step."""
+    """Forget the step before: a member goes on from another state, at phase 0, where the driver is at 0."""
     for c in range(state.overlaps.shape[0]):
-        state.overlaps[c, member] = 0.0
+        left = 0.0 if c == 0 else state.y[c, member]
+        state.overlaps[c, member] = left - state.y[c + 1, member] + state.static_overlap[c, member]
     for row in range(4):
         state.end_contacts[row, member] = 1.0  # counts as closed, so that no closing is recorded here
 

@@ -52,7 +52,8 @@ class BatchState(NamedTuple):
     y (2(N+2), L)            state
     drive_period (L,)        period of the drive
     h, turn (1 and 2, L)     step; cosine and sine of the drive phase of half a step
-    overlaps (N+1, L)        overlaps of the contacts one step ago
+    overlaps (N+1, L)        overlaps of the contacts after the last step, before its correction
+    static_overlap (N+1, L)  overlaps of the contacts at rest, 0 without preload
     end_contacts (4, L)      one step ago: overlap and rate of the first contact, overlap and rate of the last
     phase (2, L)             sine and cosine of the drive phase
     peaks (BATCH_PEAKS, L)   largest forces, jumps and unresolved peaks, and the last four values of each force
@@ -94,6 +95,7 @@ class BatchState(NamedTuple):
     h: np.ndarray
     turn: np.ndarray
     overlaps: np.ndarray
+    static_overlap: np.ndarray
     end_contacts: np.ndarray
     phase: np.ndarray
     peaks: np.ndarray
@@ -145,12 +147,12 @@ def take_steps(members, state, count):
     for _ in range(count):
         middle, middle_cosine = sine * c + cosine * s, cosine * c - sine * s
         end, end_cosine = middle * c + middle_cosine * s, middle_cosine * c - middle * s
-        correct_contacts(values, y, state.overlaps, h, sine)
         first_overlap = batch_overlap(preload, sine, load_batch(y, 1), 0)
         last_overlap = batch_overlap(preload, load_batch(y, last), load_batch(y, last + 1), last)
         chain_ends = batch_step(values, y, state.stages, h, sine, middle, end)
         update_batch_peaks(values, h, first_overlap, last_overlap, beta * cosine, chain_ends, state.end_contacts,
                            state.peaks)
+        correct_contacts(values, y, state.overlaps, h, end)
         sine, cosine = end, end_cosine
     store(state.phase, 0, sine)
     store(state.phase, 1, cosine)

@@ -140,6 +140,8 @@ def _vector_peak(typingctx, a, b, c, d, e, top):
         smooth = builder.and_(builder.fcmp_ordered(">", c, b), builder.fcmp_ordered(">=", c, d))
         for value, least in ((b, near), (d, near), (a, far), (e, far)):
             smooth = builder.and_(smooth, builder.fcmp_ordered(">", value, least))
+        for value in (a, e):
+            smooth = builder.and_(smooth, builder.fcmp_ordered("<=", value, c))
         return builder.select(smooth, top, c)
 
     return c(c, c, c, c, c, c), codegen
@@ -147,14 +149,16 @@ def _vector_peak(typingctx, a, b, c, d, e, top):
 
 #: A maximum is smooth if its two neighbours are above this part of it; a jump of a dashpot force is not.
 ADJACENT = 0.8
-#: The same for the two values beyond the neighbours.
+#: The same for the two values beyond the neighbours; they are not above the maximum either, since the quartic through a
+#: dip of one step may rise to many times its values.
 BEYOND = 0.4
 
 
 def choose_peak(a, b, c, d, e, top):
     """`top` where c is a smooth maximum of five successive values, else c."""
-    smooth = b < c >= d and b > ADJACENT * c and d > ADJACENT * c and a > BEYOND * c and e > BEYOND * c
-    return top if smooth else c
+    largest = b < c >= d and a <= c >= e
+    smooth = b > ADJACENT * c and d > ADJACENT * c and a > BEYOND * c and e > BEYOND * c
+    return top if largest and smooth else c
 
 
 @overload(choose_peak)

@@ -4,11 +4,25 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
 
+from granchain_core.kernels.batch_size import BATCH_SIZE
+from granchain_core.kernels.compiling.jit import kernel
 from granchain_core.kernels.error_control.force_search import is_monotone
 from granchain_core.kernels.forces.crossings import brief_touch, closing_rate
 from granchain_core.kernels.forces.largest import cubic_top
-from granchain_core.kernels.forces.peaks import quartic_top
+from granchain_core.kernels.forces.peaks import (
+    BATCH_PEAKS,
+    HIGHEST,
+    INPUT_UNRESOLVED,
+    PEAKS,
+    quartic_top,
+    update_batch_peak,
+    update_peak,
+)
+from granchain_core.kernels.simd.functions import choose_peak
+from granchain_core.kernels.simd.vector import aligned, load_batch
 
 OWN, PULL = 1.3, -0.7
 
@@ -92,3 +106,38 @@ def test_the_top_of_a_pulse_between_its_samples(offset: float) -> None:
     t = 0.25 * (np.arange(-2, 3) + offset)
     assert quartic_top.py_func(*np.cos(t)) == pytest.approx(1.0, abs=5e-6)
     assert quartic_top.py_func(*((t + 2.0) ** 2 * np.exp(-2.0 - t))) == pytest.approx(4.0 * np.exp(-2.0), abs=2e-5)
+
+
+#: Five successive values of a force around a maximum of 1, smooth or not.
+AROUND_ONE = st.tuples(*(st.floats(0.0, high) for high in (1.5, 1.0, 1.0, 1.5)))
+
+
+@given(values=AROUND_ONE)
+@example(values=(1.199, 0.99957, 0.99955, 0.7788))  # the quartic rises to 209
+@example(values=(0.4004, 0.99999999994, 0.8001, 0.99863))  # near the largest factor that is known
+def test_the_top_of_a_maximum_is_little_above_its_values(values: tuple[float, float, float, float]) -> None:
+    a, b, d, e = values
+    with np.errstate(all="ignore"):  # a flat maximum has no curvature, and its quartic no top
+        top = choose_peak(a, b, 1.0, d, e, quartic_top.py_func(a, b, np.float64(1.0), d, e))
+    assert not top > HIGHEST * max(1.0, a, e)
+
+
+@kernel
+def follow(alone, together, values):
+    """Follow a force of each member, alone and in a batch; values (T, L)."""
+    for k in range(values.shape[0]):
+        update_batch_peak(together, 0, load_batch(values, k), INPUT_UNRESOLVED)
+        for member in range(values.shape[1]):
+            update_peak(alone[member], 0, values[k, member])
+
+
+def test_a_batch_follows_peaks_as_one_chain_does() -> None:
+    """Random forces, many with dips of one value; the vectors take the last steps in another order."""
+    values = aligned(4000, BATCH_SIZE)
+    values[:] = np.exp(np.random.default_rng(5).normal(0.0, 0.1, values.shape))
+    for first in range(0, len(values), 100):
+        alone, together = np.zeros((BATCH_SIZE, PEAKS)), aligned(BATCH_PEAKS, BATCH_SIZE)
+        follow(alone, together, values[first : first + 100])
+        largest = values[first : first + 100].max(axis=0)
+        np.testing.assert_allclose(together[0], alone[:, 0], rtol=1e-12)
+        assert (together[0] <= HIGHEST * largest).all() and (together[0] >= largest).all()
