@@ -37,7 +37,7 @@ class Stop:
     def pause(self) -> None:
         """Called between parts of a computation, some hundredths of a second apart, by the thread that computes.
 
-        Nothing happens here; a server's own kind lets others go first.
+        A hook: it does nothing here, and the server's flag gives up its turn in it.
         """
 
     def __bool__(self) -> bool:

@@ -99,7 +99,7 @@ IN_ROWS = (
     Mutant("along-without-foundation", _LONG, "inverse * force_on_bead(slots, None, from_left(e_before, e) - e, here, du)",
            "inverse * (from_left(e_before, e) - e)", "long chains have no springs to the ground after a step's start",
            k.SIMD_LONG_FOUNDED, which=2, count=2),
-    Mutant("along-without-preload", _LONG, "batch_overlap(simd.preload, here, from_right(here, ahead), b)",
+    Mutant("along-without-preload", _LONG, "vector_overlap(simd.preload, here, from_right(here, ahead), b)",
            "here - from_right(here, ahead)", "a pressed long chain is a sonic vacuum after a step's start",
            k.SIMD_LONG_PRESSED, which=2, count=2),
     Mutant("nan-hidden-in-vectors", _MATH, 'builder.select(builder.fcmp_ordered("<", args[0], zero), zero, args[0])',

@@ -20,7 +20,7 @@ _FIRST_PAUSE = 16
 _FEWEST_ORBITS = 2
 #: [period n] A batch: largest part of the coarse orbit's error that may be left in the finer run.
 COARSE_ERROR_LEFT = 0.02
-#: [period n] A batch: the coarse orbit's error is taken to shrink to at least this per orbit.
+#: [period n] A batch: lower bound of the factor by which the coarse orbit's error is assumed to shrink per orbit.
 _LEAST_CONTRACTION = 1e-3
 #: Columns of `last_check`: period in drive periods, decay per orbit, distance left to the orbit; and their number.
 CHECK_PERIOD, CHECK_DECAY, CHECK_DISTANCE, CHECK_COLUMNS = range(4)

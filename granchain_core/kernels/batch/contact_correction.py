@@ -15,17 +15,18 @@ from __future__ import annotations
 from ..compiling.dispatch import by_slot
 from ..compiling.jit import inline_llvm
 from ..effects.dissipation import LAWS, exponent, primitive_factor, primitive_power
-from ..effects.preload import batch_overlap
-from ..simd.functions import above_zero, clip, gate, larger, root_by_series
+from ..effects.preload import vector_overlap
+from ..simd.functions import at_least_tiny, clip, gate, larger, root_by_series
 from ..simd.vector import load_batch, positive_mask, store
 from .unequal import over_mass, times_stiffness
 
 
 @inline_llvm
-def beside_closed(r):
-    """(4 (r + 1/2)^{3/2} + (r + 1)^{3/2})/6 − (2/5)(r + 1)^{5/2} for 0 ≤ r ≤ 1, to 3e-8.
+def next_step_error(r):
+    """The part of B_{3/2}(r) + E(r) that belongs to the next step, to 3e-8.
 
-    The polynomial through nine Chebyshev points saves two roots.
+    It is (4 (r + 1/2)^{3/2} + (r + 1)^{3/2})/6 − (2/5)(r + 1)^{5/2} for 0 ≤ r ≤ 1. The polynomial through nine points
+    saves two roots.
     """
     high = ((0.00291261 * r - 0.01588264) * r + 0.04025222) * r - 0.06753252
     middle = ((high * r + 0.10018871) * r - 0.25194466) * r - 0.33406599
@@ -35,13 +36,13 @@ def beside_closed(r):
 @inline_llvm
 def impulse_error(r, r_power, mid_power):
     """B_{3/2}(r) + E(r) from r, r^{3/2} and [r − 1/2]_+^{3/2}; the two integrals of s^{3/2} up to r cancel."""
-    return (r_power + 2.0 * mid_power) * (1.0 / 3.0) + beside_closed(r)
+    return (r_power + 2.0 * mid_power) * (1.0 / 3.0) + next_step_error(r)
 
 
 @inline_llvm
 def three_halves_by_series(s):
     """s^{3/2} in all members, 0 or above."""
-    return s * root_by_series(above_zero(s))
+    return s * root_by_series(at_least_tiny(s))
 
 
 @by_slot
@@ -83,7 +84,7 @@ def correct_contacts(values, y, overlaps, h, u0):
     left = u0
     for c in range(values.last + 1):
         right = load_batch(y, c + 1)
-        overlap = batch_overlap(values.slots.preload, left, right, c)
+        overlap = vector_overlap(values.slots.preload, left, right, c)
         before = load_batch(overlaps, c)
         store(overlaps, c, overlap)
         changed = -before * overlap

@@ -15,7 +15,7 @@ import numpy as np
 from ..batch_size import BATCH_SIZE
 from ..compiling.by_address import call_at
 from ..compiling.jit import inline_llvm, inline_numba, kernel
-from ..effects.preload import batch_overlap
+from ..effects.preload import vector_overlap
 from ..equations.motion import batch_slots
 from ..simd.subnormals import flush_subnormals, restore_subnormals
 from ..simd.vector import load_batch, store
@@ -147,8 +147,8 @@ def take_steps(members, state, count):
     for _ in range(count):
         middle, middle_cosine = sine * c + cosine * s, cosine * c - sine * s
         end, end_cosine = middle * c + middle_cosine * s, middle_cosine * c - middle * s
-        first_overlap = batch_overlap(preload, sine, load_batch(y, 1), 0)
-        last_overlap = batch_overlap(preload, load_batch(y, last), load_batch(y, last + 1), last)
+        first_overlap = vector_overlap(preload, sine, load_batch(y, 1), 0)
+        last_overlap = vector_overlap(preload, load_batch(y, last), load_batch(y, last + 1), last)
         chain_ends = batch_step(values, y, state.stages, h, sine, middle, end)
         update_batch_peaks(values, h, first_overlap, last_overlap, beta * cosine, chain_ends, state.end_contacts,
                            state.peaks)
@@ -178,7 +178,7 @@ def bring_back(state, member):
 
 @kernel
 def batch_steps(members, state, count):
-    """Take `count` steps in all members, whose periods do not end."""
+    """Take `count` steps in all members, whose periods do not end: for tests and benchmarks."""
     take_steps(members, state, count)
 
 

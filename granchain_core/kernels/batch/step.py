@@ -13,7 +13,7 @@ from ..batch_size import BATCH_SIZE
 from ..compiling.dispatch import by_slot, by_type_inlined
 from ..compiling.jit import inline_llvm
 from ..effects.dissipation import JUMP_LAWS, LAWS, SMOOTH_LAWS, dashpot_force, unit_primitive
-from ..effects.preload import batch_overlap
+from ..effects.preload import vector_overlap
 from ..equations.body_forces import force_on_bead
 from ..forces.crossings import Approach, brief_touch, closing_rate
 from ..forces.peaks import (
@@ -26,7 +26,7 @@ from ..forces.peaks import (
     OUTPUT_UNRESOLVED,
     update_batch_peak,
 )
-from ..simd.functions import above_zero, clip, gate, larger, root, root_by_series
+from ..simd.functions import at_least_tiny, clip, gate, larger, root, root_by_series
 from ..simd.vector import blank, load_batch, positive_mask, store
 from .unequal import over_mass, times_stiffness
 
@@ -73,7 +73,7 @@ third_root = by_multipliers if BATCH_SIZE == 8 else by_divider
 @inline_llvm
 def contact(values, root_of, left, right, c, is_wall):
     """Elastic force and primitive G/λ of contact c; `root_of` computes the root."""
-    d = above_zero(batch_overlap(values.slots.preload, left, right, c))
+    d = at_least_tiny(vector_overlap(values.slots.preload, left, right, c))
     r = root_of(d)
     e = times_stiffness(values.unequal, values.wall, c, is_wall, d * r)
     return e, unit_primitive(values.slots.dissipation, d, r)

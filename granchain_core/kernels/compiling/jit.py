@@ -8,6 +8,8 @@
 
 Functions that choose their code by a type are in dispatch.py.
 
+Options:
+
 * `nogil`, so that threads really run kernels side by side; not for brief kernels (`brief_kernel`).
 * No `nnan`/`ninf`: a NaN must stay visible. With the flags of `FAST_MATH` sums are vectorised and `x + 0.0`
   folds away. `x * 0.0` does not, so the code for an absent effect must not multiply by zero.

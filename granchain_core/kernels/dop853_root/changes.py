@@ -23,7 +23,7 @@ _REST_PART = 1e-9
 #: Length of the first step after a closing, and of the last before an opening, as a part of the step in t. By
 #: measurement, as are the numbers above and below: over seven motions of section 2 and of the rig, 0.06 to 0.2 here and
 #: 0.7 to 2.5 steps away above change the evaluations for an error of 1e-8 by 7 % at most, in either sense.
-_STEP_AFTER_EVENT = 0.12
+_STEP_PART_NEXT_TO_EVENT = 0.12
 #: A step that would reach this part of the way to an opening goes beyond it.
 _OPENING_PART = 0.8
 #: Length of such a step, as a factor of the way to the opening.
@@ -63,7 +63,7 @@ def size_in_xi(power, q, speed, dt):
         h = 2.0 * dt / (q + end) if power == 2 else 4.0 * dt / ((q + end) * (q * q + end * end))
     if speed < 0.0 and -speed * h > _OPENING_PART * power * q:
         h = _OPENING_FACTOR * power * q / -speed
-    most = power * nonnegative_root(_STEP_AFTER_EVENT * dt * abs(speed), power) / abs(speed)
+    most = power * nonnegative_root(_STEP_PART_NEXT_TO_EVENT * dt * abs(speed), power) / abs(speed)
     return min(h, most), h > most
 
 

@@ -35,12 +35,13 @@ def _(preload, y, c):
 
 
 @by_slot
-def batch_overlap(preload, left, right, c):
-    """δ_c in all members of a batch from the displacements on its two sides."""
+def vector_overlap(preload, left, right, c):
+    """Overlaps in a vector from the displacements on both sides: of contact c in all members of a batch, or of all
+    contacts in block c of a long chain."""
     return left - right
 
 
-@batch_overlap.of(Preload)
+@vector_overlap.of(Preload)
 def _(preload, left, right, c):
     return left - right + load_like(left, preload.static, c)
 

@@ -33,7 +33,7 @@ _ROOT_CHANGE = 1e-15
 _MAX_FACTOR = 6.0
 #: Smallest factor from one attempt to the next (FAC1). Hairer has 1/3; over ten scenes both take as many evaluations.
 _MIN_FACTOR = 0.1
-#: Part of the step at which the error is expected to be the tolerance, as in Hairer's dop853.f.
+#: Safety factor of the step-size controller, as in Hairer's dop853.f (SAFE).
 _SAFETY = 0.9
 #: ε in the resolution of t, ε·(t + 1/β): the spacing of floating-point numbers at 1.
 _RESOLUTION = 2.2e-16

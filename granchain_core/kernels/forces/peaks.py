@@ -57,7 +57,7 @@ def quartic_top(a, b, c, d, e):
 
 @internal
 def update_peak(peaks, row, value):
-    """Follow one force, whose values begin at peaks[row]."""
+    """Update the largest value of one force, whose values begin at peaks[row]."""
     d, c, b, a = peaks[row + 1], peaks[row + 2], peaks[row + 3], peaks[row + 4]
     if value > peaks[row]:
         peaks[row] = value
@@ -103,7 +103,7 @@ def next_period(peaks):
 
 @inline_llvm
 def update_batch_peak(peaks, row, value, unresolved):
-    """Follow one force in all members; its values begin at row `row` of a (rows, lanes) array.
+    """Update the largest value of one force in all members; its values begin at row `row` of a (rows, lanes) array.
 
     Where a peak is not smooth, as next to a closing or in a contact of a few steps, the row `unresolved` takes it.
     """

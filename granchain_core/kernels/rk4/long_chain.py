@@ -15,7 +15,7 @@ from ..compiling.dispatch import by_slot
 from ..compiling.jit import inline_numba, internal
 from ..effects.contact import elastic_force, positive_part
 from ..effects.dissipation import LAWS, dashpot_force, primitive
-from ..effects.preload import batch_overlap
+from ..effects.preload import vector_overlap
 from ..equations.body_forces import force_on_bead
 from ..forces.peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, update_peak
 from ..simd.vector import BLOCK_WIDTH, from_left, from_right, load8, positive_mask, splat8, store, with_first
@@ -86,7 +86,7 @@ def first_stage(simd, slots, u0, h):
     half, sixth = 0.5 * h, h / 6.0
     for b in range(blocks):
         ahead = load8(now, b + 1) if b + 1 < blocks else splat8(0.0)
-        overlap = batch_overlap(simd.preload, here, from_right(here, ahead), b)
+        overlap = vector_overlap(simd.preload, here, from_right(here, ahead), b)
         signs = positive_mask(overlap)
         changed |= signs ^ simd.signs[b]
         simd.signs[b] = signs
@@ -115,7 +115,7 @@ def later_stage(simd, slots, u0, y, out, h, forward, weight):
     reach, share = forward * h, weight * h
     for b in range(blocks):
         ahead = load8(y, b + 1) if b + 1 < blocks else splat8(0.0)
-        d = positive_part(batch_overlap(simd.preload, here, from_right(here, ahead), b))
+        d = positive_part(vector_overlap(simd.preload, here, from_right(here, ahead), b))
         e, G = elastic_force(load8(simd.stiffness, b), d), primitive(law, d)
         inverse = load8(simd.inverse_mass, b)
         du = long_chain_velocity(law, load8(y, blocks + b), inverse, G_before, G)

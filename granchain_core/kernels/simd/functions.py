@@ -101,7 +101,7 @@ def root_by_series(typingctx, value):
 
 
 @intrinsic
-def above_zero(typingctx, value):
+def at_least_tiny(typingctx, value):
     """The vector with every lane raised to `_LEAST_ARGUMENT`; a NaN stays a NaN."""
 
     def codegen(context, builder, sig, args):

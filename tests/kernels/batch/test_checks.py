@@ -117,7 +117,7 @@ def excess(power: float, r: float) -> float:
 
 @pytest.mark.parametrize("r", [1e-6, 0.05, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95, 1.0])
 def test_what_a_batch_step_across_an_event_gives_too_much(r: float) -> None:
-    """Impulse and path of contact_correction.py by their definition, law by law; `beside_closed` is good to 3e-8."""
+    """Impulse and path of contact_correction.py by their definition, law by law; `next_step_error` is good to 3e-8."""
     half, speed, h, c = max(r - 0.5, 0.0), 0.7, 0.2, 0.3
     beside = ((r**1.5 + 4.0 * (r + 0.5) ** 1.5 + (r + 1.0) ** 1.5) / 6.0 - 0.4 * ((r + 1.0) ** 2.5 - r**2.5))
     assert contact_correction.impulse_error.py_func(r, r**1.5, half**1.5) == pytest.approx(excess(1.5, r) + beside, abs=3e-8)

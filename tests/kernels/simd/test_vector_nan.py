@@ -7,7 +7,7 @@ import pytest
 
 from granchain_core.kernels.compiling.jit import kernel
 from granchain_core.kernels.effects.contact import positive_part
-from granchain_core.kernels.simd.functions import above_zero, gate
+from granchain_core.kernels.simd.functions import at_least_tiny, gate
 from granchain_core.kernels.simd.vector import aligned, load8, store
 
 pytestmark = pytest.mark.quick
@@ -17,10 +17,10 @@ VALUES = np.array([-1.0, 0.0, 2.0, np.nan, np.inf, -np.inf, 3.0, np.nan])
 
 @kernel
 def in_vectors(values, chosen, out):
-    """positive_part, above_zero and gate of eight values."""
+    """positive_part, at_least_tiny and gate of eight values."""
     overlaps = load8(values, 0)
     store(out, 0, positive_part(overlaps))
-    store(out, 1, above_zero(overlaps))
+    store(out, 1, at_least_tiny(overlaps))
     store(out, 2, gate(overlaps, load8(chosen, 0)))
 
 

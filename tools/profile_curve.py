@@ -1,0 +1,61 @@
+"""Program: where does the time of a resonance curve go? cProfile in the thread that computes.
+
+    python -m tools.profile_curve [--scene sec2] [--from 30] [--to 3000] [--points 298] [--rows 30]
+
+Kernels appear as built-in methods (`run_batch` is the batch), Python as functions of the package. Profiling makes
+Python slower and kernels not, so the shares of Python are too large; the last line has the time without it.
+"""
+
+from __future__ import annotations
+
+import argparse
+import cProfile
+import pstats
+import threading
+import time
+from collections.abc import Callable
+from unittest import mock
+
+import numpy as np
+
+from granchain_core import resonance_curve, scene
+
+
+def profiled(work: Callable[[], object]) -> pstats.Stats:
+    """What the threads that `work` starts spend their time on."""
+    profiles: list[cProfile.Profile] = []
+    run = threading.Thread.run
+
+    def run_profiled(thread: threading.Thread) -> None:
+        profile = cProfile.Profile()
+        profiles.append(profile)
+        profile.runcall(run, thread)
+
+    with mock.patch.object(threading.Thread, "run", run_profiled):
+        work()
+    return pstats.Stats(*profiles)
+
+
+def main() -> None:
+    """Print the functions that take most time, then the time of a curve on one thread."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--scene", default="sec2")
+    parser.add_argument("--from", dest="low", type=float, default=30.0)
+    parser.add_argument("--to", dest="high", type=float, default=3000.0)
+    parser.add_argument("--points", type=int, default=298)
+    parser.add_argument("--rows", type=int, default=30)
+    given = parser.parse_args()
+    chain, frequencies = scene(given.scene), np.linspace(given.low, given.high, given.points)
+
+    def curve() -> object:
+        return resonance_curve(chain, frequencies, workers=1)
+
+    curve()  # compiles
+    profiled(curve).strip_dirs().sort_stats("tottime").print_stats(given.rows)
+    began = time.perf_counter()
+    curve()
+    print(f"{given.points} points on one thread, without profiling: {time.perf_counter() - began:.3f} s")
+
+
+if __name__ == "__main__":
+    main()
