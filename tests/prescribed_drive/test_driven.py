@@ -20,8 +20,12 @@ from bokeh.plotting import figure
 import granchain
 from app.cli import main
 from granchain_core import BadInput, Driven, Run, Signal, drive, run, scene
+from granchain_core.errors import Cancelled
+from granchain_core.execution.stop import Stop
 from granchain_core.experiment import Series, read_experiment
+from granchain_core.prescribed_drive.moved_chain import MovedChain
 from granchain_core.prescribed_drive.signal import KNOTS
+from granchain_core.scene.state import rest
 
 CHAIN = scene("sec2").evolve(N=3)
 
@@ -320,3 +324,15 @@ def test_one_measured_force_is_drawn_beside_the_computed_one_and_within_its_axis
     assert drawn.select_one({"name": "measured drive"}) is None and source.data["force"].min() >= 49.0
     assert drawn.select_one({"name": "output", "type": figure}).x_range.end > source.data["force"].max()
     assert granchain.figure(found).select_one({"name": "measured output"}) is None
+
+
+def test_a_raised_flag_ends_a_long_chain_within_milliseconds_of_work() -> None:
+    """The flag is read by the work done, steps times bodies, and not by the number of steps."""
+    stop = Stop()
+    chain = MovedChain(scene("sec2").evolve(N=3000), sine(1e-7, 300.0, 2.0), stop)
+    most = 2**19 / chain.scaled.bodies + 1.0
+    assert chain.steps(0) > 2.0 * most
+    stop.set()
+    with pytest.raises(Cancelled):
+        chain.run(rest(chain.scaled.scene), 0)
+    assert chain.counts.steps <= most

@@ -17,8 +17,11 @@ from ..effects.given_force import Sampled
 from ..equations.motion import Trajectory, motion
 from ..forces.largest import update_forces
 from ..samples import first_not_finite, write_sample
-from ..status import CANCELLED, DONE, NOT_FINITE, STEPS_BETWEEN_STOP_CHECKS
+from ..status import CANCELLED, DONE, NOT_FINITE
 from .step import DriveTable, step
+
+#: Steps times bodies between two readings of the stop flag: some tens of milliseconds.
+_WORK_BETWEEN_STOP_CHECKS = 1 << 19
 
 
 class DrivePieces(NamedTuple):
@@ -57,7 +60,7 @@ def run_pieces(method, trajectory, pieces, samples, out):
     """
     slots, drive, y, workspace = trajectory
     bodies = slots.chain.inverse_mass.size
-    taken = 0
+    work = 0
     update_forces(slots, y, workspace.k[0], workspace.forces.e, 0.0, out.log)
     write_sample(slots, 0, y, workspace.k[0], workspace.forces.e, samples)
     for i in range(pieces.spans.size):
@@ -69,9 +72,11 @@ def run_pieces(method, trajectory, pieces, samples, out):
         for j in range(pieces.substeps[i]):
             since = step(method, here, j, out)
             update_forces(slots, y, workspace.k[0], workspace.forces.e, since, out.log)
-            taken += 1
-            if taken % STEPS_BETWEEN_STOP_CHECKS == 0 and out.stop[0] != 0:
-                return CANCELLED, i + 1
+            work += bodies
+            if work >= _WORK_BETWEEN_STOP_CHECKS:
+                work = 0
+                if out.stop[0] != 0:
+                    return CANCELLED, i + 1
         if first_not_finite(y, bodies) != 0:
             return NOT_FINITE, i + 1
         write_sample(slots, i + 1, y, workspace.k[0], workspace.forces.e, samples)
