@@ -72,8 +72,8 @@ def do(arguments: argparse.Namespace) -> None:
           f"{status_in_words(seen.status)}")
     print(forces_in_words(seen))
     if seen.residual is not None:
-        print(f"measured output force: rms difference {seen.residual.rms:.4g} N "
-              f"({100 * seen.residual.relative:.3g} %), largest {seen.residual.largest:.4g} N")
+        print(f"measured output force: rms difference {seen.residual.rms:.4g} N"
+              f"{seen.residual.share}, largest {seen.residual.largest:.4g} N")
     print(f"relative error {seen.integration_error:.1e} of integration, "
           f"{seen.interpolation_error:.1e} between samples; {cost_in_words(seen.cost)}")
 

@@ -36,11 +36,20 @@ from .record import ForceRecord, force_record, prepared
 
 @dataclass(frozen=True)
 class Residual:
-    """Difference of a computed output force from the measured one: root mean square and largest [N], relative rms."""
+    """Difference of a computed output force from the measured one.
+
+    `rms` is its root mean square [N], `largest` its largest modulus [N]. `relative` is `rms` over the root mean square
+    of the measured force, None if the measured force is 0 throughout.
+    """
 
     rms: float
     largest: float
-    relative: float
+    relative: float | None
+
+    @property
+    def share(self) -> str:
+        """The relative difference in brackets, for a sentence; empty where there is none."""
+        return "" if self.relative is None else f" ({100.0 * self.relative:.3g} %)"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -240,4 +249,4 @@ def residual(computed: np.ndarray, measured: np.ndarray | None) -> Residual | No
         return None
     difference = model_minus_measured(computed, measured)
     rms, size = float(np.sqrt(np.mean(difference**2))), float(np.sqrt(np.mean(measured**2)))
-    return Residual(rms, float(np.abs(difference).max()), rms / size if size > 0.0 else float("inf"))
+    return Residual(rms, float(np.abs(difference).max()), rms / size if size > 0.0 else None)
