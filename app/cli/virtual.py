@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import math
 import sys
 from pathlib import Path
 
@@ -12,6 +11,7 @@ import numpy as np
 from granchain_core import BadInput
 
 from .common import check_points, chosen_scene, in_background, show_percent
+from .data_options import add_bandwidth
 from .options import add_scene, number, whole
 
 
@@ -30,8 +30,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--rate", type=number, default=100_000.0, metavar="HZ", help="samples a second")
     parser.add_argument("--noise", type=number, default=0.0, metavar="N", help="noise of a force sample, rms")
     parser.add_argument("--velocity-noise", type=number, default=0.0, metavar="M/S", help="noise of a velocity sample")
-    parser.add_argument("--bandwidth", type=number, default=math.inf, metavar="HZ",
-                        help="bandwidth of the force sensors, a low-pass of order 2")
+    add_bandwidth(parser, "")
     parser.add_argument("--tip-mass", type=number, default=0.0, metavar="KG",
                         help="mass between the input sensor and bead 1, which moves with the shaker")
     parser.add_argument("--seed", type=whole, default=0, help="seed of noise, phase and scatter")

@@ -8,8 +8,9 @@ from .features import Feature, stated_features
 from .measured import Measured
 from .question import Answers, Question, Unclear, answers_of
 from .reader import read_data, read_experiment
+from .sensors import Sensors
 from .series import Series, Shaker
 
-__all__ = ["Answers", "Convention", "Difference", "Feature", "ForceDifference", "Measured", "Question", "Series",
-           "Shaker", "Unclear", "answers_of", "compared", "compared_forces", "model_minus_measured", "read_amplitude",
-           "read_data", "read_experiment", "stated_features"]
+__all__ = ["Answers", "Convention", "Difference", "Feature", "ForceDifference", "Measured", "Question", "Sensors",
+           "Series", "Shaker", "Unclear", "answers_of", "compared", "compared_forces", "model_minus_measured",
+           "read_amplitude", "read_data", "read_experiment", "stated_features"]

@@ -24,6 +24,9 @@ import numpy as np
 from ..errors import BadInput
 from ..inputs.checks import check_range
 
+#: Nodes of a force per time 1/f_c that the low-pass needs: straight lines between them make a line of the force at f_c
+#: too small by (π/32)²/3, which is 0.3 %.
+SAMPLES_PER_BANDWIDTH = 32
 #: Times 1/(2π f_c) after which the filter has forgotten how it began, to 1e-6.
 _FORGOTTEN = 20.0
 #: Exponents below which the second integral of the exponential is a series, since its formula cancels.

@@ -15,7 +15,7 @@ import numpy as np
 from ..errors import BadInput
 from ..execution.stop import Stop
 from ..experiment.measured import VIRTUAL
-from ..experiment.sensors import Sensors
+from ..experiment.sensors import SAMPLES_PER_BANDWIDTH, Sensors
 from ..fit.trains import Train
 from ..inputs.checks import check_range, whole_number
 from ..integrate import Engine, fixed_step_setting, following_setting
@@ -30,9 +30,6 @@ from ..version import __version__
 
 #: Samples of the model per sample of the sensors.
 _PER_SAMPLE = 4
-#: Samples of the model per time 1/f_c of the sensors' filter: straight lines between them make a line of the force at
-#: f_c too small by (π/32)²/3, which is 0.3 %.
-_PER_BANDWIDTH = 32
 #: Samples of the model over the shortest pulse of the force, which suffice for any bandwidth: straight lines between
 #: them are within (π/32)²/8 of its height, 0.1 %.
 _PER_PULSE = 32
@@ -205,7 +202,7 @@ def _fastest(scene: Scene, force: float, sensors: Sensors) -> float:
     No pulse is shorter than that with the largest `force` [N].
     """
     pulses = _PER_PULSE / shortest_pulse(scene, force) if force > 0.0 else 0.0
-    needed = min(_PER_BANDWIDTH * sensors.bandwidth, pulses)
+    needed = min(SAMPLES_PER_BANDWIDTH * sensors.bandwidth, pulses)
     return needed if sensors.filters else max(needed, _PER_SAMPLE * sensors.rate)
 
 
