@@ -28,6 +28,8 @@ def do_driven(arguments: argparse.Namespace, chosen: Scene) -> None:
     from granchain_core import drive
     from granchain_core.experiment import Sensors, compared_forces
     from granchain_core.experiment.sensors import SAMPLES_PER_BANDWIDTH
+    from granchain_core.prescribed_drive.signal import MOST_KNOTS
+    from granchain_core.results.recorded_motion import MOST_RECORDED
     from granchain_core.store import check_writable
 
     for option, usual in PERIODIC.items():
@@ -44,7 +46,9 @@ def do_driven(arguments: argparse.Namespace, chosen: Scene) -> None:
         signal = signal.shifted(begin.displacement)
     say(f"The driver moves by {signal.words}: {len(signal.time)} knots, {signal.time[-1] - signal.time[0]:.4g} s.")
     if sensors.filters:  # the computed forces pass a filter, which needs them between the samples too
-        signal = signal.finer(1.0 / (SAMPLES_PER_BANDWIDTH * sensors.bandwidth))
+        knots = min(MOST_RECORDED // chosen.N, MOST_KNOTS) - len(signal.time)
+        duration = float(signal.time[-1] - signal.time[0])
+        signal = signal.finer(max(1.0 / (SAMPLES_PER_BANDWIDTH * sensors.bandwidth), duration / max(1, knots)))
     start = None if begin is None else begin.state
     found = in_background(lambda stop: drive(chosen, signal, start, stop=stop))
     if found.status != "done":

@@ -25,8 +25,8 @@ from ..errors import BadInput
 from ..inputs.checks import check_range
 
 #: Nodes of a force per time 1/f_c that the low-pass needs: straight lines between them make a line of the force at f_c
-#: too small by (π/32)²/3, which is 0.3 %.
-SAMPLES_PER_BANDWIDTH = 32
+#: too small by (π/128)²/3, which is 0.02 %.
+SAMPLES_PER_BANDWIDTH = 128
 #: Times 1/(2π f_c) after which the filter has forgotten how it began, to 1e-6.
 _FORGOTTEN = 20.0
 #: Exponents below which the second integral of the exponential is a series, since its formula cancels.
@@ -91,6 +91,11 @@ class Sensors:
     def lead_in(self) -> float:
         """Time that a record has to begin earlier [s], so that the filter's own beginning is not in it."""
         return _FORGOTTEN / (2.0 * math.pi * self.bandwidth)
+
+    @property
+    def shortest_pulse(self) -> float:
+        """Duration of the low-pass's answer to an impulse, up to its first zero [s]: no recorded pulse is shorter."""
+        return 1.0 / (math.sqrt(2.0) * self.bandwidth)
 
     def response(self, frequency: float) -> complex:
         """H(f): what the low-pass makes of a sine of frequency f [Hz], amplitude and phase."""

@@ -11,6 +11,7 @@ depends on the place of the jump in it, so that one halving may gain little.
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 
@@ -19,7 +20,7 @@ import numpy as np
 from ..errors import BadInput
 from ..execution.stop import Stop
 from ..execution.stopwatch import Stopwatch
-from ..experiment import model_minus_measured
+from ..experiment import Sensors, model_minus_measured
 from ..integrate.chain_in_pieces import MOST_HALVINGS, refined
 from ..integrate.methods import RK4_SPLIT
 from ..integrate.safety_factors import IRREGULAR
@@ -157,7 +158,7 @@ class Observation(RecordedMotion):
 
 def observe(scene: Scene, time: object, force: object = None, output: object = None, start: State | None = None,
             offset: float | str = 0.0, gap: str = "refuse", stop: Stop | None = None,
-            progress: Callable[[float], None] | None = None) -> Observation:
+            progress: Callable[[float], None] | None = None, bandwidth: float = math.inf) -> Observation:
     """The observer of model (3), Zhang et al. 2016: the chain without driver, a given force on its first bead.
 
     Steps are halved until the error by the steps is at most the accuracy asked for. A further computation from every
@@ -183,6 +184,9 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
         Ends the computation when another thread sets it.
     progress : callable, optional
         Called with the fraction that is done, 0 to 1.
+    bandwidth : float
+        Bandwidth of the force sensors [Hz]. The computed output force passes their low-pass before it is compared, and
+        a record may be sampled as slowly as their shortest pulse allows. The given force is applied as it is.
 
     Returns
     -------
@@ -209,7 +213,8 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
     ((1025, 2), True)
     """
     record = time if isinstance(time, ForceRecord) else force_record(time, force, output)
-    record = prepared(record, scene, offset, gap)
+    sensors = Sensors(bandwidth=bandwidth)
+    record = prepared(record, scene, offset, gap, sensors)
     if len(record.time) * scene.N > MOST_RECORDED:
         raise BadInput(f"{len(record.time)} samples for {scene.N} beads are more than {MOST_RECORDED:.0e} values; "
                        f"give at most {MOST_RECORDED // scene.N} samples.")
@@ -239,7 +244,8 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
         status="done" if errors[0] <= scene.accuracy else "accuracy-not-reached",
         force_errors=ForceErrors.of(np.array([np.nan, *errors[2:]])),
         cost=Cost.of(spent.seconds, chain.counts, RK4_SPLIT),
-        residual=residual(forces[:, -1], record.output), residual_elastic=residual(elastic, record.output),
+        residual=residual(sensors.passed(record.time, forces[:, -1], record.time), record.output),
+        residual_elastic=residual(sensors.passed(record.time, elastic, record.time), record.output),
     )
 
 

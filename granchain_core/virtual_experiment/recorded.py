@@ -31,8 +31,8 @@ from ..version import __version__
 #: Samples of the model per sample of the sensors.
 _PER_SAMPLE = 4
 #: Samples of the model over the shortest pulse of the force, which suffice for any bandwidth: straight lines between
-#: them are within (π/32)²/8 of its height, 0.1 %.
-_PER_PULSE = 32
+#: them are within (π/64)²/8 of its height, 0.03 %.
+_PER_PULSE = 64
 #: Least samples of the model per drive period.
 _LEAST_SAMPLES = 96
 #: Relative error of the state that a record begins with.
