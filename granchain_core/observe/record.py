@@ -180,5 +180,5 @@ def _check_sampling(record: ForceRecord, scene: Scene, sensors: Sensors) -> None
         through = " behind these sensors" if sensors.filters else ""
         raise BadInput(f"{record.place(worst)}: a pulse of {largest:.3g} N may be as short as "
                        f"{PULSE_SAMPLES * allowed:.3g} s in this chain{through}, and samples {record.spacing:.3g} s "
-                       f"apart would miss it; the nearest valid spacing is {allowed:.3g} s ({1.0 / allowed:.4g} samples "
-                       "a second).")
+                       f"apart would miss it; the nearest valid spacing is {allowed:.3g} s "
+                       f"({1.0 / allowed:.4g} samples a second).")

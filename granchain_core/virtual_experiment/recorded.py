@@ -17,7 +17,7 @@ from ..execution.stop import Stop
 from ..experiment.measured import VIRTUAL
 from ..experiment.sensors import SAMPLES_PER_BANDWIDTH, Sensors
 from ..fit.trains import Train
-from ..inputs.checks import check_range, whole_number
+from ..inputs.checks import check_range, unknown_name, whole_number
 from ..integrate import Engine, fixed_step_setting, following_setting
 from ..integrate.methods import typical_error
 from ..observe.record import shortest_pulse
@@ -25,8 +25,10 @@ from ..results.run import GIVEN_STATE, Cost, Run, run_from
 from ..scene import Scene
 from ..scene.refusals import refuse_undriven
 from ..scene.state import State
+from ..steady.settling.outcome import Settled
 from ..steady.settling.settle import settle
 from ..version import __version__
+from .from_rest import from_rest
 
 #: Samples of the model per sample of the sensors.
 _PER_SAMPLE = 4
@@ -47,25 +49,31 @@ MOST_RECORDS = 10_000
 MOST_VALUES = 20_000_000
 #: Most drive periods of a record.
 MOST_PERIODS = 10_000
+#: Where a series may begin.
+STARTS = ("settled", "rest")
 #: Largest seed.
 _LARGEST_SEED = 2**63 - 1
 
 
-def virtual_series_csv(scene: Scene, periods: int, sensors: Sensors, seed: int = 0, stop: Stop | None = None) -> str:
-    """What the sensors record of the steady state over some drive periods: time, velocity, input and output force.
+def virtual_series_csv(scene: Scene, periods: int, sensors: Sensors, seed: int = 0, stop: Stop | None = None,
+                       start: str = "settled") -> str:
+    """What the sensors record over some drive periods: time, velocity, input and output force.
 
     Parameters
     ----------
     scene : Scene
         A driven chain.
     periods : int
-        Length of the record in drive periods, 1 to 10,000. The record begins at a random phase.
+        Length of the record in drive periods, 1 to 10,000.
     sensors : Sensors
         Noise, bandwidth, tip mass and sampling rate of the sensors.
     seed : int
         Seed of the noise and of the phase.
     stop : Stop, optional
         Ends the computation when another thread sets it.
+    start : str
+        "settled": the record is of the steady state and begins at a random phase. "rest": it begins before the shaker
+        does, with a drive period at rest and two in which the amplitude of the shaker rises.
 
     Returns
     -------
@@ -94,9 +102,13 @@ def virtual_series_csv(scene: Scene, periods: int, sensors: Sensors, seed: int =
     count = round(periods * sensors.rate / scene.f)
     check_range("samples (periods · rate / f) =", count, 8, MOST_SAMPLES)
     random = np.random.default_rng(whole_number("seed =", seed, 0, _LARGEST_SEED))
-    times, velocity, forces = _recorded(scene, count, sensors, random, stop)
+    if start not in STARTS:
+        raise unknown_name("start", start, STARTS)
+    recorded = _recorded if start == "settled" else _from_rest
+    times, velocity, forces = recorded(scene, count, sensors, random, stop)
     rows = "\n".join(f"{t:.9g},{v:.7g},{i:.7g},{o:.7g}" for t, v, i, o in zip(times, velocity, *forces, strict=True))
-    return (f"{_head(scene, sensors, seed)}time (s),velocity (m/s),input force (N),output force (N)\n{rows}\n")
+    begun = "" if start == "settled" else "# begins at rest: the shaker starts after one drive period\n"
+    return (f"{_head(scene, sensors, seed)}{begun}time (s),velocity (m/s),input force (N),output force (N)\n{rows}\n")
 
 
 def virtual_curve_csv(scene: Scene, frequencies: Sequence[float] | np.ndarray, sensors: Sensors, repeats: int = 3,
@@ -196,6 +208,25 @@ def _recorded(scene: Scene, count: int, sensors: Sensors, random: np.random.Gene
     return times, velocity + sensors.velocity_noise * random.standard_normal(count), forces
 
 
+def _from_rest(scene: Scene, count: int, sensors: Sensors, random: np.random.Generator,
+               stop: Stop | None) -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:
+    """Time, velocity, and both forces of `count` samples that begin at rest."""
+    found, times = _settled(scene, stop), np.arange(count) / sensors.rate
+    largest = max(found.run.max_input_force, found.run.max_output_force)
+    velocity, forces = from_rest(_quick(scene), times, _fastest(scene, largest, sensors), sensors, stop)
+    forces = [force + sensors.noise * random.standard_normal(count) for force in forces]
+    return times, velocity + sensors.velocity_noise * random.standard_normal(count), forces
+
+
+def _quick(scene: Scene) -> Scene:
+    """The scene with an accuracy that suffices for a record."""
+    return scene.evolve(accuracy=max(scene.accuracy, _START_ACCURACY))
+
+
+def _settled(scene: Scene, stop: Stop | None) -> Settled:
+    return settle(_quick(scene), stop=stop)
+
+
 def _fastest(scene: Scene, force: float, sensors: Sensors) -> float:
     """Samples of the model a second [Hz]: enough for the filter and, where there is none, for a sample.
 
@@ -208,7 +239,7 @@ def _fastest(scene: Scene, force: float, sensors: Sensors) -> float:
 
 def _motion(scene: Scene, length: float, sensors: Sensors, stop: Stop | None) -> tuple[Run, float]:
     """The steady state from phase 0 on, over `length` [s] and a little more, and its samples a second [Hz]."""
-    found = settle(scene.evolve(accuracy=max(scene.accuracy, _START_ACCURACY)), stop=stop)
+    found = _settled(scene, stop)
     largest = max(found.run.max_input_force, found.run.max_output_force)
     samples = max(_LEAST_SAMPLES, math.ceil(_fastest(scene, largest, sensors) / scene.f))
     periods = math.ceil(length * scene.f) + 1

@@ -47,6 +47,24 @@ def test_a_slow_sensor_leaves_nothing_if_its_bandwidth_is_known(
     assert relative(path, "--start", "settled", capsys=capsys)[0] > 0.2
 
 
+def test_a_record_that_begins_before_the_shaker_is_replayed_from_rest(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """By the command alone, without a start; a slow sensor needs its bandwidth as ever."""
+    path = tmp_path / "rest.csv"
+    for bandwidth in ([], ["--bandwidth", "1000"]):
+        assert main(["virtual", "fig12-60", "--rate", "20000", "--periods", "6", "--start", "rest", "--out", str(path), *bandwidth]) == 0
+        assert "2000 rows" in capsys.readouterr().out
+        left, said = relative(path, *bandwidth, capsys=capsys)
+        assert left < 0.01 and "begins in motion" not in said
+    found = read_experiment(path)
+    assert isinstance(found, Series) and found.virtual and found.velocity is not None
+    still = found.time < 1.0 / 60.0
+    assert np.abs(found.velocity[still]).max() < 1e-4 * found.velocity.max()
+    assert found.velocity.max() == pytest.approx(RIG.A0 * 120.0 * np.pi, rel=1e-3)
+    for bad, sentence in ((["--start", "end"], "settled"), (["--start", "rest", "--kind", "curve", "--from", "60", "--to", "60"], "--kind series")):
+        assert main(["virtual", "fig12-60", *bad]) == 2
+        assert sentence in capsys.readouterr().err
+
+
 def test_a_tip_is_compared_too() -> None:
     sensors = Sensors(rate=50e3, tip_mass=0.01, bandwidth=5e3)
     found = read_data(virtual_series_csv(CHAIN, 10, sensors).encode())
