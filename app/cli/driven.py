@@ -184,7 +184,8 @@ def _residual_json(found: ForceDifference | None) -> dict[str, Any] | None:
     """How far a computed force is from the measured one; None where none was measured."""
     if found is None:
         return None
-    return {name: value for name, value in asdict(found).items() if name not in ("force", "word")}
+    return {name: getattr(found, name)
+            for name in ("compared", "samples", "rms", "largest", "at", "mean", "relative")}
 
 
 def _show(found: Driven, differences: dict[str, ForceDifference]) -> None:

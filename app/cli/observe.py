@@ -74,22 +74,23 @@ def do(arguments: argparse.Namespace) -> None:
           f"{status_in_words(seen.status)}")
     print(forces_in_words(seen))
     if seen.residual is not None:
-        print(f"measured output force: rms difference {seen.residual.rms:.4g} N"
-              f"{seen.residual.share}, largest {seen.residual.largest:.4g} N")
+        at = f"{seen.time[seen.residual.index]:.5g} s"
+        print(f"output force, model − measured at {len(seen.time)} samples: {seen.residual.words(at)}")
     print(f"relative error {seen.integration_error:.1e} of integration, "
           f"{seen.interpolation_error:.1e} between samples; {cost_in_words(seen.cost)}")
 
 
 def _json(seen: Observation) -> dict[str, Any]:
     """An observation as one JSON object."""
+    from granchain_core.observe.observation import written
+
     scene = scene_json(seen.scene)
     return {**scene, "effects": ["given force" if e.startswith("driver") else e for e in scene["effects"]],
             "status": seen.status, "input": {
                 "understood": seen.record.understood, "notes": list(seen.record.notes), "samples": len(seen.time),
                 "spacing": seen.record.spacing, "from": float(seen.time[0]), "to": float(seen.time[-1])},
             **forces_json(seen),
-            "residual": None if seen.residual is None else asdict(seen.residual),
-            "residual_elastic": None if seen.residual_elastic is None else asdict(seen.residual_elastic),
+            "residual": written(seen.residual), "residual_elastic": written(seen.residual_elastic),
             "error_estimate": seen.displacement_error, "integration_error": seen.integration_error,
             "interpolation_error": seen.interpolation_error, "error_estimate_output": seen.force_errors.output,
             "error_estimate_elastic": seen.force_errors.elastic, "cost": asdict(seen.cost)}

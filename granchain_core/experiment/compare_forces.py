@@ -10,13 +10,13 @@ Note       Both clocks begin at the first sample, so nothing is moved in time. N
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Protocol
 
 import numpy as np
 
 from ..errors import BadInput
-from .compare import model_minus_measured
+from .misfit import Misfit
 from .sensors import Sensors
 from .series import Series
 
@@ -41,8 +41,8 @@ class Motion(Protocol):
 
 
 @dataclass(frozen=True)
-class ForceDifference:
-    """Model − measured of one force over the measured times of a motion.
+class ForceDifference(Misfit):
+    """Model − measured of one force over the measured times of a motion: a `Misfit` with its circumstances.
 
     Attributes
     ----------
@@ -50,12 +50,8 @@ class ForceDifference:
         "input_force" or "output_force".
     compared, samples : int
         Measured times of the motion, and all measured times.
-    rms, largest, mean : float
-        Root of the mean square, largest modulus, and mean [N].
     at : float
         Time of the largest difference [s].
-    relative : float or None
-        `rms` over that of the measured force; None if the measured force is 0 throughout.
     word : str
         "measured", or "virtual experiment" where nothing was measured.
     """
@@ -63,20 +59,14 @@ class ForceDifference:
     force: str
     compared: int
     samples: int
-    rms: float
-    largest: float
     at: float
-    mean: float
-    relative: float | None
     word: str = "measured"
 
     @property
     def sentence(self) -> str:
         """The difference in words, with its unit."""
-        share = "" if self.relative is None else f" ({100.0 * self.relative:.3g} %)"
         return (f"{self.force.replace('_', ' ')}, model − {self.word} at {self.compared} of {self.samples} samples: "
-                f"rms {self.rms:.4g} N{share}, largest {self.largest:.4g} N at {self.at:.5g} s, "
-                f"mean {self.mean:+.4g} N")
+                f"{self.words(f'{self.at:.5g} s')}")
 
 
 def compared_forces(measured: Series, motion: Motion, sensors: Sensors | None = None) -> dict[str, ForceDifference]:
@@ -125,12 +115,9 @@ def compared_forces(measured: Series, motion: Motion, sensors: Sensors | None = 
         force = getattr(motion, name)
         if name == "input_force" and sensors.tip_mass > 0.0:
             force = force + sensors.tip_mass * _acceleration(motion)
-        gaps = model_minus_measured(sensors.passed(motion.time, force, time[within]), there)
-        rms, size = (float(np.sqrt(np.mean(one**2))) for one in (gaps, there))
-        at = int(np.argmax(np.abs(gaps)))
-        found[name] = ForceDifference(name, len(gaps), len(time), rms, float(np.abs(gaps[at])),
-                                      float(time[within][at]), float(gaps.mean()),
-                                      rms / size if size > 0.0 else None, measured.word)
+        misfit = Misfit.of(sensors.passed(motion.time, force, time[within]), there)
+        found[name] = ForceDifference(**asdict(misfit), force=name, compared=len(there), samples=len(time),
+                                      at=float(time[within][misfit.index]), word=measured.word)
     return found
 
 

@@ -20,7 +20,7 @@ import numpy as np
 from ..errors import BadInput
 from ..execution.stop import Stop
 from ..execution.stopwatch import Stopwatch
-from ..experiment import Sensors, model_minus_measured
+from ..experiment import Misfit, Sensors
 from ..integrate.chain_in_pieces import MOST_HALVINGS, refined
 from ..integrate.methods import RK4_SPLIT
 from ..integrate.safety_factors import IRREGULAR
@@ -34,23 +34,15 @@ from ..tables.provenance import Attribute
 from .pushed_chain import PushedChain
 from .record import ForceRecord, force_record, prepared
 
+#: Difference of a computed output force from the measured one.
+Residual = Misfit
+#: What is written of it.
+_WRITTEN = ("rms", "largest", "relative")
 
-@dataclass(frozen=True)
-class Residual:
-    """Difference of a computed output force from the measured one.
 
-    `rms` is its root mean square [N], `largest` its largest modulus [N]. `relative` is `rms` over the root mean square
-    of the measured force, None if the measured force is 0 throughout.
-    """
-
-    rms: float
-    largest: float
-    relative: float | None
-
-    @property
-    def share(self) -> str:
-        """The relative difference in brackets, for a sentence; empty where there is none."""
-        return "" if self.relative is None else f" ({100.0 * self.relative:.3g} %)"
+def written(found: Misfit | None) -> dict[str, float | None] | None:
+    """A residual as JSON and files have it; None where nothing was measured."""
+    return None if found is None else {name: getattr(found, name) for name in _WRITTEN}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -81,7 +73,7 @@ class Observation(RecordedMotion):
         Computing time, steps and evaluations.
     residual, residual_elastic : Residual or None
         Difference from the measured output force, of the total and of the elastic force: `rms`, `largest` [N],
-        `relative`.
+        `relative` (None if the measured force is 0 throughout), and the others of a `Misfit`.
 
     Examples
     --------
@@ -137,7 +129,7 @@ class Observation(RecordedMotion):
     def attributes(self) -> dict[str, Attribute]:
         """Status, largest forces, errors, how the input was read, residuals, cost, and where it comes from."""
         residuals: dict[str, Attribute] = {
-            name: json.dumps(asdict(found)) for name in ("residual", "residual_elastic")
+            name: json.dumps(written(found)) for name in ("residual", "residual_elastic")
             if (found := getattr(self, name)) is not None}
         return {**provenance(self.scene, self.cost.method, self.displacement_error), "status": self.status,
                 "integration_error": self.integration_error, "interpolation_error": self.interpolation_error,
@@ -152,7 +144,7 @@ class Observation(RecordedMotion):
                      f"relative error of displacements {self.integration_error:.1e} by steps, "
                      f"{self.interpolation_error:.1e} between samples"]
         if self.residual is not None:
-            sentences.append(f"model − measured: rms {self.residual.rms:.3g} N, most {self.residual.largest:.3g} N")
+            sentences.append(f"model − measured: {self.residual.words()}")
         return sentences
 
 
@@ -251,8 +243,4 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
 
 def residual(computed: np.ndarray, measured: np.ndarray | None) -> Residual | None:
     """Difference of `computed` from `measured`; None where nothing was measured."""
-    if measured is None:
-        return None
-    difference = model_minus_measured(computed, measured)
-    rms, size = float(np.sqrt(np.mean(difference**2))), float(np.sqrt(np.mean(measured**2)))
-    return Residual(rms, float(np.abs(difference).max()), rms / size if size > 0.0 else None)
+    return None if measured is None else Misfit.of(computed, measured)

@@ -210,7 +210,7 @@ def test_a_difference_from_an_output_of_zeros_has_no_per_cent(tmp_path: Path, ca
     assert stored["relative"] is None and stored["rms"] == printed["residual"]["rms"]
     assert cli.main(words) == 0
     said = capsys.readouterr().out
-    assert "rms difference" in said and "%" not in said and "inf" not in said
+    assert "model − measured at 60 samples: rms" in said and "%" not in said and "inf" not in said
 
 
 def test_saved_arrays_are_those_of_the_observation(tmp_path: Path) -> None:
