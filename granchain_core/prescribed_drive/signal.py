@@ -272,6 +272,18 @@ class Signal:
         return cls.of(velocity, displacement, duration, high,
                       f"noise from {low:g} to {high:g} Hz for {duration:g} s, seed {seed}")
 
+    def quadratics(self) -> np.ndarray:
+        """Coefficients (T − 1, 3) of the displacement in every interval, constant term first, in m and s."""
+        step = np.diff(self.time)
+        return np.stack([self.displacement[:-1], self.velocity[:-1], 0.5 * np.diff(self.velocity) / step], axis=1)
+
+    def displacement_at(self, time: np.ndarray) -> np.ndarray:
+        """Displacement at any times from the first knot to the last [m]."""
+        at = np.clip(np.searchsorted(self.time, time, "right") - 1, 0, len(self.time) - 2)
+        constant, linear, quadratic = self.quadratics()[at].T
+        since = time - self.time[at]
+        return np.asarray(constant + since * (linear + since * quadratic))
+
     def shifted(self, start: float) -> Signal:
         """The same motion, further into the chain by `start` [m] throughout."""
         return replace(self, displacement=self.displacement + start,
@@ -292,18 +304,6 @@ class Signal:
         given = np.arange(len(self.time))
         time, velocity = (np.interp(at, given, values) for values in (self.time, self.velocity))
         return replace(self, time=time, velocity=velocity, displacement=self.displacement_at(time))
-
-    def quadratics(self) -> np.ndarray:
-        """Coefficients (T − 1, 3) of the displacement in every interval, constant term first, in m and s."""
-        step = np.diff(self.time)
-        return np.stack([self.displacement[:-1], self.velocity[:-1], 0.5 * np.diff(self.velocity) / step], axis=1)
-
-    def displacement_at(self, time: np.ndarray) -> np.ndarray:
-        """Displacement at any times from the first knot to the last [m]."""
-        at = np.clip(np.searchsorted(self.time, time, "right") - 1, 0, len(self.time) - 2)
-        constant, linear, quadratic = self.quadratics()[at].T
-        since = time - self.time[at]
-        return np.asarray(constant + since * (linear + since * quadratic))
 
 
 def _of_samples(count: int, put_in: np.ndarray, of: Callable[[np.ndarray], Signal]) -> Signal:

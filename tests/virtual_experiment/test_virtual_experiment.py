@@ -90,6 +90,20 @@ def test_the_low_pass_is_the_analogue_one_at_every_rate(rate: float, cutoff: flo
         assert abs(exact) == pytest.approx(1.0 / np.sqrt(1.0 + part**4))
 
 
+def test_a_periodic_force_with_a_jump_passes_as_its_repetitions_do() -> None:
+    """Two nodes at one time are a jump; the answer to a step is the closed form of a Butterworth filter."""
+    sensors, time = Sensors(bandwidth=700.0), np.array([0.0, 1e-3, 1e-3, 2.5e-3])
+    force, at = np.array([0.0, 0.0, 1.0, 1.0]), np.linspace(0.0, 2.4e-3, 97)
+    rate, since = np.sqrt(2.0) * np.pi * 700.0, np.maximum(at - 1e-3, 0.0)
+    exact = np.where(at > 1e-3, 1.0 - np.exp(-rate * since) * (np.cos(rate * since) + np.sin(rate * since)), 0.0)
+    np.testing.assert_allclose(sensors.passed(time, force, at), exact, atol=1e-12)
+    closed = np.array([0.0, 0.0, 1.0, 0.0])
+    many = np.concatenate([time + 2.5e-3 * turn for turn in range(12)])
+    np.testing.assert_allclose(sensors.passed(time, closed, at + 1.0, periodic=True),
+                               sensors.passed(many, np.tile(closed, 12), at + 11 * 2.5e-3), atol=1e-9)
+    np.testing.assert_array_equal(Sensors().passed(time, force, np.array([0.5e-3, 1e-3, 2e-3])), [0.0, 1.0, 1.0])
+
+
 def test_noise_is_as_strong_as_it_says_and_differs_from_seed_to_seed() -> None:
     quiet, noisy, other = (series(CHAIN, 40, Sensors(noise=noise, velocity_noise=noise / 10.0), seed)
                            for noise, seed in ((0.0, 3), (0.02, 3), (0.02, 4)))
