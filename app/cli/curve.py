@@ -109,10 +109,9 @@ def _difference(swept: Curve, measured: Measured, elastic: bool) -> Difference:
 
 def _misfit_json(difference: Difference) -> dict[str, Any]:
     """The misfit as an object: null where no measured frequency lies on the curve."""
-    there = difference.compared
-    gaps = difference.residuals[there]
-    return {"compared": int(there.sum()), "rms": float(np.sqrt(np.mean(gaps**2))) if there.any() else None,
-            "mean": float(gaps.mean()) if there.any() else None}
+    misfit = difference.misfit
+    return {"compared": int(difference.compared.sum()), "rms": None if misfit is None else misfit.rms,
+            "mean": None if misfit is None else misfit.mean}
 
 
 def _swept(arguments: argparse.Namespace, asked: CurveRequest) -> Curve:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import argparse
+import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING, TypeVar
 
 from .common import say
+from .options import number
 
 if TYPE_CHECKING:
     from granchain_core import Amplitude, Scene
@@ -24,6 +26,12 @@ def add_answers(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--separator", metavar="NAME", help="semicolon, tab, comma, bar or space between its columns")
     parser.add_argument("--dataset", metavar="NAME", help="which dataset of a digitiser's project")
     parser.add_argument("--note", default="", metavar="TEXT", help="a note that stays with the data")
+
+
+def add_bandwidth(parser: argparse.ArgumentParser, use: str) -> None:
+    """Add the bandwidth of the force sensors; `use` says what is done with it."""
+    parser.add_argument("--bandwidth", type=number, default=math.inf, metavar="HZ",
+                        help=f"bandwidth of the force sensors, a low-pass of order 2{use}")
 
 
 def add_amplitude(parser: argparse.ArgumentParser) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +16,8 @@ from .picture import write_picture
 
 if TYPE_CHECKING:
     from granchain_core import Driven, Signal
-    from granchain_core.experiment import Answers, ForceDifference, Series
+    from granchain_core.experiment import Answers, ForceDifference, Sensors, Series
+    from granchain_core.fit import Beginning
 
 #: Options of `run` that count drive periods, or choose among methods, with the values they have if they are not given.
 PERIODIC = {"periods": 100, "record": 20, "samples": 96, "method": None, "resume": False, "explain": False}
@@ -24,7 +26,10 @@ PERIODIC = {"periods": 100, "record": 20, "samples": 96, "method": None, "resume
 def do_driven(arguments: argparse.Namespace, chosen: Scene) -> None:
     """Run a scene with the signal of --drive in place of its own drive."""
     from granchain_core import drive
-    from granchain_core.experiment import compared_forces
+    from granchain_core.experiment import Sensors, compared_forces
+    from granchain_core.experiment.sensors import SAMPLES_PER_BANDWIDTH
+    from granchain_core.prescribed_drive.signal import MOST_KNOTS
+    from granchain_core.results.recorded_motion import MOST_RECORDED
     from granchain_core.store import check_writable
 
     for option, usual in PERIODIC.items():
@@ -32,10 +37,20 @@ def do_driven(arguments: argparse.Namespace, chosen: Scene) -> None:
             raise BadInput(f"--{option} is for a harmonic drive; with --drive the motion goes from the start to the "
                            "end of the signal, by the method with split steps.")
     signal, series = chosen_signal(arguments, chosen)
+    sensors = Sensors(bandwidth=arguments.bandwidth)
     if arguments.out:
         check_writable(arguments.out)
+    begin = None if series is None else _beginning(arguments.start, chosen, series, sensors)
+    if begin is not None:
+        say(f"The chain begins in {begin.words}; the driver begins at {begin.displacement:.4g} m.")
+        signal = signal.shifted(begin.displacement)
     say(f"The driver moves by {signal.words}: {len(signal.time)} knots, {signal.time[-1] - signal.time[0]:.4g} s.")
-    found = in_background(lambda stop: drive(chosen, signal, stop=stop))
+    if sensors.filters:  # the computed forces pass a filter, which needs them between the samples too
+        knots = min(MOST_RECORDED // chosen.N, MOST_KNOTS) - len(signal.time)
+        duration = float(signal.time[-1] - signal.time[0])
+        signal = signal.finer(max(1.0 / (SAMPLES_PER_BANDWIDTH * sensors.bandwidth), duration / max(1, knots)))
+    start = None if begin is None else begin.state
+    found = in_background(lambda stop: drive(chosen, signal, start, stop=stop))
     if found.status != "done":
         say(f"The accuracy asked for, {chosen.accuracy:g}, was not reached: the error may be "
             f"{found.displacement_error:.1e} of the largest displacement.{_limited_by_samples(found)}")
@@ -45,9 +60,10 @@ def do_driven(arguments: argparse.Namespace, chosen: Scene) -> None:
         with unbroken(arguments.out):
             save(found, arguments.out, series)
     write_picture(arguments.picture, f"A driven motion of {chosen.name}", found, measured=series)
-    differences = {} if series is None else compared_forces(series, found)
+    differences = {} if series is None else compared_forces(series, found, sensors)
     if arguments.json:
-        show_json(_json(found, series, differences))
+        show_json({**_json(found, series, differences), "start": "rest" if begin is None else begin.words,
+                   "bandwidth": sensors.bandwidth if sensors.filters else None})
     else:
         _show(found, differences)
 
@@ -65,14 +81,46 @@ def chosen_signal(arguments: argparse.Namespace, chosen: Scene) -> tuple[Signal,
         say(f"{series.understood}.")
         say(_uses(series))
         return signal, series
-    check_no_gap(arguments)
+    check_no_samples(arguments)
+    if arguments.start != "rest":
+        raise BadInput("--start is for --drive FILE, the samples of a measured motion; a formula starts at rest.")
     return found, None
 
 
-def check_no_gap(arguments: argparse.Namespace) -> None:
-    """Refuse --gap where no samples are read."""
+def check_no_samples(arguments: argparse.Namespace) -> None:
+    """Refuse --gap and --bandwidth where no samples are read."""
     if arguments.gap != "refuse":
         raise BadInput("--gap is for --drive FILE, the samples of a measured motion.")
+    if math.isfinite(arguments.bandwidth):
+        raise BadInput("--bandwidth is for --drive FILE, with which measured forces are compared.")
+
+
+def _beginning(start: str, chosen: Scene, series: Series, sensors: Sensors) -> Beginning | None:
+    """Where chain and driver begin; None at rest, with a warning if the record does not begin so."""
+    from granchain_core.fit import settled_beginning
+    from granchain_core.fit.beginning import in_motion
+
+    if start == "rest":
+        if words := in_motion(series, chosen.F0):
+            say(words)
+        return None
+    if start == "settled":
+        return in_background(lambda stop: settled_beginning(chosen, series, sensors, stop))
+    return _last_of(start, chosen)
+
+
+def _last_of(path: str, chosen: Scene) -> Beginning:
+    """The last sample of a recorded run."""
+    from granchain_core.fit import Beginning
+    from granchain_core.scene.state import State
+    from granchain_core.store import load
+
+    run = load(path)
+    if run.displacement.shape[1] != chosen.N:
+        raise BadInput(f"--start {path} holds a chain of {run.displacement.shape[1]} beads and the scene has "
+                       f"{chosen.N}; add --set N={run.displacement.shape[1]}.")
+    return Beginning(State(run.displacement[-1], run.velocity[-1]), float(run.drive_displacement[-1]),
+                     f"the last sample of {path}")
 
 
 def _measured(path: str, answers: Answers, gap: str) -> tuple[Signal, Series]:
@@ -136,7 +184,8 @@ def _residual_json(found: ForceDifference | None) -> dict[str, Any] | None:
     """How far a computed force is from the measured one; None where none was measured."""
     if found is None:
         return None
-    return {name: value for name, value in asdict(found).items() if name not in ("force", "word")}
+    return {name: getattr(found, name)
+            for name in ("compared", "samples", "rms", "largest", "at", "mean", "relative")}
 
 
 def _show(found: Driven, differences: dict[str, ForceDifference]) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import re
 import sys
 from typing import TYPE_CHECKING, Any
@@ -11,7 +12,7 @@ from granchain_core import BadInput
 from granchain_core.inputs.text import number_in
 
 from .common import check_points, chosen_scene, in_background, say, show_json
-from .data_options import add_answers, with_answers
+from .data_options import add_answers, add_bandwidth, with_answers
 from .options import add_json, add_scene, add_scheduler, number, scheduler_of, whole
 from .picture import add_option as add_picture
 from .picture import check_files, write_picture
@@ -44,6 +45,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
                         help="standard deviation of the data where the file states none: a fraction of each force or "
                              "per cent (curve: 0.03 or 3%%), newtons (series: 0.2 or 0.2N), hertz (features: 3 or 3Hz)")
     parser.add_argument("--elastic", action="store_true", help="compare the elastic part of the output force")
+    add_bandwidth(parser, ", which the model's forces pass before they are compared with a series")
     parser.add_argument("--start", default="rest", metavar="rest|up|down")
     parser.add_argument("--design", type=whole, default=0, metavar="n", help="sets of parameters that are tried first")
     parser.add_argument("--points", type=whole, default=71, metavar="n",
@@ -102,6 +104,7 @@ def _target(arguments: argparse.Namespace, chosen: Scene) -> Any:
     if bool(arguments.data) == (arguments.features is not None):
         raise BadInput("Give either --data FILE or --features paper.")
     if arguments.features is not None:
+        _only_series(arguments)
         error = _error(arguments.error, "Hz")
         if arguments.features != "paper":
             raise BadInput(f"--features {arguments.features!r} is not known; there is 'paper'.")
@@ -131,14 +134,21 @@ def _measured_target(arguments: argparse.Namespace) -> Any:
     if isinstance(found[0], Measured):
         if at:
             raise BadInput("A curve has its own frequencies; --at is for series.")
+        _only_series(arguments)
         return CurveTarget(found[0], _error(arguments.error, "%"), arguments.elastic, arguments.start)
     if arguments.elastic or (arguments.per_frequency and len(files) == 1):
         raise BadInput("A series has one frequency and total forces; --per-frequency is for curves and several series, "
                        "--elastic for curves.")
     error = _error(arguments.error, "N")
-    records = [SeriesTarget(one, error, f) for one, f in zip(found, at or [None], strict=True)
+    records = [SeriesTarget(one, error, f, arguments.bandwidth) for one, f in zip(found, at or [None], strict=True)
                if isinstance(one, Series)]
     return RecordsTarget(tuple(records)) if len(records) > 1 else records[0]
+
+
+def _only_series(arguments: argparse.Namespace) -> None:
+    """Refuse --bandwidth where no series is compared."""
+    if math.isfinite(arguments.bandwidth):
+        raise BadInput("--bandwidth is for a series; largest forces alone do not tell what a low-pass made of them.")
 
 
 def _error(text: str | None, unit: str) -> float | None:

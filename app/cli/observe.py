@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import argparse
+import math
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from granchain_core import BadInput
 
 from .common import chosen_scene, in_background, say, show_json
-from .data_options import add_answers, with_answers
+from .data_options import add_answers, add_bandwidth, with_answers
 from .forces import cost_in_words, forces_in_words, forces_json, scene_json, status_in_words
 from .options import add_result
 from .picture import add_option as add_picture
@@ -33,6 +34,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
                         help="what to do where samples are missing")
     parser.add_argument("--start", default="rest", metavar="rest|input",
                         help="start at rest, or in the state an HDF5 input begins with")
+    add_bandwidth(parser, ", which the computed output force passes before it is compared with a measured one")
     add_picture(parser)
 
 
@@ -53,7 +55,7 @@ def do(arguments: argparse.Namespace) -> None:
         check_writable(arguments.out)
     say(f"{record.understood}.")
     seen = in_background(lambda stop: push(chosen, record, start=begin, offset=arguments.offset, gap=arguments.gap,
-                                           stop=stop))
+                                           stop=stop, bandwidth=arguments.bandwidth))
     for note in seen.record.notes:
         say(f"{note[0].upper()}{note[1:]}.")
     if seen.integration_error > chosen.accuracy:
@@ -66,28 +68,29 @@ def do(arguments: argparse.Namespace) -> None:
         save_observation(seen, arguments.out)
     write_picture(arguments.picture, f"An observer of {chosen.name}", seen)
     if arguments.json:
-        show_json(_json(seen))
+        show_json({**_json(seen), "bandwidth": arguments.bandwidth if math.isfinite(arguments.bandwidth) else None})
         return
     print(f"{chosen.name}: {len(seen.time)} samples, {seen.time[-1] - seen.time[0]:.6g} s; "
           f"{status_in_words(seen.status)}")
     print(forces_in_words(seen))
     if seen.residual is not None:
-        print(f"measured output force: rms difference {seen.residual.rms:.4g} N "
-              f"({100 * seen.residual.relative:.3g} %), largest {seen.residual.largest:.4g} N")
+        at = f"{seen.time[seen.residual.index]:.5g} s"
+        print(f"output force, model − measured at {len(seen.time)} samples: {seen.residual.words(at)}")
     print(f"relative error {seen.integration_error:.1e} of integration, "
           f"{seen.interpolation_error:.1e} between samples; {cost_in_words(seen.cost)}")
 
 
 def _json(seen: Observation) -> dict[str, Any]:
     """An observation as one JSON object."""
+    from granchain_core.observe.observation import written
+
     scene = scene_json(seen.scene)
     return {**scene, "effects": ["given force" if e.startswith("driver") else e for e in scene["effects"]],
             "status": seen.status, "input": {
                 "understood": seen.record.understood, "notes": list(seen.record.notes), "samples": len(seen.time),
                 "spacing": seen.record.spacing, "from": float(seen.time[0]), "to": float(seen.time[-1])},
             **forces_json(seen),
-            "residual": None if seen.residual is None else asdict(seen.residual),
-            "residual_elastic": None if seen.residual_elastic is None else asdict(seen.residual_elastic),
+            "residual": written(seen.residual), "residual_elastic": written(seen.residual_elastic),
             "error_estimate": seen.displacement_error, "integration_error": seen.integration_error,
             "interpolation_error": seen.interpolation_error, "error_estimate_output": seen.force_errors.output,
             "error_estimate_elastic": seen.force_errors.elastic, "cost": asdict(seen.cost)}

@@ -17,8 +17,8 @@ from granchain_core.run.budget import BUDGET
 
 from .common import chosen_scene, in_background, show_json, show_percent, unbroken
 from .compiling import compiling_beside
-from .data_options import add_answers
-from .driven import PERIODIC, check_no_gap, do_driven
+from .data_options import add_answers, add_bandwidth
+from .driven import PERIODIC, check_no_samples, do_driven
 from .forces import errors_in_words, errors_json, forces_in_words, forces_json, scene_json, status_in_words, warn
 from .keeping import add_resume, finished, keeping
 from .options import add_result, number, whole
@@ -44,6 +44,10 @@ def add_options(parser: argparse.ArgumentParser) -> None:
                              "with the computed ones")
     parser.add_argument("--gap", default="refuse", metavar="refuse|zero|interpolate",
                         help="what to do where samples of --drive FILE are missing")
+    parser.add_argument("--start", default="rest", metavar="rest|settled|FILE",
+                        help="where a motion under --drive begins: at rest; for --drive FILE also on the settled "
+                             "motion at the phase of the file's first sample, or where the recorded run FILE ends")
+    add_bandwidth(parser, ", which the computed forces pass before they are compared with those of --drive FILE")
     add_answers(parser)
     add_resume(parser, "run")
     add_picture(parser)
@@ -56,7 +60,9 @@ def do(arguments: argparse.Namespace) -> None:
     if arguments.drive:
         do_driven(arguments, chosen)
         return
-    check_no_gap(arguments)
+    check_no_samples(arguments)
+    if arguments.start != "rest":
+        raise BadInput("--start is for --drive SIGNAL; a harmonic drive starts at rest.")
     if arguments.out:
         from granchain_core.store import check_writable
 

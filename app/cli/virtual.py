@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import math
 import sys
 from pathlib import Path
 
@@ -12,6 +11,7 @@ import numpy as np
 from granchain_core import BadInput
 
 from .common import check_points, chosen_scene, in_background, show_percent
+from .data_options import add_bandwidth
 from .options import add_scene, number, whole
 
 
@@ -20,6 +20,9 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_scene(parser)
     parser.add_argument("--kind", default="series", metavar="series|curve", help="a time series, or a resonance curve")
     parser.add_argument("--out", metavar="FILE.csv", help="write a file instead of stdout")
+    parser.add_argument("--start", default="settled", metavar="settled|rest",
+                        help="where a series begins: at a random phase of the steady state, or before the shaker does, "
+                             "with a drive period at rest and two in which its amplitude rises")
     parser.add_argument("--periods", type=whole, default=20, metavar="P", help="drive periods of each record")
     parser.add_argument("--from", type=number, dest="low", metavar="HZ", help="first frequency of a curve")
     parser.add_argument("--to", type=number, dest="high", metavar="HZ", help="last frequency of a curve")
@@ -30,8 +33,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--rate", type=number, default=100_000.0, metavar="HZ", help="samples a second")
     parser.add_argument("--noise", type=number, default=0.0, metavar="N", help="noise of a force sample, rms")
     parser.add_argument("--velocity-noise", type=number, default=0.0, metavar="M/S", help="noise of a velocity sample")
-    parser.add_argument("--bandwidth", type=number, default=math.inf, metavar="HZ",
-                        help="bandwidth of the force sensors, a low-pass of order 2")
+    add_bandwidth(parser, "")
     parser.add_argument("--tip-mass", type=number, default=0.0, metavar="KG",
                         help="mass between the input sensor and bead 1, which moves with the shaker")
     parser.add_argument("--seed", type=whole, default=0, help="seed of noise, phase and scatter")
@@ -53,10 +55,13 @@ def do(arguments: argparse.Namespace) -> None:
         for name in ("low", "high"):
             if getattr(arguments, name) is not None:
                 raise BadInput("--from and --to are for --kind curve; a series has the scene's own f.")
-        text = in_background(lambda stop: virtual_series_csv(chosen, arguments.periods, sensors, arguments.seed, stop))
+        text = in_background(lambda stop: virtual_series_csv(chosen, arguments.periods, sensors, arguments.seed, stop,
+                                                               arguments.start))
     else:
         if arguments.low is None or arguments.high is None:
             raise BadInput("A curve needs --from and --to, the first and the last frequency in Hz.")
+        if arguments.start != "settled":
+            raise BadInput("--start is for --kind series; the records of a curve are of the steady state.")
         check_points(arguments.points, 1, 1000)
         low, high = chosen.evolve(f=arguments.low).f, chosen.evolve(f=arguments.high).f
         if low > high:
@@ -73,9 +78,14 @@ def do(arguments: argparse.Namespace) -> None:
         Path(arguments.out).write_text(text, encoding="utf-8")
     except OSError as problem:
         raise BadInput(f"Cannot write {arguments.out[:200]}: {problem.strerror or problem}.") from None
-    print(f"{arguments.out}: {text.count(chr(10)) - 3} rows of a virtual experiment with {chosen.name}")
+    print(f"{arguments.out}: {_rows(text)} rows of a virtual experiment with {chosen.name}")
 
 
 def _progress(done: int, count: int) -> None:
     """Show how many of the records there are."""
     show_percent(done / count)
+
+
+def _rows(text: str) -> int:
+    """Rows of numbers: all lines but the comments and the titles."""
+    return sum(not line.startswith("#") for line in text.splitlines()) - 1

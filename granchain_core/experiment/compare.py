@@ -7,11 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .measured import Measured
-
-
-def model_minus_measured(model: np.ndarray, measured: np.ndarray) -> np.ndarray:
-    """A residual as it is signed everywhere: positive where the model is larger."""
-    return np.asarray(model - measured)
+from .misfit import Misfit, model_minus_measured
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,21 +31,22 @@ class Difference:
         return np.isfinite(self.model)
 
     @property
+    def misfit(self) -> Misfit | None:
+        """The misfit at these frequencies; None where there are none."""
+        there = self.compared
+        return Misfit.of(self.model[there], self.measured.force[there]) if there.any() else None
+
+    @property
     def sentence(self) -> str:
         """The misfit in words, with its unit."""
-        there = self.compared
-        if not there.any():
+        there, misfit = self.compared, self.misfit
+        if misfit is None:
             return "No measured frequency lies on the computed curve."
-        gaps = self.residuals[there]
-        rms, largest = float(np.sqrt(np.mean(gaps**2))), int(np.argmax(np.abs(gaps)))
-        size = float(np.sqrt(np.mean(self.measured.force[there] ** 2)))
-        share = f" ({100.0 * rms / size:.3g} %)" if size > 0.0 else ""
-        words = (f"Model − measured at {there.sum()} of {len(there)} frequencies: rms {rms:.3g} N{share}, mean "
-                 f"{gaps.mean():+.3g} N, largest {gaps[largest]:+.3g} N at "
-                 f"{self.measured.frequency[there][largest]:g} Hz")
+        place = f"{self.measured.frequency[there][misfit.index]:g} Hz"
+        words = f"Model − measured at {there.sum()} of {len(there)} frequencies: {misfit.words(place)}"
         error = self.measured.error
         if error is not None and (error[there] > 0.0).all():
-            words += f"; rms {np.sqrt(np.mean((gaps / error[there]) ** 2)):.3g} stated errors"
+            words += f"; rms {np.sqrt(np.mean((self.residuals[there] / error[there]) ** 2)):.3g} stated errors"
         return words + "."
 
 

@@ -1,19 +1,23 @@
 """The difference between the measured and the computed forces of a motion over time, in newtons.
 
 Equation   d(t_i) = F_model(t_i) − F_measured(t_i) at every measured time t_i of the motion,   rms = √⟨d²⟩
+           With sensors F_model is what they make of the model's force: plus m_tip ü_0, after their low-pass
+           (sensors.py)
 Note       Both clocks begin at the first sample, so nothing is moved in time. Nothing is subtracted either: a constant
-           offset of a sensor is a part of rms and largest difference, and stands alone in the mean.
+           offset of a sensor is a part of rms and largest difference, and stands alone in the mean. Without sensors
+           the model's force is not filtered, so what the real sensors do to a force is a part of the difference.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Protocol
 
 import numpy as np
 
 from ..errors import BadInput
-from .compare import model_minus_measured
+from .misfit import Misfit
+from .sensors import Sensors
 from .series import Series
 
 #: The forces that a series may have.
@@ -37,8 +41,8 @@ class Motion(Protocol):
 
 
 @dataclass(frozen=True)
-class ForceDifference:
-    """Model − measured of one force over the measured times of a motion.
+class ForceDifference(Misfit):
+    """Model − measured of one force over the measured times of a motion: a `Misfit` with its circumstances.
 
     Attributes
     ----------
@@ -46,12 +50,8 @@ class ForceDifference:
         "input_force" or "output_force".
     compared, samples : int
         Measured times of the motion, and all measured times.
-    rms, largest, mean : float
-        Root of the mean square, largest modulus, and mean [N].
     at : float
         Time of the largest difference [s].
-    relative : float or None
-        `rms` over that of the measured force; None if the measured force is 0 throughout.
     word : str
         "measured", or "virtual experiment" where nothing was measured.
     """
@@ -59,23 +59,17 @@ class ForceDifference:
     force: str
     compared: int
     samples: int
-    rms: float
-    largest: float
     at: float
-    mean: float
-    relative: float | None
     word: str = "measured"
 
     @property
     def sentence(self) -> str:
         """The difference in words, with its unit."""
-        share = "" if self.relative is None else f" ({100.0 * self.relative:.3g} %)"
         return (f"{self.force.replace('_', ' ')}, model − {self.word} at {self.compared} of {self.samples} samples: "
-                f"rms {self.rms:.4g} N{share}, largest {self.largest:.4g} N at {self.at:.5g} s, "
-                f"mean {self.mean:+.4g} N")
+                f"{self.words(f'{self.at:.5g} s')}")
 
 
-def compared_forces(measured: Series, motion: Motion) -> dict[str, ForceDifference]:
+def compared_forces(measured: Series, motion: Motion, sensors: Sensors | None = None) -> dict[str, ForceDifference]:
     """Compare the forces of a series with those of a motion whose clock begins at the first sample.
 
     Parameters
@@ -85,6 +79,9 @@ def compared_forces(measured: Series, motion: Motion) -> dict[str, ForceDifferen
         shorter or longer: each sample between the first and the last time of the motion counts.
     motion : Driven or Run
         The computed motion; between its times its forces are taken as straight lines.
+    sensors : Sensors, optional
+        The sensors with which the forces were measured: their bandwidth and their tip mass are applied to the model's
+        forces. Noise and rate do not matter. Perfect sensors if not given.
 
     Returns
     -------
@@ -99,6 +96,7 @@ def compared_forces(measured: Series, motion: Motion) -> dict[str, ForceDifferen
     if not isinstance(measured, Series):
         raise BadInput("Measured forces are a series, which granchain_core.experiment.read_experiment returns for a "
                        f"table of time and force, not a value of type {type(measured).__name__}.")
+    sensors = sensors or Sensors()
     time, first, last = measured.time, float(motion.time[0]), float(motion.time[-1])
     within = (time >= first) & (time <= last)
     found = {}
@@ -114,10 +112,18 @@ def compared_forces(measured: Series, motion: Motion) -> dict[str, ForceDifferen
             raise BadInput(f"No sample of the measured {words} lies within the motion: the samples are from "
                            f"{time.min():.6g} to {time.max():.6g} s, the motion is from {first:.6g} to {last:.6g} s.")
         there = values[within]
-        gaps = model_minus_measured(np.interp(time[within], motion.time, getattr(motion, name)), there)
-        rms, size = (float(np.sqrt(np.mean(one**2))) for one in (gaps, there))
-        at = int(np.argmax(np.abs(gaps)))
-        found[name] = ForceDifference(name, len(gaps), len(time), rms, float(np.abs(gaps[at])),
-                                      float(time[within][at]), float(gaps.mean()),
-                                      rms / size if size > 0.0 else None, measured.word)
+        force = getattr(motion, name)
+        if name == "input_force" and sensors.tip_mass > 0.0:
+            force = force + sensors.tip_mass * _acceleration(motion)
+        misfit = Misfit.of(sensors.passed(motion.time, force, time[within]), there)
+        found[name] = ForceDifference(**asdict(misfit), force=name, compared=len(there), samples=len(time),
+                                      at=float(time[within][misfit.index]), word=measured.word)
     return found
+
+
+def _acceleration(motion: Motion) -> np.ndarray:
+    """The driver's acceleration (T,) [m/s²] at the times of a motion that has a driver."""
+    moved = getattr(motion, "drive_displacement", None)
+    if moved is None:
+        raise BadInput("A tip mass moves with the driver, and this motion has none.")
+    return np.asarray(np.gradient(np.gradient(moved, motion.time), motion.time))

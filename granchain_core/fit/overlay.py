@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..experiment import Series
+from ..experiment import Misfit, Series
 from ..results.run import Run
 from .trains import Train, moved
 
@@ -54,7 +54,7 @@ def overlay(series: Series, run: Run) -> Overlay | None:
     trains = {name: Train.of(run, name) for name in forces}
     width = float(np.median(np.diff(series.time)))
     late = moved(series.time, forces, trains, width, len(run.time) - 1)
-    rms = {name: float(np.sqrt(np.mean((trains[name].mean_over(series.time + late, width) - values) ** 2)))
+    rms = {name: Misfit.of(trains[name].mean_over(series.time + late, width), values).rms
            for name, values in forces.items()}
     length = next(iter(trains.values())).length
     return Overlay(series.time + late - np.ceil(late / length) * length, forces, rms, swing)

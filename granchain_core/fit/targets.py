@@ -16,6 +16,7 @@ import numpy as np
 from ..errors import BadInput, Cancelled, ComputationError
 from ..execution.stop import Stop
 from ..experiment import Feature, Measured, Series, model_minus_measured
+from ..experiment.sensors import SAMPLES_PER_BANDWIDTH, Sensors
 from ..results.regime import Regime
 from ..scene import Amplitude, Scene
 from ..scene.quantities import QUANTITIES
@@ -38,6 +39,8 @@ _SMALLEST = 1e-3
 _LEAST_SCATTER = 1e-4
 #: Samples of a model's train in a drive period.
 _TRAIN = 768
+#: The most of them, for sensors with a bandwidth.
+_MOST_TRAIN = 8192
 #: Most samples of a series that are compared; a longer one is thinned out evenly.
 _COMPARED = 4000
 
@@ -162,20 +165,28 @@ class CurveTarget(Compared):
 class SeriesTarget(Compared):
     """A measured series: the forces over time, each the mean over its interval.
 
-    `error` is the standard deviation of the forces [N], `frequency` that of the drive [Hz], by default the scene's. The
-    start of the recording is not known: for each set of parameters the model's trains are moved to where the sum of
-    squares is least.
+    `error` is the standard deviation of the forces [N], `frequency` that of the drive [Hz], by default the scene's.
+    With the `bandwidth` of the force sensors [Hz] the model's forces pass the sensors' low-pass, and each sample is the
+    value at its time. The start of the recording is not known: for each set of parameters the model's trains are moved
+    to where the sum of squares is least.
     """
 
     series: Series
     error: float | None = None
     frequency: float | None = None
+    bandwidth: float = math.inf
 
     def __post_init__(self) -> None:
+        Sensors(bandwidth=self.bandwidth)  # refuses what is no bandwidth
         if not self.channels:
             raise BadInput("The series has neither an input force nor an output force; there is nothing to fit.")
         if self.frequency is not None:
             QUANTITIES["f"].check(self.frequency)
+
+    @property
+    def sensors(self) -> Sensors:
+        """The sensors of the forces."""
+        return Sensors(bandwidth=self.bandwidth)
 
     @property
     def channels(self) -> dict[str, np.ndarray]:
@@ -212,6 +223,11 @@ class SeriesTarget(Compared):
         scene = scene if self.frequency is None else scene.evolve(f=self.frequency)
         return scene if amplitude is None else scene.evolve(A0=amplitude.at(scene.f))
 
+    def _samples(self, f: float) -> int:
+        """Samples of the model in a drive period: more where the sensors are fast."""
+        wanted = SAMPLES_PER_BANDWIDTH * self.bandwidth / f if self.sensors.filters else 0.0
+        return math.ceil(min(max(_TRAIN, wanted), _MOST_TRAIN))
+
     def evaluate(self, scene: Scene, amplitude: Amplitude | None, stop: Stop | None) -> Evaluation:
         """Residuals (C·T,) of every sample, one channel after another, in standard deviations; the model's forces [N].
 
@@ -221,18 +237,19 @@ class SeriesTarget(Compared):
         largest = max(float(np.abs(values).max()) for values in measured.values())
         sigma = self.error or ASSUMED * largest
         try:
-            found = settle(self.driven(scene, amplitude), samples=_TRAIN, stop=stop)
+            driven = self.driven(scene, amplitude)
+            found = settle(driven, samples=self._samples(driven.f), stop=stop)
         except ComputationError:
             count = sum(map(len, measured.values()))
             return Evaluation(np.full(count, FAILED), 0.0, ("failed",), np.full(count, np.nan))
         trains = {name: Train.of(found.run, name) for name in measured}
         width = float(np.median(np.diff(self.series.time)))
         periodic = found.regime.name == "periodic"
-        late = moved(time, measured, trains, width, len(found.run.time) - 1) if periodic else 0.0
+        late = moved(time, measured, trains, width, len(found.run.time) - 1, self.sensors) if periodic else 0.0
         residuals, beyond, models = [], 0.0, []
         for name, values in measured.items():
             if periodic:
-                model, wide = trains[name].mean_over(time + late, width), sigma
+                model, wide = trains[name].recorded(time + late, width, self.sensors), sigma
             else:
                 model = np.full(len(values), float(getattr(found.run, name).mean()))
                 wide = math.hypot(sigma, float(getattr(found.run, name).std()))

@@ -1,7 +1,10 @@
-"""The model's force as a sensor samples it: the mean over each sampling interval, with jumps at their exact times.
+"""The model's force as a sensor samples it, with jumps at their exact times.
 
-A force that jumps between two samples makes a misfit that jumps with the parameters; its mean over an interval moves
-smoothly. A recorder with a filter against aliasing averages over about its sample's interval as well.
+Where the sensor's bandwidth is known, it is the force after the sensor's low-pass (experiment/sensors.py), at the time
+of each sample: continuous, and as late as the sensor makes it. Where it is not known, it is the mean over each sampling
+interval, because a force that jumps between two samples makes a misfit that jumps with the parameters, while its mean
+over an interval moves smoothly. That mean is no model of a recorder: a filter against aliasing is no mean over an
+interval, and it delays the force.
 """
 
 from __future__ import annotations
@@ -12,6 +15,7 @@ import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 from scipy.optimize import minimize_scalar
 
+from ..experiment.sensors import Sensors
 from ..results.run import Run
 
 #: How far around the best shift of the coarse search the best one is sought, in steps of that search: its neighbours
@@ -19,6 +23,7 @@ from ..results.run import Run
 _AROUND = 1.5
 #: How finely the best shift is found, in the same steps.
 _FINE = 1e-4
+_PERFECT = Sensors()
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +60,12 @@ class Train:
         """Means over intervals of `width` [s] around times [s]."""
         return np.asarray((self._integral(time + 0.5 * width) - self._integral(time - 0.5 * width)) / width)
 
+    def recorded(self, time: np.ndarray, width: float, sensors: Sensors) -> np.ndarray:
+        """What is recorded at `time` [s]: the force after a low-pass, or means over `width` [s] where there is none."""
+        if sensors.filters:
+            return sensors.passed(self.time, self.force, time, periodic=True)
+        return self.mean_over(time, width)
+
     def _integral(self, time: np.ndarray) -> np.ndarray:
         turns = np.floor(time / self.length)
         at = time - turns * self.length
@@ -83,14 +94,14 @@ def _releases(run: Run, contact: int) -> tuple[np.ndarray, np.ndarray]:
     return roots[opening < 0.0], scene.D * opening[opening < 0.0]
 
 
-def moved(time: np.ndarray, measured: dict[str, np.ndarray], trains: dict[str, Train], width: float,
-          count: int) -> float:
+def moved(time: np.ndarray, measured: dict[str, np.ndarray], trains: dict[str, Train], width: float, count: int,
+          sensors: Sensors = _PERFECT) -> float:
     """By how much the trains are moved [s] for the least sum of squares: all shifts at once, then the best exactly."""
     length = next(iter(trains.values())).length
     bins = np.floor(np.mod(time, length) / length * count).astype(int) % count
     score = np.zeros(count)
     for name, values in measured.items():
-        train = trains[name].mean_over(np.arange(count) * length / count, max(width, length / count))
+        train = trains[name].recorded(np.arange(count) * length / count, max(width, length / count), sensors)
         folded, hits = np.bincount(bins, values, count), np.bincount(bins, minlength=count)
         # Σ (train(t + s) − value)² over all shifts s, as two circular correlations
         turn = np.conj(np.fft.rfft(np.stack([folded, hits])))
@@ -98,7 +109,7 @@ def moved(time: np.ndarray, measured: dict[str, np.ndarray], trains: dict[str, T
         score += np.fft.irfft(squares - 2.0 * products, count)
 
     def misfit(late: float) -> float:
-        return sum(float(((trains[name].mean_over(time + late, width) - values) ** 2).sum())
+        return sum(float(((trains[name].recorded(time + late, width, sensors) - values) ** 2).sum())
                    for name, values in measured.items())
 
     step = length / count

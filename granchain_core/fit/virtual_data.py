@@ -1,6 +1,6 @@
 """Curves and series of a model with known parameters and normal noise, marked as virtual, to test fits with.
 
-granchain_core/virtual simulates sensors and writes files.
+granchain_core/virtual_experiment simulates sensors and writes files.
 """
 
 from __future__ import annotations

@@ -11,6 +11,7 @@ depends on the place of the jump in it, so that one halving may gain little.
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 
@@ -19,7 +20,7 @@ import numpy as np
 from ..errors import BadInput
 from ..execution.stop import Stop
 from ..execution.stopwatch import Stopwatch
-from ..experiment import model_minus_measured
+from ..experiment import Misfit, Sensors
 from ..integrate.chain_in_pieces import MOST_HALVINGS, refined
 from ..integrate.methods import RK4_SPLIT
 from ..integrate.safety_factors import IRREGULAR
@@ -33,14 +34,15 @@ from ..tables.provenance import Attribute
 from .pushed_chain import PushedChain
 from .record import ForceRecord, force_record, prepared
 
+#: Difference of a computed output force from the measured one.
+Residual = Misfit
+#: What is written of it.
+_WRITTEN = ("rms", "largest", "relative")
 
-@dataclass(frozen=True)
-class Residual:
-    """Difference of a computed output force from the measured one: root mean square and largest [N], relative rms."""
 
-    rms: float
-    largest: float
-    relative: float
+def written(found: Misfit | None) -> dict[str, float | None] | None:
+    """A residual as JSON and files have it; None where nothing was measured."""
+    return None if found is None else {name: getattr(found, name) for name in _WRITTEN}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -71,7 +73,7 @@ class Observation(RecordedMotion):
         Computing time, steps and evaluations.
     residual, residual_elastic : Residual or None
         Difference from the measured output force, of the total and of the elastic force: `rms`, `largest` [N],
-        `relative`.
+        `relative` (None if the measured force is 0 throughout), and the others of a `Misfit`.
 
     Examples
     --------
@@ -127,7 +129,7 @@ class Observation(RecordedMotion):
     def attributes(self) -> dict[str, Attribute]:
         """Status, largest forces, errors, how the input was read, residuals, cost, and where it comes from."""
         residuals: dict[str, Attribute] = {
-            name: json.dumps(asdict(found)) for name in ("residual", "residual_elastic")
+            name: json.dumps(written(found)) for name in ("residual", "residual_elastic")
             if (found := getattr(self, name)) is not None}
         return {**provenance(self.scene, self.cost.method, self.displacement_error), "status": self.status,
                 "integration_error": self.integration_error, "interpolation_error": self.interpolation_error,
@@ -142,13 +144,13 @@ class Observation(RecordedMotion):
                      f"relative error of displacements {self.integration_error:.1e} by steps, "
                      f"{self.interpolation_error:.1e} between samples"]
         if self.residual is not None:
-            sentences.append(f"model − measured: rms {self.residual.rms:.3g} N, most {self.residual.largest:.3g} N")
+            sentences.append(f"model − measured: {self.residual.words()}")
         return sentences
 
 
 def observe(scene: Scene, time: object, force: object = None, output: object = None, start: State | None = None,
             offset: float | str = 0.0, gap: str = "refuse", stop: Stop | None = None,
-            progress: Callable[[float], None] | None = None) -> Observation:
+            progress: Callable[[float], None] | None = None, bandwidth: float = math.inf) -> Observation:
     """The observer of model (3), Zhang et al. 2016: the chain without driver, a given force on its first bead.
 
     Steps are halved until the error by the steps is at most the accuracy asked for. A further computation from every
@@ -174,6 +176,9 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
         Ends the computation when another thread sets it.
     progress : callable, optional
         Called with the fraction that is done, 0 to 1.
+    bandwidth : float
+        Bandwidth of the force sensors [Hz]. The computed output force passes their low-pass before it is compared, and
+        a record may be sampled as slowly as their shortest pulse allows. The given force is applied as it is.
 
     Returns
     -------
@@ -200,7 +205,8 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
     ((1025, 2), True)
     """
     record = time if isinstance(time, ForceRecord) else force_record(time, force, output)
-    record = prepared(record, scene, offset, gap)
+    sensors = Sensors(bandwidth=bandwidth)
+    record = prepared(record, scene, offset, gap, sensors)
     if len(record.time) * scene.N > MOST_RECORDED:
         raise BadInput(f"{len(record.time)} samples for {scene.N} beads are more than {MOST_RECORDED:.0e} values; "
                        f"give at most {MOST_RECORDED // scene.N} samples.")
@@ -230,14 +236,11 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
         status="done" if errors[0] <= scene.accuracy else "accuracy-not-reached",
         force_errors=ForceErrors.of(np.array([np.nan, *errors[2:]])),
         cost=Cost.of(spent.seconds, chain.counts, RK4_SPLIT),
-        residual=residual(forces[:, -1], record.output), residual_elastic=residual(elastic, record.output),
+        residual=residual(sensors.passed(record.time, forces[:, -1], record.time), record.output),
+        residual_elastic=residual(sensors.passed(record.time, elastic, record.time), record.output),
     )
 
 
 def residual(computed: np.ndarray, measured: np.ndarray | None) -> Residual | None:
     """Difference of `computed` from `measured`; None where nothing was measured."""
-    if measured is None:
-        return None
-    difference = model_minus_measured(computed, measured)
-    rms, size = float(np.sqrt(np.mean(difference**2))), float(np.sqrt(np.mean(measured**2)))
-    return Residual(rms, float(np.abs(difference).max()), rms / size if size > 0.0 else float("inf"))
+    return None if measured is None else Misfit.of(computed, measured)

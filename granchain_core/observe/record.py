@@ -15,6 +15,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..errors import BadInput
+from ..experiment.sensors import Sensors
 from ..inputs.gaps import Gaps, sample_number, with_zeros
 from ..inputs.text import number_in
 from ..scene import Scene
@@ -26,6 +27,7 @@ PULSE_SAMPLES = 4
 _NEAR_ZERO = 0.02
 #: Fewest samples in all.
 FEWEST = 8
+_PERFECT = Sensors()
 #: Duration of a collision of two free beads of mass m with peak force F, over √(m/2) K^{−1/3} F^{−1/6}.
 _HERTZ = HERTZ_DURATION * HERTZ_FORCE ** (1.0 / 6.0)
 
@@ -112,7 +114,8 @@ def checked(record: ForceRecord) -> ForceRecord:
     return record
 
 
-def prepared(record: ForceRecord, scene: Scene, offset: float | str = 0.0, gap: str = "refuse") -> ForceRecord:
+def prepared(record: ForceRecord, scene: Scene, offset: float | str = 0.0, gap: str = "refuse",
+             sensors: Sensors = _PERFECT) -> ForceRecord:
     """The force that is applied: offset subtracted if asked, gaps as chosen, its sampling fine enough for `scene`.
 
     `offset` is a force in N, or "median" for the median of all samples, which is the sensor's zero where the driver is
@@ -127,7 +130,7 @@ def prepared(record: ForceRecord, scene: Scene, offset: float | str = 0.0, gap: 
                      "have it subtracted")
     moved = ForceRecord(record.time, record.force - zero, record.output, record.place, record.understood)
     bridged = _bridged(moved, gap, notes)
-    _check_sampling(moved, scene)
+    _check_sampling(moved, scene, sensors)
     return ForceRecord(bridged.time, bridged.force, bridged.output, bridged.place, bridged.understood, tuple(notes),
                        bridged.put_in)
 
@@ -167,13 +170,15 @@ def shortest_pulse(scene: Scene, force: float) -> float:
     return float(_HERTZ * np.sqrt(reduced) * stiffest ** (-1.0 / 3.0) * force ** (-1.0 / 6.0))
 
 
-def _check_sampling(record: ForceRecord, scene: Scene) -> None:
+def _check_sampling(record: ForceRecord, scene: Scene, sensors: Sensors) -> None:
     largest = float(np.abs(record.force).max())
     if largest == 0.0:
         raise BadInput("The force is zero at every sample: nothing would move.")
-    allowed = shortest_pulse(scene, largest) / PULSE_SAMPLES
+    allowed = max(shortest_pulse(scene, largest), sensors.shortest_pulse) / PULSE_SAMPLES
     if record.spacing > allowed:
         worst = int(np.argmax(np.abs(record.force)))
+        through = " behind these sensors" if sensors.filters else ""
         raise BadInput(f"{record.place(worst)}: a pulse of {largest:.3g} N may be as short as "
-                       f"{PULSE_SAMPLES * allowed:.3g} s in this chain, and samples {record.spacing:.3g} s apart would "
-                       f"miss it; the nearest valid spacing is {allowed:.3g} s ({1.0 / allowed:.4g} samples a second).")
+                       f"{PULSE_SAMPLES * allowed:.3g} s in this chain{through}, and samples {record.spacing:.3g} s "
+                       f"apart would miss it; the nearest valid spacing is {allowed:.3g} s "
+                       f"({1.0 / allowed:.4g} samples a second).")

@@ -284,6 +284,27 @@ class Signal:
         since = time - self.time[at]
         return np.asarray(constant + since * (linear + since * quadratic))
 
+    def shifted(self, start: float) -> Signal:
+        """The same motion, further into the chain by `start` [m] throughout."""
+        return replace(self, displacement=self.displacement + start,
+                       coarser=tuple(one.shifted(start) for one in self.coarser))
+
+    def finer(self, spacing: float) -> Signal:
+        """The same motion with knots at most `spacing` [s] apart, at which `drive` then states the forces.
+
+        Each interval is divided into the same number of equal parts, so the given knots are among the new ones.
+        """
+        parts = math.ceil(float(np.diff(self.time).max()) / spacing)
+        if parts < 2:
+            return self
+        if parts * (len(self.time) - 1) > MOST_KNOTS:
+            raise BadInput(f"Knots {spacing:.3g} s apart are more than {MOST_KNOTS} for this motion; the nearest valid "
+                           f"spacing is {(self.time[-1] - self.time[0]) / MOST_KNOTS:.3g} s.")
+        at = np.arange(parts * (len(self.time) - 1) + 1) / parts
+        given = np.arange(len(self.time))
+        time, velocity = (np.interp(at, given, values) for values in (self.time, self.velocity))
+        return replace(self, time=time, velocity=velocity, displacement=self.displacement_at(time))
+
 
 def _of_samples(count: int, put_in: np.ndarray, of: Callable[[np.ndarray], Signal]) -> Signal:
     """The signal of so many samples, with its coarser ones; `of` makes the signal of the samples with given indices.

@@ -15,22 +15,26 @@ import numpy as np
 from ..errors import BadInput
 from ..execution.stop import Stop
 from ..experiment.measured import VIRTUAL
+from ..experiment.sensors import SAMPLES_PER_BANDWIDTH, Sensors
 from ..fit.trains import Train
-from ..inputs.checks import check_range, whole_number
+from ..inputs.checks import check_range, unknown_name, whole_number
 from ..integrate import Engine, fixed_step_setting, following_setting
 from ..integrate.methods import typical_error
+from ..observe.record import shortest_pulse
 from ..results.run import GIVEN_STATE, Cost, Run, run_from
 from ..scene import Scene
 from ..scene.refusals import refuse_undriven
 from ..scene.state import State
+from ..steady.settling.outcome import Settled
 from ..steady.settling.settle import settle
 from ..version import __version__
-from .sensors import Sensors
+from .from_rest import from_rest
 
 #: Samples of the model per sample of the sensors.
 _PER_SAMPLE = 4
-#: Samples of the model per time 1/f_c of the sensors' filter.
-_PER_BANDWIDTH = 32
+#: Samples of the model over the shortest pulse of the force, which suffice for any bandwidth: straight lines between
+#: them are within (π/64)²/8 of its height, 0.03 %.
+_PER_PULSE = 64
 #: Least samples of the model per drive period.
 _LEAST_SAMPLES = 96
 #: Relative error of the state that a record begins with.
@@ -45,25 +49,31 @@ MOST_RECORDS = 10_000
 MOST_VALUES = 20_000_000
 #: Most drive periods of a record.
 MOST_PERIODS = 10_000
+#: Where a series may begin.
+STARTS = ("settled", "rest")
 #: Largest seed.
 _LARGEST_SEED = 2**63 - 1
 
 
-def virtual_series_csv(scene: Scene, periods: int, sensors: Sensors, seed: int = 0, stop: Stop | None = None) -> str:
-    """What the sensors record of the steady state over some drive periods: time, velocity, input and output force.
+def virtual_series_csv(scene: Scene, periods: int, sensors: Sensors, seed: int = 0, stop: Stop | None = None,
+                       start: str = "settled") -> str:
+    """What the sensors record over some drive periods: time, velocity, input and output force.
 
     Parameters
     ----------
     scene : Scene
         A driven chain.
     periods : int
-        Length of the record in drive periods, 1 to 10,000. The record begins at a random phase.
+        Length of the record in drive periods, 1 to 10,000.
     sensors : Sensors
         Noise, bandwidth, tip mass and sampling rate of the sensors.
     seed : int
         Seed of the noise and of the phase.
     stop : Stop, optional
         Ends the computation when another thread sets it.
+    start : str
+        "settled": the record is of the steady state and begins at a random phase. "rest": it begins before the shaker
+        does, with a drive period at rest and two in which the amplitude of the shaker rises.
 
     Returns
     -------
@@ -92,9 +102,13 @@ def virtual_series_csv(scene: Scene, periods: int, sensors: Sensors, seed: int =
     count = round(periods * sensors.rate / scene.f)
     check_range("samples (periods · rate / f) =", count, 8, MOST_SAMPLES)
     random = np.random.default_rng(whole_number("seed =", seed, 0, _LARGEST_SEED))
-    times, velocity, forces = _recorded(scene, count, sensors, random, stop)
+    if start not in STARTS:
+        raise unknown_name("start", start, STARTS)
+    recorded = _recorded if start == "settled" else _from_rest
+    times, velocity, forces = recorded(scene, count, sensors, random, stop)
     rows = "\n".join(f"{t:.9g},{v:.7g},{i:.7g},{o:.7g}" for t, v, i, o in zip(times, velocity, *forces, strict=True))
-    return (f"{_head(scene, sensors, seed)}time (s),velocity (m/s),input force (N),output force (N)\n{rows}\n")
+    begun = "" if start == "settled" else "# begins at rest: the shaker starts after one drive period\n"
+    return (f"{_head(scene, sensors, seed)}{begun}time (s),velocity (m/s),input force (N),output force (N)\n{rows}\n")
 
 
 def virtual_curve_csv(scene: Scene, frequencies: Sequence[float] | np.ndarray, sensors: Sensors, repeats: int = 3,
@@ -180,40 +194,62 @@ def _recorded(scene: Scene, count: int, sensors: Sensors, random: np.random.Gene
               stop: Stop | None) -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:
     """Time, velocity, and both forces of `count` samples that begin at a random phase of the steady state."""
     begun = random.random() / scene.f + sensors.lead_in
-    samples = _samples(scene, sensors)
-    motion = _motion(scene, begun + (count + 1) / sensors.rate, samples, stop)
-    fine, period = samples * scene.f, 1.0 / scene.f
-    steps = np.arange(1, round(float(motion.time[-1] - motion.time[0]) / period) * samples - 1)
-    at = steps / fine
+    motion, fine = _motion(scene, begun + (count + 1) / sensors.rate, sensors, stop)
     times = np.arange(count) / sensors.rate
+    at = times + begun
     omega = 2.0 * math.pi * scene.f
-    inertia = -sensors.tip_mass * scene.A0 * omega**2 * np.sin(omega * at)
+    inertia = -sensors.tip_mass * scene.A0 * omega**2 * np.imag(sensors.response(scene.f) * np.exp(1j * omega * at))
     forces = []
     for name, added in (("input_force", inertia), ("output_force", 0.0)):
-        force = sensors.passed(Train.of(motion, name).mean_over(at, 1.0 / fine) + added, fine)
-        forces.append(np.interp(times + begun, at, force) + sensors.noise * random.standard_normal(count))
-    velocity = scene.A0 * omega * np.cos(omega * (times + begun))
+        train = Train.of(motion, name)
+        force = sensors.passed(train.time, train.force, at) if sensors.filters else train.mean_over(at, 1.0 / fine)
+        forces.append(force + added + sensors.noise * random.standard_normal(count))
+    velocity = scene.A0 * omega * np.cos(omega * at)
     return times, velocity + sensors.velocity_noise * random.standard_normal(count), forces
 
 
-def _samples(scene: Scene, sensors: Sensors) -> int:
-    """Samples of the model in a drive period: many for one of the sensors, and for the filter."""
-    fastest = _PER_SAMPLE * sensors.rate
-    if sensors.bandwidth < 0.5 * sensors.rate:
-        fastest = min(fastest, max(sensors.rate, _PER_BANDWIDTH * sensors.bandwidth))
-    return max(_LEAST_SAMPLES, math.ceil(fastest / scene.f))
+def _from_rest(scene: Scene, count: int, sensors: Sensors, random: np.random.Generator,
+               stop: Stop | None) -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:
+    """Time, velocity, and both forces of `count` samples that begin at rest."""
+    found, times = _settled(scene, stop), np.arange(count) / sensors.rate
+    largest = max(found.run.max_input_force, found.run.max_output_force)
+    velocity, forces = from_rest(_quick(scene), times, _fastest(scene, largest, sensors), sensors, stop)
+    forces = [force + sensors.noise * random.standard_normal(count) for force in forces]
+    return times, velocity + sensors.velocity_noise * random.standard_normal(count), forces
 
 
-def _motion(scene: Scene, length: float, samples: int, stop: Stop | None) -> Run:
-    """The steady state from phase 0 on, over `length` [s] and a little more."""
-    found = settle(scene.evolve(accuracy=max(scene.accuracy, _START_ACCURACY)), stop=stop)
+def _quick(scene: Scene) -> Scene:
+    """The scene with an accuracy that suffices for a record."""
+    return scene.evolve(accuracy=max(scene.accuracy, _START_ACCURACY))
+
+
+def _settled(scene: Scene, stop: Stop | None) -> Settled:
+    return settle(_quick(scene), stop=stop)
+
+
+def _fastest(scene: Scene, force: float, sensors: Sensors) -> float:
+    """Samples of the model a second [Hz]: enough for the filter and, where there is none, for a sample.
+
+    No pulse is shorter than that with the largest `force` [N].
+    """
+    pulses = _PER_PULSE / shortest_pulse(scene, force) if force > 0.0 else 0.0
+    needed = min(SAMPLES_PER_BANDWIDTH * sensors.bandwidth, pulses)
+    return needed if sensors.filters else max(needed, _PER_SAMPLE * sensors.rate)
+
+
+def _motion(scene: Scene, length: float, sensors: Sensors, stop: Stop | None) -> tuple[Run, float]:
+    """The steady state from phase 0 on, over `length` [s] and a little more, and its samples a second [Hz]."""
+    found = _settled(scene, stop)
+    largest = max(found.run.max_input_force, found.run.max_output_force)
+    samples = max(_LEAST_SAMPLES, math.ceil(_fastest(scene, largest, sensors) / scene.f))
     periods = math.ceil(length * scene.f) + 1
     if periods * samples * scene.N > MOST_VALUES:
         raise BadInput(f"{periods} drive periods of {samples} samples for {scene.N} beads are more than "
-                       f"{MOST_VALUES:.0e} values; take fewer periods or a smaller rate.")
+                       f"{MOST_VALUES:.0e} values; take fewer periods, a smaller rate or a smaller bandwidth.")
     setting = following_setting(True) if scene.cuts_tension else fixed_step_setting(_STEPS_PER_DEFAULT)
     engine = Engine(scene, setting, samples, stop=stop)
     engine.start(State(found.run.displacement[-1], found.run.velocity[-1]))
     began, rows = time.perf_counter(), engine.record(periods * samples)
     cost = Cost.of(time.perf_counter() - began, engine.counts, setting.method)
-    return run_from(engine, rows, 0, found.regime, typical_error(setting), cost, start=GIVEN_STATE)
+    run = run_from(engine, rows, 0, found.regime, typical_error(setting), cost, start=GIVEN_STATE)
+    return run, samples * scene.f

@@ -196,6 +196,23 @@ def test_a_run_written_by_granchain_is_observed_and_comes_round(tmp_path: Path, 
         assert file["observation/measured_output_force"].shape == file["observation/time"].shape
 
 
+def test_a_difference_from_an_output_of_zeros_has_no_per_cent(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """There is nothing to divide by: the key stays and its value is null, in the JSON and in the file."""
+    table, out = tmp_path / "force.csv", tmp_path / "seen.h5"
+    table.write_text("time_s,force_N,output_force_N\n" + "".join(f"{i * STEP:.9g},{one:.9g},0\n" for i, one in enumerate(pulse())))
+    words = ["observe", "fig11-founded", "--input", str(table)]
+    assert cli.main([*words, "--out", str(out), "--json"]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    assert printed["residual"]["relative"] is None and printed["residual"]["rms"] > 0.0
+    assert printed["residual_elastic"]["relative"] is None
+    with h5py.File(out) as file:
+        stored = json.loads(file.attrs["residual"], parse_constant=pytest.fail)
+    assert stored["relative"] is None and stored["rms"] == printed["residual"]["rms"]
+    assert cli.main(words) == 0
+    said = capsys.readouterr().out
+    assert "model − measured at 60 samples: rms" in said and "%" not in said and "inf" not in said
+
+
 def test_saved_arrays_are_those_of_the_observation(tmp_path: Path) -> None:
     r = recorded(CHAIN, 500, 1)
     seen = observe(CHAIN, r.time, r.force, start=r.start)

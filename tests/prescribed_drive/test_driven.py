@@ -271,6 +271,21 @@ def test_what_cannot_be_is_refused_with_a_sentence(words: list[str], sentence: s
     assert sentence in capsys.readouterr().err
 
 
+def test_finer_knots_and_a_shift_leave_the_motion_as_it_is() -> None:
+    """The given knots are among the new ones, so that the coarser signals, by which errors are stated, still fit."""
+    time = np.linspace(0.0, 0.004, 41)
+    given = sampled("velocity", time)
+    finer, moved = given.finer(3e-5), given.shifted(2e-7)
+    assert len(finer.time) == 4 * 40 + 1 and np.isin(given.time, finer.time).all() and finer.coarser == given.coarser
+    at = np.linspace(0.0, 0.004, 333)
+    np.testing.assert_allclose(finer.displacement_at(at), given.displacement_at(at), atol=1e-12 * np.abs(given.displacement).max())
+    np.testing.assert_allclose(moved.displacement_at(at) - given.displacement_at(at), 2e-7)
+    assert all(one.displacement[0] == pytest.approx(2e-7 + before.displacement[0]) for one, before in zip(moved.coarser, given.coarser, strict=True))
+    assert given.finer(1.0) is given
+    with pytest.raises(BadInput, match="nearest valid spacing"):
+        given.finer(1e-10)
+
+
 def test_times_of_a_velocity_ascend() -> None:
     with pytest.raises(BadInput, match="times must ascend"):
         Signal.from_velocity([0.0, 0.0], [1.0, 1.0])

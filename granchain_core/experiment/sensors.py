@@ -1,0 +1,156 @@
+"""Models of a rig's sensors: inertia of a tip, limited bandwidth, noise.
+
+Equation   F_in = F_0 + m_tip ü_0: the input sensor sits between the shaker and a tip of mass m_tip that touches bead 1
+           H(f) = 1 / (1 + √2 i f/f_c − (f/f_c)²),   |H(f)|² = 1 / (1 + (f/f_c)⁴): Butterworth's low-pass of order 2
+           y = 2 Re r z,   ż = p z + F,   p = 2π f_c (−1 + i)/√2,   r = (2π f_c)² / (p − p̄): the same over time
+           normal noise, independent from sample to sample
+Source     Butterworth 1930; the rig: Zhang et al. 2016, figure 4
+Note       The low-pass is that of an analogue filter, for both forces. A force is known at nodes and is a straight line
+           between them, jumps included; for such a force z is advanced without error from node to node, at any
+           spacing. What is left is the error of the straight lines: a line at f of a force with f_s nodes a second has
+           an amplitude that is too small by (π f/f_s)²/3. The output sensor stands at the wall and does not move: its
+           mass adds nothing. A wall that yields is the scene's knob `wall`.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from dataclasses import dataclass
+from itertools import accumulate
+
+import numpy as np
+
+from ..errors import BadInput
+from ..inputs.checks import check_range
+
+#: Nodes of a force per time 1/f_c that the low-pass needs: straight lines between them make a line of the force at f_c
+#: too small by (π/128)²/3, which is 0.02 %.
+SAMPLES_PER_BANDWIDTH = 128
+#: Times 1/(2π f_c) after which the filter has forgotten how it began, to 1e-6.
+_FORGOTTEN = 20.0
+#: Exponents below which the second integral of the exponential is a series, since its formula cancels.
+_SMALL = 1e-3
+
+
+@dataclass(frozen=True)
+class Sensors:
+    """The sensors of a rig, in SI; by default perfect ones.
+
+    Attributes
+    ----------
+    noise : float
+        Standard deviation of a sample of either force [N].
+    velocity_noise : float
+        That of a sample of the driver's velocity [m/s].
+    bandwidth : float
+        Frequency f_c at which a force is recorded with 1/√2 of its amplitude [Hz].
+    tip_mass : float
+        Mass that moves with the driver in front of the input sensor [kg].
+    rate : float
+        Samples a second [Hz].
+
+    Examples
+    --------
+    >>> from granchain_core.virtual_experiment import Sensors
+    >>> Sensors(noise=0.01, bandwidth=20e3).words
+    'noise 0.01 N, bandwidth 20000 Hz, 100000 samples/s'
+    """
+
+    noise: float = 0.0
+    velocity_noise: float = 0.0
+    bandwidth: float = math.inf
+    tip_mass: float = 0.0
+    rate: float = 100_000.0
+
+    def __post_init__(self) -> None:
+        for name, value, high in (("noise [N] =", self.noise, 1e6),
+                                  ("velocity noise [m/s] =", self.velocity_noise, 1e3),
+                                  ("tip mass [kg] =", self.tip_mass, 100.0)):
+            check_range(name, value, 0.0, high)
+        check_range("rate [Hz] =", self.rate, 1.0, 1e8)
+        if not self.bandwidth >= 1.0:
+            raise BadInput(f"bandwidth [Hz] = {self.bandwidth:g} is below 1; the nearest valid value is 1.")
+
+    @property
+    def words(self) -> str:
+        """What is not perfect about them, and their rate."""
+        parts = [(f"noise {self.noise:g} N", self.noise > 0.0),
+                 (f"velocity noise {self.velocity_noise:g} m/s", self.velocity_noise > 0.0),
+                 (f"bandwidth {self.bandwidth:g} Hz", math.isfinite(self.bandwidth)),
+                 (f"tip of {self.tip_mass:g} kg before the input sensor", self.tip_mass > 0.0),
+                 (f"{self.rate:g} samples/s", True)]
+        return ", ".join(words for words, there in parts if there)
+
+    @property
+    def filters(self) -> bool:
+        """Whether the bandwidth is limited."""
+        return math.isfinite(self.bandwidth)
+
+    @property
+    def lead_in(self) -> float:
+        """Time that a record has to begin earlier [s], so that the filter's own beginning is not in it."""
+        return _FORGOTTEN / (2.0 * math.pi * self.bandwidth)
+
+    @property
+    def shortest_pulse(self) -> float:
+        """Duration of the low-pass's answer to an impulse, up to its first zero [s]: no recorded pulse is shorter."""
+        return 1.0 / (math.sqrt(2.0) * self.bandwidth)
+
+    def response(self, frequency: float) -> complex:
+        """H(f): what the low-pass makes of a sine of frequency f [Hz], amplitude and phase."""
+        part = frequency / self.bandwidth
+        return 1.0 / complex(1.0 - part * part, math.sqrt(2.0) * part)
+
+    def passed(self, time: np.ndarray, force: np.ndarray, at: np.ndarray, periodic: bool = False) -> np.ndarray:
+        """A force after the low-pass, at the times `at` [s] from the first node on.
+
+        Parameters
+        ----------
+        time, force : numpy.ndarray, shape (T,)
+            Nodes of the force: times [s], not descending, and values [N]; a jump is two nodes at one time.
+        at : numpy.ndarray
+            Times [s]; later than the last node only if the force is periodic.
+        periodic : bool
+            Whether the force repeats after its last node. If not, it was constant before its first one.
+        """
+        if periodic:
+            length = float(time[-1] - time[0])
+            at = time[0] + np.mod(at - time[0], length)
+        left = np.clip(np.searchsorted(time, at, side="right") - 1, 0, len(time) - 2)
+        since, step = at - time[left], time[left + 1] - time[left]
+        if not self.filters:
+            part = np.divide(since, step, out=np.zeros_like(since), where=step > 0.0)
+            return np.asarray(force[left] + part * (force[left + 1] - force[left]))
+        pole = 2.0 * math.pi * self.bandwidth * cmath.rect(1.0, 0.75 * math.pi)
+        scale = (2.0 * math.pi * self.bandwidth) ** 2 / (pole - pole.conjugate())
+        steps = np.diff(time)
+        kept, first, second = _integrals(pole, steps)
+        added = steps * (force[:-1] * (first - second) + force[1:] * second)
+        begin = -force[0] / pole
+        if periodic:  # z comes back after a period: it is the sum of what a period adds and what is kept of itself
+            once = _advanced(0.0, kept, added)[-1]
+            begin = once / (1.0 - cmath.exp(pole * length))
+        state = _advanced(begin, kept, added)
+        kept, first, second = _integrals(pole, since)
+        end = force[left] + np.divide(since, step, out=np.zeros_like(since), where=step > 0.0) * (
+            force[left + 1] - force[left])
+        found = kept * state[left] + since * (force[left] * (first - second) + end * second)
+        return np.asarray(2.0 * (scale * found).real)
+
+
+def _advanced(begin: complex, kept: np.ndarray, added: np.ndarray) -> np.ndarray:
+    """The states (T,) of z ← kept · z + added from `begin` on."""
+    return np.array(list(accumulate(zip(kept.tolist(), added.tolist(), strict=True),
+                                    lambda z, one: one[0] * z + one[1], initial=complex(begin))))
+
+
+def _integrals(pole: complex, step: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """e^q, (e^q − 1)/q and (e^q − 1 − q)/q² for q = pole · step: over a step h, z gains h (F_0 (φ₁ − φ₂) + F_1 φ₂)."""
+    q = pole * step
+    small = np.abs(q) < _SMALL
+    safe = np.where(small, 1.0, q)
+    series = 1.0 + q / 2.0 * (1.0 + q / 3.0 * (1.0 + q / 4.0))
+    first = np.where(small, series, np.expm1(safe) / safe)
+    second = np.where(small, 0.5 * (1.0 + q / 3.0 * (1.0 + q / 4.0 * (1.0 + q / 5.0))), (first - 1.0) / safe)
+    return np.exp(q), first, second

@@ -1,0 +1,141 @@
+"""Where a chain stands when a record begins that does not begin at rest: on its settled motion, at the record's phase.
+
+Equation   v(t) = A0 ω cos(ωt + φ) by least squares over the record: φ is the drive phase at its first sample, and
+           A0 sin φ the displacement of the driver there
+Note       The velocity does not tell in which of its n drive periods a motion of period n begins; the measured forces
+           do, by the least sum of squares.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import CubicHermiteSpline
+
+from ..errors import BadInput
+from ..execution.stop import Stop
+from ..experiment import Series
+from ..experiment.compare_forces import FORCES
+from ..experiment.sensors import Sensors
+from ..results.run import Run
+from ..scene import Scene
+from ..scene.refusals import refuse_undriven
+from ..scene.state import State
+from ..steady.settling.settle import settle
+from .trains import Train
+
+#: Samples of the settled motion in a drive period, between which the state is interpolated.
+_SAMPLES = 2048
+#: Part of a measured velocity, in root mean square, that may be no sine of the scene's frequency.
+_NO_SINE = 0.1
+#: Relative difference between the measured amplitude of the drive and the scene's that is said.
+_OTHER_AMPLITUDE = 0.02
+#: First sample over the largest one from which a record counts as begun in motion.
+_IN_MOTION = 0.05
+
+
+@dataclass(frozen=True, eq=False)
+class Beginning:
+    """The state of the chain and the displacement of the driver [m] at a record's first sample, and how they are known.
+    """
+
+    state: State
+    displacement: float
+    words: str
+
+
+def settled_beginning(scene: Scene, series: Series, sensors: Sensors | None = None,
+                      stop: Stop | None = None) -> Beginning:
+    """The settled motion of a scene at the phase at which a record of its drive begins.
+
+    Parameters
+    ----------
+    scene : Scene
+        The driven chain, with the frequency and the amplitude of the record.
+    series : Series
+        A series with the velocity or the displacement of the driver.
+    sensors : Sensors, optional
+        The sensors of the measured forces; perfect ones if not given.
+    stop : Stop, optional
+        Ends the computation when another thread sets it.
+
+    Raises
+    ------
+    BadInput
+        No drive, neither velocity nor displacement, a drive that is no sine of the scene's frequency, or a settled
+        motion that is not periodic.
+    Cancelled
+        `stop` was set.
+    """
+    refuse_undriven(scene)
+    phase, amplitude = _drive_phase(scene, series)
+    found = settle(scene, samples=_SAMPLES, stop=stop)
+    if found.regime.name != "periodic":
+        raise BadInput(f"The settled motion of {scene.name} is {found.regime.name}: it has no state that belongs to a "
+                       "drive phase. Start at rest, or in the state of a recorded run.")
+    run, periods = found.run, found.regime.period or 1
+    begins = [(phase + turn) / scene.f for turn in range(periods)]
+    best = int(np.argmin(_squares(series, run, begins, sensors or Sensors()))) if periods > 1 else 0
+    time = run.time - run.time[0]
+    moving = CubicHermiteSpline(time, run.displacement, run.velocity)
+    state = State(moving(begins[best]), moving.derivative()(begins[best]), phase)
+    words = f"the settled motion at drive phase {phase:.4f}"
+    if periods > 1:
+        known = any(getattr(series, name) is not None for name in FORCES)
+        words += f" of drive period {best + 1} of {periods}{'' if known else ', of which no force tells the right one'}"
+    if abs(amplitude / scene.drive_amplitude - 1.0) > _OTHER_AMPLITUDE:
+        words += (f"; the record's drive has the amplitude {amplitude:.4g} m and the scene's has "
+                  f"{scene.drive_amplitude:.4g} m, so this motion is another one")
+    return Beginning(state, scene.drive_amplitude * math.sin(2.0 * math.pi * phase), words)
+
+
+def _drive_phase(scene: Scene, series: Series) -> tuple[float, float]:
+    """The drive phase at the first sample, as a fraction of a period, and the amplitude of the drive [m]."""
+    name, values = (("velocity", series.velocity) if series.velocity is not None else
+                    ("displacement", series.displacement))
+    if values is None:
+        raise BadInput("The series has neither velocity nor displacement of the driver, so its phase is not known.")
+    omega, time = 2.0 * math.pi * scene.f, series.time - series.time[0]
+    waves = np.stack([np.cos(omega * time), np.sin(omega * time), np.ones(len(time))], axis=1)
+    solved = np.linalg.lstsq(waves, values, rcond=None)[0]
+    left = float(np.std(values - waves @ solved)) / (float(np.std(values)) or 1.0)
+    if not left <= _NO_SINE:
+        raise BadInput(f"The {name} is no sine of f = {scene.f:g} Hz: {100.0 * left:.3g} % of it is something else, so "
+                       "its phase is not known; start at rest, or set the scene's f to that of the record.")
+    cosine, sine = float(solved[0]), float(solved[1])
+    size = math.hypot(cosine, sine)
+    angle = math.atan2(-sine, cosine) if name == "velocity" else math.atan2(cosine, sine)
+    return angle / (2.0 * math.pi) % 1.0, size / omega if name == "velocity" else size
+
+
+def _squares(series: Series, run: Run, begins: list[float], sensors: Sensors) -> list[float]:
+    """For each beginning [s] on the orbit, the sum of squares by which its forces differ from the measured ones."""
+    time, found = series.time - series.time[0], [0.0] * len(begins)
+    width = float(np.median(np.diff(time)))
+    for name in FORCES:
+        measured = getattr(series, name)
+        if measured is None:
+            continue
+        train = Train.of(run, name)
+        for i, begin in enumerate(begins):
+            found[i] += float(((train.recorded(time + begin, width, sensors) - measured) ** 2).sum())
+    return found
+
+
+def in_motion(series: Series, rest_force: float) -> str:
+    """A sentence if the first sample shows that the chain moves already; empty if it does not.
+
+    `rest_force` is the force of the contacts at rest, the scene's F0 [N].
+    """
+    found = []
+    for name, rest in (("velocity", 0.0), *((one, rest_force) for one in FORCES)):
+        values = getattr(series, name)
+        if values is not None and abs(values[0] - rest) > _IN_MOTION * float(np.abs(values - rest).max()):
+            found.append(name.replace("_", " "))
+    if not found:
+        return ""
+    return (f"The record begins in motion: the first sample of its {' and '.join(found)} is not that of a chain at "
+            "rest. The chain starts at rest and the driver at displacement 0, so at least the first part differs; "
+            "--start settled begins on the settled motion.")
