@@ -59,7 +59,7 @@ class Ends:
         if self.equations.period % 2:
             return None
         for place, one in enumerate(special):
-            if one.kind in ("fold", "plus_one") and self._halves(one.before) @ self._halves(one.after) < 0.0:
+            if one.kind in ("fold", "multiplier_one") and self._halves(one.before) @ self._halves(one.after) < 0.0:
                 return place
         return None
 

@@ -65,9 +65,14 @@ class BranchPoint:
         return self.residuals[-1]
 
     @property
-    def unstable(self) -> int:
+    def unstable_multipliers(self) -> int:
         """Number of multipliers outside the unit circle; without damping, outside by more than `ON_CIRCLE`."""
         return int((np.abs(self.multipliers) >= self._circle).sum())
+
+    @property
+    def unstable(self) -> int:
+        """The older name of `unstable_multipliers`."""
+        return self.unstable_multipliers
 
     @property
     def _circle(self) -> float:
@@ -77,7 +82,7 @@ class BranchPoint:
     @property
     def stable(self) -> bool:
         """Whether no multiplier is outside the unit circle."""
-        return self.unstable == 0
+        return self.unstable_multipliers == 0
 
     @property
     def turning(self) -> int:
@@ -93,7 +98,7 @@ class BranchPoint:
     @property
     def signature(self) -> tuple[int, ...]:
         """Numbers that change at special points and nowhere else."""
-        return (self.turning, self.unstable, self.doubling_sign, *(int(n) for n in self.closings))
+        return (self.turning, self.unstable_multipliers, self.doubling_sign, *(int(n) for n in self.closings))
 
 
 def branch_point(equations: BranchEquations, solved: Solved, tangent: np.ndarray, arclength: float) -> BranchPoint:
