@@ -96,8 +96,9 @@ NUMBERS = {2: "two", 3: "three", 4: "four"}
         r"Its first (\d+) periods do not count": exponent_measurements.TURNING_PERIODS}),
     ("docs/regimes.md", {
         r"not decided after (\d+) periods is settled alone": regime_decisions.MOST_PERIODS,
-        r"which means that \|mean\| − 3σ is below ([\d.]+);": round(regime_criteria._BOUNDED_GROWTH / regime_criteria._LONGEST_COMPARISON, 4),
+        r"above 0, below ([\d.]+) \| P would be above `_LONGEST_COMPARISON`": round(regime_criteria._BOUNDED_GROWTH / regime_criteria._LONGEST_COMPARISON, 4),
         r"computed it is r, at most ([\d.]+), and": Regime("periodic", 1, 1.0, None, 1).assumed_contraction, r"decay was seen it is ([\d.]+) \(": Regime("periodic", 1, None, None, 1).assumed_contraction,
+        r"\| ([\d.]+) or more \| measured": round(regime_criteria._BOUNDED_GROWTH / regime_criteria._LONGEST_COMPARISON, 4),
         r"below ([\d.]+) \+ 3σ": round(regime_criteria._BOUNDED_GROWTH / regime_criteria._LONGEST_COMPARISON, 4),
         r"Up to (\d+) periods the limit": regime_criteria._BOUNDED_GROWTH / regime_criteria._LARGEST_NEUTRAL_EXPONENT}),
     ("granchain_core/steady/regime_criteria.py", {
