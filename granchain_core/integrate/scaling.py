@@ -201,8 +201,8 @@ class ScaledChain:
         if steps > MOST_STEPS_PER_PERIOD:
             raise BadInput(
                 f"drive frequency f = {self.scene.f:g} Hz is so far below the chain's frequency scale φ that one "
-                f"period takes {steps:.1e} steps; at most {MOST_STEPS_PER_PERIOD:.0e} are allowed: the nearest valid frequency "
-                f"is about {self.scene.f * steps / MOST_STEPS_PER_PERIOD:.3g} Hz."
+                f"period takes {steps:.1e} steps; at most {MOST_STEPS_PER_PERIOD:.0e} are allowed: the nearest valid "
+                f"frequency is about {self.scene.f * steps / MOST_STEPS_PER_PERIOD:.3g} Hz."
             )
         return steps
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from chains import scaled
 
 import granchain_core
 from granchain_core import BadInput, ComputationError, Scene, State, orbit, run, scene, settle
@@ -138,13 +139,10 @@ def test_between_doublings_the_disturbed_chain_leaves_its_orbit(doubling: Branch
 
 
 def test_special_points_scale_with_the_chain(doubling: Branch) -> None:
-    # (A0, f, D) → (s A0, s^{1/4} f, s^{1/4} D) leaves the dimensionless orbit unchanged (docs/model.md, Equations)
-    s, shown = 7.0, scene("sec2")
-    scaled = shown.evolve(A0=s * shown.A0, D=s**0.25 * shown.D)
-    first = doubling.points[0]
+    s, first = 7.0, doubling.points[0]
     state = doubling.state(first)
     start = State(s * state.displacement, s**1.25 * state.velocity)
-    other = granchain_core.branch(scaled, "f", s**0.25 * first.knob, s**0.25 * 250.0, 1, start)
+    other = granchain_core.branch(scaled(scene("sec2"), s), "f", s**0.25 * first.knob, s**0.25 * 250.0, 1, start)
     mine, its = the(doubling, "period_doubling"), the(other, "period_doubling")
     assert its.knob / s**0.25 == pytest.approx(mine.knob, rel=1.1e-5)  # the half widths of both intervals
 
