@@ -3,11 +3,11 @@
 from .branch.axis import CONTINUOUS, KnobAxis
 from .branch.branch import Branch, Continuation, begin_branch, continue_branch
 from .branch.check import check_branch
+from .branch.half_branch import HalfBranch
 from .branch.normal_forms import NormalForm
 from .branch.point import BranchPoint
 from .branch.special import SpecialPoint
 from .branch.switch import switch_to_doubled
-from .branch.walk import HalfBranch
 from .orbit import Orbit, periodic_orbit, random_state
 from .response import Response, response
 from .search import orbit_near_motion

@@ -47,7 +47,7 @@ def save_branch(branch: Branch, path: str | Path) -> Path:
 
 
 def write_branch(file: h5py.File, branch: Branch) -> None:
-    """Write a branch with what its walk needs to go on."""
+    """Write a branch with what its continuation needs to go on."""
     write_result(file, branch)
     turns = file.create_group("turns")
     for place, arm in enumerate(branch.half_branches):

@@ -63,7 +63,7 @@ def test_the_text_on_branches_has_the_values_of_the_constants() -> None:
         r"below ([\de-]+) the orbit is accepted": residuals.ACCEPTED_RESIDUAL,
         r"whose knobs differ by at most ([\de-]+) of the knob \(": special.RELATIVE_WIDTH,
         r"for at most (\d+) levels of bisection": special._MOST_LEVELS,
-        r"back to the seed within ([\de-]+):": ends._CLOSING_DISTANCE,
+        r"back to the starting orbit within ([\de-]+):": ends._CLOSING_DISTANCE,
         r"first differences only: ξ = ([\de-]+)\.": normal_forms._SMALL_AMPLITUDE,
         r"The others have ξ = ([\de-]+),": normal_forms._AMPLITUDE,
         r"differ by more than (\d+) % of their mean": 100.0 * normal_forms._LARGEST_ERROR,

@@ -20,7 +20,7 @@ from granchain_core.orbits import (
     check_branch,
     switch_to_doubled,
 )
-from granchain_core.orbits.branch.walk import HalfBranch, Walk
+from granchain_core.orbits.branch.half_branch import HalfBranch, HalfContinuation
 
 #: What the settled picture is asked for; its converged orbit then agrees with a branch's to some multiples of it.
 _ASKED = 1e-8
@@ -190,7 +190,7 @@ def test_an_isola_closes_on_itself() -> None:
     shown, frequency, period = closed_loop()
     found = granchain_core.branch(shown.evolve(f=frequency), "f", 100.0, 3000.0, period, both=True)
     assert [half.ended for half in found.half_branches] == ["closed"] and check_branch(found) == []
-    assert "the orbit there is the seed's" in found.half_branches[0].reason
+    assert "the orbit there is the starting one" in found.half_branches[0].reason
     assert sum(s.kind == "fold" for s in found.special) % 2 == 0
 
 
@@ -204,14 +204,14 @@ def test_the_threads_do_not_decide_which_arm_of_an_isola_is_kept(slow: int, monk
     alternately = Continuation(copies[0])
     for _ in alternately:
         pass
-    step = Walk.__next__
+    step = HalfContinuation.__next__
 
-    def slowed(walk: Walk) -> BranchPoint:
-        if walk.half.direction == slow:
+    def slowed(one: HalfContinuation) -> BranchPoint:
+        if one.half.direction == slow:
             time.sleep(0.05)
-        return step(walk)
+        return step(one)
 
-    monkeypatch.setattr(Walk, "__next__", slowed)
+    monkeypatch.setattr(HalfContinuation, "__next__", slowed)
     found = Continuation(copies[1]).run()
     kept, = found.half_branches
     assert kept.direction == alternately.branch.half_branches[0].direction

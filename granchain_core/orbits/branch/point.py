@@ -37,7 +37,7 @@ class BranchPoint:
     """A periodic orbit on a branch.
 
     `knob` in SI; `x` (2N,) is the scaled state (u, w) at phase 0; `tangent` (2N + 1,) the branch's unit tangent in
-    (x/√(2N), p); `arclength` counts from the seed. `multipliers` (2N,) come largest modulus first. The three largest
+    (x/√(2N), p); `arclength` counts from the start. `multipliers` (2N,) come largest modulus first. The three largest
     forces are in N. `closings` (N + 1,) count how often each contact closes along the orbit: 0 if it is always
     open, −1 if it is always closed. `slope` (2N,) is the map's change with p. `residuals` are those of Newton's method,
     the last being the orbit's; `liouville` is how far ln |det| of the monodromy matrix is from ∫ trace. `turns` are the

@@ -139,7 +139,7 @@ def special_between(between: Between) -> list[SpecialPoint]:
     """All special points between two neighbours, in their order.
 
     Rough orbits find brackets, whose ends are then computed exactly. Where that fails, or an exact end is not on the
-    side of its rough one, all orbits are computed as those of the walk.
+    side of its rough one, all orbits are computed as those of the branch.
     """
     axis, a, b = between.equations.axis, between.a, between.b
     try:

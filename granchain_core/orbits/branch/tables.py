@@ -10,10 +10,10 @@ from ...scene.quantities import QUANTITIES
 from ...tables import MAXIMA, Column, Table, axis, contact_axis, force_columns
 from ...tables.words import multiplier_columns
 from .axis import KnobAxis
+from .half_branch import HalfBranch
 from .normal_forms import NormalForm
 from .point import BranchPoint
 from .special import SPECIAL_KINDS, SpecialPoint
-from .walk import HalfBranch
 
 #: What is told of a special point without a normal form.
 _NO_NORMAL_FORM = NormalForm("")
@@ -24,7 +24,7 @@ NO_CONTACT = -1
 
 
 def branch_tables(over: KnobAxis, half_branches: Sequence[HalfBranch]) -> tuple[Table, ...]:
-    """All tables of a branch. Orbits come half-branch by half-branch, each from the seed."""
+    """All tables of a branch. Orbits come half-branch by half-branch, each from the starting orbit."""
     points = [(place, point) for place, half in enumerate(half_branches) for point in half.points]
     special = [(place, one) for place, half in enumerate(half_branches) for one in half.special]
     return (_orbits("branch", over, [point for _, point in points], [place for place, _ in points]),
@@ -59,7 +59,7 @@ def _orbits(name: str, over: KnobAxis, points: Sequence[BranchPoint],
         **axis("coordinate", np.arange(2 * n + 1), "1", "state over √(2N), then the knob's coordinate"),
         **axis("iteration", np.arange(longest), "1", "evaluation of Newton's method"),
     }, {
-        **column("knob", knob.unit, knob.label), **column("arclength", "1", "arclength from the seed"),
+        **column("knob", knob.unit, knob.label), **column("arclength", "1", "arclength from the starting orbit"),
         **force_columns(forces, along, "along the orbit"),
         **column("stable", "1", "1 if no multiplier is outside", np.int8),
         "unstable": Column(np.array([point.unstable_multipliers for point in points], dtype=np.int64), along, "1",
