@@ -13,7 +13,9 @@ from app.plots.theme import AMBER, BLUE, DRIVE_COLOUR, GREY, OUTPUT_COLOUR, TEAL
 _WORDS = {AMBER: "amber", BLUE: "blue", DRIVE_COLOUR: "red", GREY: "grey", OUTPUT_COLOUR: "green", TEAL: "teal",
           VIOLET: "violet", "#a855f7": "purple", "#f59e0b": "orange", "#06b6d4": "turquoise", "#ec4899": "pink",
           "#ef4444": "red"}
-_MARKERS = {"inverted_triangle": "▼", "hex": "⬢", "circle": "●", "cross": "+"}
+#: Signs of drawn marks by Bokeh's marker, and whether it is filled.
+_SIGNS = {("inverted_triangle", True): "▼", ("hex", True): "⬢", ("circle", False): "○", ("square", False): "□",
+          ("cross", True): "+"}
 
 
 def table_of_lines_over_a_knob() -> str:
@@ -32,7 +34,7 @@ def table_of_lines_over_a_knob() -> str:
 def table_of_special_points() -> str:
     """Special points of branches, and the marks on bifurcation curves."""
     return _table(("mark", "meaning"), [
-        (f"{_MARKERS[style['marker']] if style['filled'] else '○'} {_WORDS[style['colour']]}", SPECIAL[kind])
+        (f"{_SIGNS[style['marker'], style['filled']]} {_WORDS[style['colour']]}", SPECIAL[kind])
         for kind, style in SPECIAL_STYLES.items()])
 
 

@@ -4,9 +4,10 @@
 
 - tables in the docs: thresholds (docs/regimes.md, rotation-number.md, orbits.md, branches.md, accuracy.md), methods
   (docs/method.md), knobs (docs/model.md), equations and scenes (README.md), commands (README.md, docs/command-line.md),
-  drives by a formula (docs/scenes.md), marks of the figures (docs/marks.md), what is used of libraries
-  (docs/libraries.md), metrics (docs/deployment.md), the dashboard's pages in the map of the code (docs/design.md) and
-  its messages (docs/dashboard.md);
+  drives by a formula (docs/scenes.md), marks of the figures (docs/marks.md), special points and their names
+  in AUTO and MatCont (docs/branches.md, glossary.md), what is used of libraries (docs/libraries.md), metrics
+  (docs/deployment.md), the dashboard's pages in the map of the code (docs/design.md) and its messages
+  (docs/dashboard.md);
 - a row for every new scene in the test of share links (tools/links.py);
 - for every new or changed scene the largest values that its pictures are drawn to (tools/scales.py) and its picture in
   the gallery (tools/gallery.py).
@@ -42,6 +43,7 @@ from tools.marks import (
     table_of_regime_marks,
     table_of_special_points,
 )
+from tools.special_kinds import table_of_kinds, table_of_terms
 from tools.thresholds import (
     table_of_branches,
     table_of_deciding,
@@ -59,7 +61,9 @@ _TABLES = (
     ("docs/regimes.md", "thresholds", tables_of_regimes),
     ("docs/rotation-number.md", "rotation thresholds", table_of_rotation_numbers),
     ("docs/orbits.md", "thresholds", table_of_responses),
+    ("docs/branches.md", "kinds of special points", table_of_kinds),
     ("docs/branches.md", "branch constants", table_of_branches),
+    ("docs/glossary.md", "special points", table_of_terms),
     ("docs/accuracy.md", "safety factors", table_of_safety_factors),
     ("docs/method.md", "methods", list_of_methods),
     ("docs/method.md", "orders", table_of_orders),

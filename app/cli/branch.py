@@ -47,7 +47,6 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def do(arguments: argparse.Namespace) -> None:
     """Follow a branch of periodic orbits and report it."""
-
     check_files(arguments)
     check_points(arguments.points, 2, MOST_POINTS)
     found = _followed(arguments)
@@ -67,6 +66,7 @@ def branch_json(found: Branch) -> dict[str, Any]:
         "knob": [p.knob for p in found.points],
         "max_output_force_elastic": [p.max_output_force_elastic for p in found.points],
         "stable": [p.stable for p in found.points],
+        "unstable_multipliers": [p.unstable_multipliers for p in found.points],
         "special": [{"kind": s.kind, "knob": s.knob, "interval": list(s.interval)} for s in found.special],
         "evidence": [_evidence(one) for one in found.special],
         "normal_form": [_normal_form(one) for one in found.special],
@@ -82,7 +82,7 @@ def _evidence(found: SpecialPoint) -> dict[str, Any]:
     """On what the kind of a special point rests: the multiplier that passes the circle, or what a contact does."""
     passing = found.multiplier
     return {"multiplier": None if passing is None else [passing.real, passing.imag], "contact": found.contact,
-            "event": found.event, "gained": found.gained}
+            "event": found.event, "gained": found.gained, "gained_side": found.gained_side}
 
 
 def _normal_form(found: SpecialPoint) -> dict[str, Any] | None:
@@ -160,7 +160,7 @@ def _begun(arguments: argparse.Namespace, stop: Any) -> _Begun:
     kept, there = None, None
     if arguments.out:
         kept = OrbitCheckpoints(KnobAxis.of(chosen, arguments.knob, arguments.start, arguments.end, amplitude),
-                          arguments.both, arguments.out)
+                                arguments.both, arguments.out)
         kept.kept.open(resume=arguments.resume is not None)
         there = _interrupted(arguments, kept)
     return _Begun(there or begin_branch(chosen, arguments.knob, arguments.start, arguments.end, arguments.period,
@@ -222,20 +222,26 @@ class _Progress:
                     f"{'stable' if last.stable else 'unstable'}, {len(half.special)} special points")
 
 
-
 def _way(half: HalfBranch) -> str:
     return "upwards" if half.direction > 0 else "downwards"
 
 
 def _show(found: Branch) -> None:
-    print(f"{found.axis.knob:>14}  max_output_force_elastic_N  stability")
+    print(f"{found.axis.knob:>14}  max_output_force_elastic_N  stability  unstable_multipliers")
     for p in found.points:
-        print(f"{p.knob:14.8g}  {p.max_output_force_elastic:26.8g}  {'stable' if p.stable else 'unstable'}")
+        stability = "stable" if p.stable else "unstable"
+        print(f"{p.knob:14.8g}  {p.max_output_force_elastic:26.8g}  {stability:9}  {p.unstable_multipliers:20}")
     for s in found.special:
-        grazes = s.contact is not None
-        more = f", contact {s.contact}: one {s.gained} more on one side" if grazes else normal_form_words(s)
+        more = f", {_grazing_words(s, found.axis)}" if s.contact is not None else normal_form_words(s)
         low, high = s.interval
-        print(f"{s.kind} at {found.axis.knob} = {s.knob:.8g}, between {low:.9g} and {high:.9g}{more}")
+        print(f"{s.kind_words} at {found.axis.knob} = {s.knob:.8g}, between {low:.9g} and {high:.9g}{more}")
+
+
+def _grazing_words(found: SpecialPoint, axis: KnobAxis) -> str:
+    """What a contact has once more, and on which side of the knob."""
+    value = axis.text(found.knob).partition(" = ")[2]
+    side = "on one side" if found.gained_side is None else f"{found.gained_side} {value}"
+    return f"contact {found.contact}: one {found.gained} more {side}"
 
 
 def normal_form_words(found: SpecialPoint) -> str:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from granchain_core import BadInput, Scene
+from granchain_core import BadInput, Orbit, Scene, Stop
 from granchain_core.precompile.pieces import ORBIT_KERNELS
 from granchain_core.scene.state import State
 
@@ -17,7 +18,7 @@ from .options import add_json, add_out, add_scene, whole
 from .picture import add_option as add_picture
 from .picture import check_files, write_files
 
-ORBIT_STARTS = ("settled", "rest", "random")
+ORBIT_STARTS = ("settled", "rest", "random", "near")
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -26,8 +27,9 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--period", type=whole, metavar="n",
                         help="drive periods of the orbit; by default those of the settled motion, 1 if it has none or "
                              "with another --start")
-    parser.add_argument("--start", default="settled", metavar="settled|rest|random|FILE",
-                        help="where Newton's method starts; FILE is a recorded run, whose last sample counts")
+    parser.add_argument("--start", default="settled", metavar="settled|rest|random|near|FILE",
+                        help="where Newton's method starts; near: where the settled motion passes near an orbit that "
+                             "it does not follow; FILE is a recorded run, whose last sample counts")
     parser.add_argument("--seed", type=whole, default=0, help="seed of the random start")
     parser.add_argument("--observer", action="store_true",
                         help="also compute the multipliers of the observer of model (4)")
@@ -38,13 +40,11 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def do(arguments: argparse.Namespace) -> None:
     """Find the periodic orbit of a scene and its multipliers."""
-    from granchain_core.orbits import periodic_orbit
-
     check_files(arguments)
     chosen = chosen_scene(arguments)
-    start = _start(chosen, arguments.start, arguments.seed)
+    find = _search(chosen, arguments)
     with compiling_beside(chosen, ORBIT_KERNELS):
-        found = in_background(lambda stop: periodic_orbit(chosen, arguments.period, start, arguments.observer, stop))
+        found = in_background(find)
     write_files(arguments, f"Multipliers of {chosen.name}", found)
     say_if(found.period_note)
     if arguments.json:
@@ -84,6 +84,18 @@ def _show_multipliers(title: str, multipliers: Any, errors: Any) -> None:
     outside = sum(abs(mu) > 1.0 for mu in multipliers)
     known = "" if errors is None else f"; each to ± {max(errors[:4]):.0e}"
     print(f"{title}: {outside} of {len(multipliers)} outside the unit circle; leading {shown}{known}")
+
+
+def _search(chosen: Scene, arguments: argparse.Namespace) -> Callable[[Stop], Orbit]:
+    """What finds the orbit."""
+    from granchain_core.orbits import orbit_near_motion, periodic_orbit
+
+    if arguments.start == "near":
+        if arguments.observer:
+            raise BadInput("--observer cannot be combined with --start near.")
+        return lambda stop: orbit_near_motion(chosen, arguments.period, stop)
+    start = _start(chosen, arguments.start, arguments.seed)
+    return lambda stop: periodic_orbit(chosen, arguments.period, start, arguments.observer, stop)
 
 
 def _start(chosen: Scene, name: str, seed: int) -> State | None:

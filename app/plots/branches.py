@@ -21,13 +21,13 @@ from .theme import AMBER, GREY, TEAL, VIOLET, Theme
 from .themed import apply_theme, empty_figure, themed
 
 SPECIAL = {"fold": "fold", "period_doubling": "period doubling", "neimark_sacker": "Neimark–Sacker (torus)",
-           "plus_one": "multiplier +1 without a fold", "grazing": "grazing"}
+           "multiplier_one": "multiplier +1 without a fold", "grazing": "grazing"}
 #: Marks of special points, on branches and on the bifurcation curves of a map.
 SPECIAL_STYLES: dict[str, dict[str, Any]] = {
     "fold": {"marker": "inverted_triangle", "size": 14, "colour": AMBER, "filled": True},
     "period_doubling": {"marker": "hex", "size": 14, "colour": VIOLET, "filled": True},
     "neimark_sacker": {"marker": "circle", "size": 12, "colour": TEAL, "filled": False},
-    "plus_one": {"marker": "square", "size": 12, "colour": AMBER, "filled": False},
+    "multiplier_one": {"marker": "square", "size": 12, "colour": AMBER, "filled": False},
     "grazing": {"marker": "cross", "size": 9, "colour": GREY, "filled": True},
 }
 #: What begins at a bifurcation that is sub- or supercritical.
@@ -49,10 +49,10 @@ Columns = dict[str, dict[str, list[Any]]]
 
 
 class BranchRows:
-    """Branches as they grow: `add` gives what one more piece of an arm adds to the figure's sources.
+    """Branches as they grow: `add` gives what one more piece of a half-branch adds to the figure's sources.
 
     The unit of force is that of the first orbit, or of `largest` [N] where that is known. `orbits` holds all drawn
-    orbits of every arm, `special` all special points, in their order; the sources refer to them by number.
+    orbits of every half-branch, `special` all special points, in their order; the sources refer to them by number.
     """
 
     def __init__(self, largest: float | None = None) -> None:
@@ -65,21 +65,21 @@ class BranchRows:
         self.orbits: dict[int, list[BranchPoint]] = {}
         self.special: list[SpecialPoint] = []
 
-    def add(self, arm: int, branch: Branch, points: list[BranchPoint], special: list[SpecialPoint]) -> dict[str, Any]:
+    def add(self, half: int, branch: Branch, points: list[BranchPoint], special: list[SpecialPoint]) -> dict[str, Any]:
         """New rows by source, line pieces to append as (source, number, x, y), changed properties of other models."""
         new = drawn_orbits(points, special)
         self._choose_scales(branch.axis.knob, branch.axis.high, new[0].max_output_force_elastic)
-        before = self.orbits.setdefault(arm, [])
+        before = self.orbits.setdefault(half, [])
         beside = {p for s in special for p in (s.before, s.after)}
         rows: Columns = {"orbits": _columns(_ORBIT, [
-            (*self._place(p), *_orbit_words(p, branch), 1 if p in beside else _TARGET, arm, len(before) + i)
+            (*self._place(p), *_orbit_words(p, branch), 1 if p in beside else _TARGET, half, len(before) + i)
             for i, p in enumerate(new)])}
         for kind in SPECIAL:
             rows[kind] = _columns(_MARK, [
                 (*self._place(s.before, s.knob), special_words(s, branch), criticality_words(s),
                  len(self.special) + i)
                 for i, s in enumerate(special) if s.kind == kind])
-        pieces = self._lines(arm, before[-1:], new)
+        pieces = self._lines(half, before[-1:], new)
         before.extend(new)
         self.special.extend(special)
         return {"rows": rows, "pieces": pieces,
@@ -119,18 +119,18 @@ class BranchRows:
         assert self._knob is not None and self._force is not None
         return knob / self._knob.factor, force / self._force.factor
 
-    def _lines(self, arm: int, last: list[BranchPoint], new: list[BranchPoint]) -> list[list[Any]]:
-        """Pieces on which all orbits are stable, or none is; a piece begins where the last one of its arm ended."""
+    def _lines(self, half: int, last: list[BranchPoint], new: list[BranchPoint]) -> list[list[Any]]:
+        """Pieces on which all orbits are stable, or none is; one begins where the last of its half-branch ended."""
         pieces: list[list[Any]] = []
         for point in new:
             source = "stable" if point.stable else "unstable"
-            if arm not in self._last or self._last[arm][0] != source:
-                self._last[arm] = source, self._pieces[source]
+            if half not in self._last or self._last[half][0] != source:
+                self._last[half] = source, self._pieces[source]
                 self._pieces[source] += 1
-                pieces.append([*self._last[arm], *([value] for value in self._place(last[0]))] if last else
-                              [*self._last[arm], [], []])
+                pieces.append([*self._last[half], *([value] for value in self._place(last[0]))] if last else
+                              [*self._last[half], [], []])
             elif not pieces:
-                pieces.append([*self._last[arm], [], []])
+                pieces.append([*self._last[half], [], []])
             for column, value in zip(pieces[-1][2:], self._place(point), strict=True):
                 column.append(value)
             last = [point]
@@ -149,9 +149,9 @@ def branches(found: Sequence[Branch], theme: Theme, now: float | None = None, co
     models: dict[str, Any] = {}
     number = 0
     for one in found:
-        for arm in one.half_branches:
-            if arm.points:
-                added = rows.add(number, one, arm.points, arm.special)
+        for half in one.half_branches:
+            if half.points:
+                added = rows.add(number, one, half.points, half.special)
                 _put(data, added)
                 models |= added["models"]
             number += 1
@@ -253,7 +253,9 @@ def special_words(special: SpecialPoint, branch: Branch) -> str:
     words = (f"{SPECIAL[special.kind].removesuffix(' (torus)')} at {special.knob / scale.factor:.4f} ± "
              f"{0.5 * (high - low) / scale.factor:.4f} {scale.unit}")
     if special.contact is not None:
-        words += f": contact {special.contact} has one {special.gained} more per orbit on one side"
+        side = special.gained_side
+        where = "on one side" if side is None else f"{side} {special.knob / scale.factor:.4f} {scale.unit}"
+        words += f": contact {special.contact} has one {special.gained} more per orbit {where}"
     elif special.kind == "neimark_sacker" and special.multiplier is not None:
         words += (f": a pair μ = {special.multiplier.real:+.3f} ± {abs(special.multiplier.imag):.3f}i crosses the unit "
                   "circle")

@@ -219,11 +219,11 @@ def rotation_number(scene: Scene, periods: int = 4000, start: State | None = Non
     if settled.regime.name != "quasi-periodic":
         return _result(scene, settled.regime, periods,
                        Winding(None, None, 1, f"the motion is {settled.regime.name}, not quasi-periodic"), None)
-    told = progress or (lambda _: None)
+    reported = progress or (lambda _: None)
     engine = _engine(scene, _LONGER, settled.engine.state, settled.stop)
-    longer, _ = _recorded(engine, periods, lambda part: told(part / 3))
+    longer, _ = _recorded(engine, periods, lambda part: reported(part / 3))
     engine = _engine(scene, _SHORTER, engine.state, settled.stop)
-    shorter, length = _recorded(engine, periods, lambda part: told((1 + 2 * part) / 3))
+    shorter, length = _recorded(engine, periods, lambda part: reported((1 + 2 * part) / 3))
     return _result(scene, settled.regime, length, *_compared(longer, shorter))
 
 
@@ -234,12 +234,12 @@ def _engine(scene: Scene, refined: float, state: State, stop: Stop) -> Engine:
     return engine
 
 
-def _recorded(engine: Engine, periods: int, told: Callable[[float], None]) -> tuple[Winding, int]:
+def _recorded(engine: Engine, periods: int, reported: Callable[[float], None]) -> tuple[Winding, int]:
     """The rotation number of the last record, and its length: the first has `periods`, each other one twice as many."""
     for number in range(_MOST_RECORDS):
         length = periods << number
         found = winding_of(_strobes(engine, length))
-        told((2.0 ** (number + 1) - 1.0) / (2.0**_MOST_RECORDS - 1.0))
+        reported((2.0 ** (number + 1) - 1.0) / (2.0**_MOST_RECORDS - 1.0))
         if found.error is not None and found.error < _SMALL_ERROR:
             break
     return found, length

@@ -147,7 +147,7 @@ def _met(multiplier: complex, kind: str) -> bool:
 
 
 def bifurcation_point(scene: Scene, kind: str, state: State | np.ndarray, period: int = 1, x: str = "f", y: str = "A0",
-                   stop: Stop | None = None) -> BifurcationPoint:
+                      stop: Stop | None = None) -> BifurcationPoint:
     """The point of `kind` on the branch over knob x nearest to an orbit through `state`.
 
     `state` is at phase 0, in SI or scaled (2N,) of displacements, then w. Raises `BadInput`, and `ComputationError`

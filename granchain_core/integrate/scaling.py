@@ -200,9 +200,9 @@ class ScaledChain:
         steps = math.ceil(max(self.period / self.step, _FEWEST_STEPS_PER_PERIOD) / multiple_of) * multiple_of
         if steps > MOST_STEPS_PER_PERIOD:
             raise BadInput(
-                f"drive frequency f = {self.scene.f:g} Hz is so far below the chain's own rate that one period takes "
-                f"{steps:.1e} steps; at most {MOST_STEPS_PER_PERIOD:.0e} are allowed: the nearest valid frequency is "
-                f"about {self.scene.f * steps / MOST_STEPS_PER_PERIOD:.3g} Hz."
+                f"drive frequency f = {self.scene.f:g} Hz is so far below the chain's frequency scale φ that one "
+                f"period takes {steps:.1e} steps; at most {MOST_STEPS_PER_PERIOD:.0e} are allowed: the nearest valid "
+                f"frequency is about {self.scene.f * steps / MOST_STEPS_PER_PERIOD:.3g} Hz."
             )
         return steps
 

@@ -3,19 +3,20 @@
 from .branch.axis import CONTINUOUS, KnobAxis
 from .branch.branch import Branch, Continuation, begin_branch, continue_branch
 from .branch.check import check_branch
+from .branch.half_branch import HalfBranch
 from .branch.normal_forms import NormalForm
 from .branch.point import BranchPoint
 from .branch.special import SpecialPoint
 from .branch.switch import switch_to_doubled
-from .branch.walk import HalfBranch
 from .orbit import Orbit, periodic_orbit, random_state
 from .response import Response, response
+from .search import orbit_near_motion
 
 #: The older name of `HalfBranch`.
 Arm = HalfBranch
 
 __all__ = [
     "CONTINUOUS", "Arm", "Branch", "BranchPoint", "Continuation", "HalfBranch", "KnobAxis", "NormalForm", "Orbit",
-    "Response", "SpecialPoint", "begin_branch", "check_branch", "continue_branch", "periodic_orbit", "random_state",
-    "response", "switch_to_doubled",
+    "Response", "SpecialPoint", "begin_branch", "check_branch", "continue_branch", "orbit_near_motion",
+    "periodic_orbit", "random_state", "response", "switch_to_doubled",
 ]

@@ -32,6 +32,8 @@ from ..tables.words import multiplier_columns, state_columns
 from .multiplier_errors import derivative_change, errors_of
 from .stroboscopic_map import FLOW_METHOD, Flow, StroboscopicMap, refuse_cut
 
+#: Why an orbit has period 1 where a start was given.
+NO_PERIOD_GIVEN = "period 1 was taken, because a start was given without a period"
 #: Newton's iterations at most.
 MOST_ITERATIONS = 12
 #: Multipliers smaller than this part of the largest are rounding.
@@ -247,7 +249,7 @@ def periodic_orbit(scene: Scene, period: int | None = None, start: State | None 
         start = settling.engine.state
     else:
         if n is None:
-            note = "period 1 was taken, because a start was given without a period"
+            note = NO_PERIOD_GIVEN
         start = at_phase_0(scene, start, stop)
     n = n or 1
     stroboscopic_map = StroboscopicMap(scene, n, stop)

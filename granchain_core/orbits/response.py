@@ -35,24 +35,25 @@ _TOLERANCE = 1e-9
 class Response:
     """The pulse ratio: strong pushes of the driver per number of periods, whether they are in step, and the evidence.
 
-    `kind` is "resonance" if the reflected pulse is in step with one strong push in `periods`, "anti-resonance" if it is
-    not, and else "". `contact_phase` and `peak_phase` are the drive's phases [degrees] at which the strongest push
-    begins and is strongest; the phase is 0 where the driver moves forward through its middle, and None where driver and
-    bead 1 never part. `returning` is relative to 2πf A0, `transmission` is largest output over largest input force.
+    `in_step` is whether the reflected pulse is in step with one strong push in `periods`; None in a stop band, or with
+    several strong pushes per orbit. `contact_phase` and `peak_phase` are the drive's phases [degrees] at which the
+    strongest push begins and is strongest; the phase is 0 where the driver moves forward through its middle, and None
+    where driver and bead 1 never part. `returning` is relative to 2πf A0, `transmission` is largest output over largest
+    input force.
     """
 
     strong: int
     periods: int
-    kind: str
+    in_step: bool | None
     contact_phase: float | None
     peak_phase: float
     returning: float
     transmission: float
 
     @property
-    def in_step(self) -> bool | None:
-        """Whether the reflected pulse is in step; None in a stop band, or with several strong pushes per orbit."""
-        return None if not self.kind else self.kind == "resonance"
+    def kind(self) -> str:
+        """The older name of `in_step`: "resonance" in step, "anti-resonance" not in step, else ""."""
+        return "" if self.in_step is None else "resonance" if self.in_step else "anti-resonance"
 
     @property
     def sentence(self) -> str:
@@ -73,10 +74,10 @@ def response(orbit: Orbit) -> Response:
     begin = _begin(force, peak)
     returning = 0.0 if begin is None else max(0.0, -float(speed[begin - 1]))
     transmission = run.max_output_force / run.max_input_force if run.max_input_force > 0.0 else 0.0
-    kind = ""
+    in_step = None
     if strong == 1 and transmission >= STOP_BAND_FRACTION:
-        kind = "resonance" if periods > 1 or returning >= RETURNS_IN_STEP else "anti-resonance"
-    return Response(strong, periods, kind, None if begin is None else _phase(begin), _phase(peak), returning,
+        in_step = periods > 1 or returning >= RETURNS_IN_STEP
+    return Response(strong, periods, in_step, None if begin is None else _phase(begin), _phase(peak), returning,
                     transmission)
 
 

@@ -8,26 +8,67 @@ present state, from the middle of the section and from the closest returns.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
 
 import numpy as np
 
 from ..errors import ComputationError
 from ..execution.stop import Stop
+from ..inputs.checks import whole_number
 from ..integrate.scaling import scale_chain
 from ..scene import Scene
+from ..scene.refusals import require_scene
 from ..scene.state import State
+from ..steady.poincare import iter_section
+from ..steady.regime_criteria import LONGEST_LOCKED_PERIOD
 from ..steady.residuals import least_displacement
 from ..steady.returns import least_period
-from .orbit import Orbit, periodic_orbit
-from .stroboscopic_map import SAME_ORBIT_DISTANCE, StroboscopicMap
+from ..steady.settling.advance import run_until_settled
+from .orbit import NO_PERIOD_GIVEN, Orbit, periodic_orbit
+from .stroboscopic_map import SAME_ORBIT_DISTANCE, StroboscopicMap, refuse_cut
 
 #: Closest returns from which Newton's method is started.
 _STARTS = 4
 #: Fewest periods between two of them.
 _PERIODS_BETWEEN_STARTS = 5
+#: Periods of a settled motion near which an orbit is sought.
+_RECORDED_PERIODS = 400
+#: An orbit within this distance of a settled motion is that of the motion; one farther away is another.
+OWN_ORBIT_DISTANCE = 1e-3
 #: States of the section whose mean is its middle: a multiple of all short periods.
 _STATES_OF_MIDDLE = 120
+
+
+def orbit_near_motion(scene: Scene, period: int | None = None, stop: Stop | None = None) -> Orbit:
+    """An orbit of `period` drive periods (1 by default) near the settled motion from rest, which does not follow it.
+
+    The motion is recorded for 400 periods after it has settled, and `search_orbit` starts from it. Raises what that
+    raises, and `ComputationError` where the search ends on the orbit that the motion follows.
+    """
+    require_scene(scene)
+    n = whole_number("period", 1 if period is None else period, 1, LONGEST_LOCKED_PERIOD)
+    refuse_cut(scene)
+    settling = run_until_settled(scene, None, stop)
+    start = settling.engine.state
+    *_, section = iter_section(scene, start, _RECORDED_PERIODS, samples=1, stop=stop)
+    found = search_orbit(scene, n, start, section.strobes(), stop)
+    if settling.regime.period is not None:
+        refuse_own_orbit(found, [State(*one) for one in section.strobes()[: settling.regime.period].astype(float)])
+    return replace(found, period_note=NO_PERIOD_GIVEN if period is None else "")
+
+
+def refuse_own_orbit(found: Orbit, states: Iterable[State]) -> None:
+    """Raise `ComputationError` if an orbit goes through one of the `states` of a settled motion at phase 0."""
+    if min(distance_of_states(found.state, one) for one in states) < OWN_ORBIT_DISTANCE:
+        raise ComputationError(f"Newton's method ended on the orbit that the chain follows, of {found.period} drive "
+                               f"period{'s' if found.period > 1 else ''}; try another period.", "same-orbit")
+
+
+def distance_of_states(one: State, other: State) -> float:
+    """Largest difference of two states over the largest displacement and velocity of the second."""
+    return max(float(np.abs(a - b).max() / max(1e-300, np.abs(b).max()))
+               for a, b in ((one.displacement, other.displacement), (one.velocity, other.velocity)))
 
 
 def search_orbit(scene: Scene, period: int, start: State, strobes: np.ndarray,

@@ -26,9 +26,8 @@ from ..steady.residuals import orbit_change
 #: Tolerance of one step, relative to the largest displacement and w. The map is then accurate enough for Newton's
 #: method to converge to `RESIDUAL_GOAL` (steady/residuals.py); a chain with its observer is followed to about 1e-11.
 TOLERANCE = 1e-13
-#: Error of the derivative at that tolerance, relative to its largest entry. Against a tolerance of 1e-14 it was 3e-12
-#: to 5e-10 on orbits of sec2 and 1e-7 on those of the rig at 60 and 90 Hz. These are near grazings, where the
-#: derivative changes by the root of the tolerance, 3e-7 (docs/orbits.md).
+#: Error of the derivative at that tolerance near grazings, relative to its largest entry; docs/orbits.md ("Error of the
+#: tangents") has what was measured, there and elsewhere.
 TANGENT_ERROR = 1e-7
 #: Error of a multiplier near the unit circle: ten times that, as the largest entry of the derivative is 2 to 13 and the
 #: eigenvectors are well separated. For single orbits it is computed (multiplier_errors.py).

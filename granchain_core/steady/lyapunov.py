@@ -16,8 +16,8 @@ from ..integrate.scaling import ScaledChain
 from ..kernels.batch.record import STROBES_KEPT
 from ..kernels.strobes.periodicity import LONGEST_PERIOD
 
-#: [chaotic, quasi-periodic] Distance of the neighbouring trajectory, in drive amplitudes. It is far
-#: above rounding, and so small that hardly a contact event lies between the two trajectories.
+#: [chaotic, quasi-periodic] Distance of the neighbouring trajectory, in drive amplitudes. It is far above rounding, and
+#: so small that hardly a contact event lies between the two trajectories.
 _DISTANCE = 1e-8
 #: [no threshold] Stands for a distance of zero, which has no logarithm: far below any, and no subnormal number.
 _NO_DISTANCE = 1e-300

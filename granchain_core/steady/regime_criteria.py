@@ -17,7 +17,8 @@ from ..kernels.strobes import periodicity
 from ..kernels.strobes.periodicity import LONGEST_PERIOD, ROUNDING, SETTLED_DISTANCE
 from ..results.regime import Regime
 
-#: [chaotic, quasi-periodic] Standard errors within which a mean exponent counts as not known.
+#: [chaotic, quasi-periodic] Standard errors within which a mean exponent counts as not known (from ten blocks: about
+#: 98.5 % for independent normal means).
 STANDARD_ERRORS = 3.0
 #: [period n] Longest period that is tested for a chain alone, in drive periods. Orbits locked to the drive among
 #: quasi-periodic motions may be that long.

@@ -1,8 +1,9 @@
-"""The residual of a periodic orbit, and the two limits of every Newton's method for orbits: goal and acceptance.
+"""The residual of a periodic orbit; the stopping and the acceptance tolerance of every Newton's method for orbits.
 
 An orbit's residual is the change of its state by the map, of displacements and of w, each relative to its size. Beads
 that follow a slow drive pass their rest positions at phase 0; their displacements there are rounding, and no size. So
-displacements have a least size: a part of the amplitude that w has at the drive's rate.
+displacements have a least size: a part of the amplitude that w has at the scaled drive
+frequency β.
 """
 
 from __future__ import annotations
@@ -21,13 +22,13 @@ FIXED_STEP_RESIDUAL_GOAL = 1e-9
 #: [period n, followed] Largest residual of the map with fixed steps that is accepted. It is that large because the map
 #: jumps where a contact event passes the end of a step.
 ACCEPTED_FIXED_STEP_RESIDUAL = 1e-7
-#: [no threshold] Least size of displacements at phase 0, relative to the amplitude of w over the drive's rate.
+#: [no threshold] Least size of displacements at phase 0, relative to the amplitude of w over β.
 _LEAST_DISPLACEMENT = 1e-3
 
 
-def least_displacement(x: np.ndarray, rate: float) -> float:
-    """Least size of displacements for a scaled state x (2N,) with the drive's `rate` β in scaled time."""
-    return _LEAST_DISPLACEMENT * float(np.abs(x[len(x) // 2 :]).max()) / rate
+def least_displacement(x: np.ndarray, beta: float) -> float:
+    """Least size of displacements for a scaled state x (2N,) at the scaled drive frequency `beta`."""
+    return _LEAST_DISPLACEMENT * float(np.abs(x[len(x) // 2 :]).max()) / beta
 
 
 def orbit_change(change: np.ndarray, x: np.ndarray, rate: float) -> float:

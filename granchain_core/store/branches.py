@@ -6,7 +6,7 @@
 /special         kind, knob, knob_low, knob_high, multiplier_real, multiplier_imag, contact, event, arm (special); and
                  criticality, coefficient, coefficient_error, undecided (special), which older files lack
 /special_before, /special_after   the two orbits around each special point, as in /branch
-/turns           turning points of the overlaps on each arm's last orbit, with which the next step is compared
+/turns           turning points of the overlaps on each half-branch's last orbit, with which the next step is compared
 The root's attribute `amplitude` describes A0 over f where it is not the scene's. `coordinate` says that p is linear in
 the static overlap; in older files over F0, which lack it, p is linear in F0, and their branches go on so.
 Components are the beads' displacements, then their w, scaled by the chain's own A0 and A0·φ (docs/model.md).
@@ -33,7 +33,7 @@ from ..steady.regime_criteria import LONGEST_LOCKED_PERIOD
 from ..tables import MAXIMA
 from .writing import write_file, write_result
 
-#: How an arm can have ended.
+#: How a half-branch can have ended.
 _ENDS = ("", "reached", "returned", "closed", "merged", "lost")
 #: The interval that a contact gains, by its word in files.
 _GAINED = {event: gained for gained, event in EVENTS.items()}
@@ -47,7 +47,7 @@ def save_branch(branch: Branch, path: str | Path) -> Path:
 
 
 def write_branch(file: h5py.File, branch: Branch) -> None:
-    """Write a branch with what its walk needs to go on."""
+    """Write a branch with what its continuation needs to go on."""
     write_result(file, branch)
     turns = file.create_group("turns")
     for place, arm in enumerate(branch.half_branches):
@@ -90,7 +90,7 @@ def _read(file: File) -> Branch:
 
 
 def _header(found: Any) -> dict[str, Any]:
-    """The attribute `branch`, each entry of its kind; one or two arms."""
+    """The attribute `branch`, each entry of its kind; one half-branch or two."""
     arms = found.pop("arms", None) if isinstance(found, dict) else None
     header = entries("branch", found, {"knob": "text", "start": "number", "end": "number", "period": "whole"})
     if not isinstance(arms, list) or not 1 <= len(arms) <= 2:
@@ -108,7 +108,7 @@ def _header(found: Any) -> dict[str, Any]:
 
 
 def _places(file: File, path: str, count: int, arms: int) -> np.ndarray:
-    """The arm of each row."""
+    """The half-branch of each row."""
     return within(f"/{path}", file.numbers(path, (count,), "i"), 0, arms - 1)
 
 

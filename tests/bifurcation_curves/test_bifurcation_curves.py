@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from chains import scaled
 
 import granchain_core
 from granchain_core import BadInput, ComputationError, Scene, State, scene, settle
@@ -71,11 +72,11 @@ def test_a_curve_goes_through_its_rows_and_scales(points: dict[str, BifurcationP
     assert [point.y for point in curve] == rows
     assert all(abs(abs(point.multiplier) - 1.0) <= 1e-6 for point in curve)
     assert curve[1].x == pytest.approx(points["neimark_sacker"].x, rel=1e-9)
-    # (A0, f, D) → (s A0, s^{1/4} f, s^{1/4} D): the curve at another D, point by point
+    # the curve at another D, point by point
     s = 2.0
-    other = shown.evolve(A0=s * shown.A0, f=s**0.25 * shown.f, D=s**0.25 * shown.D)
-    scaled = points_of_curve(other, "neimark_sacker", granchain_core.orbit(other, 1).state, [s * row for row in rows], period)
-    for a, b in zip(curve, scaled, strict=True):
+    other = scaled(shown, s)
+    again = points_of_curve(other, "neimark_sacker", granchain_core.orbit(other, 1).state, [s * row for row in rows], period)
+    for a, b in zip(curve, again, strict=True):
         assert b.x == pytest.approx(s**0.25 * a.x, rel=1e-6)  # |μ| is met to 1e-6
         assert abs(b.multiplier.real) == pytest.approx(abs(a.multiplier.real), abs=1e-5)
 

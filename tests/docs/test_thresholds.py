@@ -63,7 +63,7 @@ def test_the_text_on_branches_has_the_values_of_the_constants() -> None:
         r"below ([\de-]+) the orbit is accepted": residuals.ACCEPTED_RESIDUAL,
         r"whose knobs differ by at most ([\de-]+) of the knob \(": special.RELATIVE_WIDTH,
         r"for at most (\d+) levels of bisection": special._MOST_LEVELS,
-        r"back to the seed within ([\de-]+):": ends._CLOSING_DISTANCE,
+        r"back to the starting orbit within ([\de-]+):": ends._CLOSING_DISTANCE,
         r"first differences only: ξ = ([\de-]+)\.": normal_forms._SMALL_AMPLITUDE,
         r"The others have ξ = ([\de-]+),": normal_forms._AMPLITUDE,
         r"differ by more than (\d+) % of their mean": 100.0 * normal_forms._LARGEST_ERROR,
@@ -96,8 +96,9 @@ NUMBERS = {2: "two", 3: "three", 4: "four"}
         r"Its first (\d+) periods do not count": exponent_measurements.TURNING_PERIODS}),
     ("docs/regimes.md", {
         r"not decided after (\d+) periods is settled alone": regime_decisions.MOST_PERIODS,
-        r"which means that \|mean\| − 3σ is below ([\d.]+);": round(regime_criteria._BOUNDED_GROWTH / regime_criteria._LONGEST_COMPARISON, 4),
+        r"above 0, below ([\d.]+) \| P would be above `_LONGEST_COMPARISON`": round(regime_criteria._BOUNDED_GROWTH / regime_criteria._LONGEST_COMPARISON, 4),
         r"computed it is r, at most ([\d.]+), and": Regime("periodic", 1, 1.0, None, 1).assumed_contraction, r"decay was seen it is ([\d.]+) \(": Regime("periodic", 1, None, None, 1).assumed_contraction,
+        r"\| ([\d.]+) or more \| measured": round(regime_criteria._BOUNDED_GROWTH / regime_criteria._LONGEST_COMPARISON, 4),
         r"below ([\d.]+) \+ 3σ": round(regime_criteria._BOUNDED_GROWTH / regime_criteria._LONGEST_COMPARISON, 4),
         r"Up to (\d+) periods the limit": regime_criteria._BOUNDED_GROWTH / regime_criteria._LARGEST_NEUTRAL_EXPONENT}),
     ("granchain_core/steady/regime_criteria.py", {

@@ -59,7 +59,7 @@ def test_a_branch_that_was_saved_goes_on_as_if_it_had_never_stopped(tmp_path: Pa
 def test_points_one_by_one_are_those_of_both_threads(whole: Branch) -> None:
     one_by_one = begun()
     count = sum(1 for _ in Continuation(one_by_one))
-    assert count == len(whole.points) - 1  # the seed was there before
+    assert count == len(whole.points) - 1  # the starting orbit was there before
     assert_same(one_by_one, whole)
 
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from chains import scaled
 
 import granchain_core
 from granchain_core import BadInput, ComputationError, Scene, State, orbit, run, scene, settle
@@ -19,7 +20,7 @@ from granchain_core.orbits import (
     check_branch,
     switch_to_doubled,
 )
-from granchain_core.orbits.branch.walk import HalfBranch, Walk
+from granchain_core.orbits.branch.half_branch import HalfBranch, HalfContinuation
 
 #: What the settled picture is asked for; its converged orbit then agrees with a branch's to some multiples of it.
 _ASKED = 1e-8
@@ -138,13 +139,10 @@ def test_between_doublings_the_disturbed_chain_leaves_its_orbit(doubling: Branch
 
 
 def test_special_points_scale_with_the_chain(doubling: Branch) -> None:
-    # (A0, f, D) → (s A0, s^{1/4} f, s^{1/4} D) leaves the dimensionless orbit unchanged (docs/model.md, Equations)
-    s, shown = 7.0, scene("sec2")
-    scaled = shown.evolve(A0=s * shown.A0, D=s**0.25 * shown.D)
-    first = doubling.points[0]
+    s, first = 7.0, doubling.points[0]
     state = doubling.state(first)
     start = State(s * state.displacement, s**1.25 * state.velocity)
-    other = granchain_core.branch(scaled, "f", s**0.25 * first.knob, s**0.25 * 250.0, 1, start)
+    other = granchain_core.branch(scaled(scene("sec2"), s), "f", s**0.25 * first.knob, s**0.25 * 250.0, 1, start)
     mine, its = the(doubling, "period_doubling"), the(other, "period_doubling")
     assert its.knob / s**0.25 == pytest.approx(mine.knob, rel=1.1e-5)  # the half widths of both intervals
 
@@ -192,7 +190,7 @@ def test_an_isola_closes_on_itself() -> None:
     shown, frequency, period = closed_loop()
     found = granchain_core.branch(shown.evolve(f=frequency), "f", 100.0, 3000.0, period, both=True)
     assert [half.ended for half in found.half_branches] == ["closed"] and check_branch(found) == []
-    assert "the orbit there is the seed's" in found.half_branches[0].reason
+    assert "the orbit there is the starting one" in found.half_branches[0].reason
     assert sum(s.kind == "fold" for s in found.special) % 2 == 0
 
 
@@ -206,14 +204,14 @@ def test_the_threads_do_not_decide_which_arm_of_an_isola_is_kept(slow: int, monk
     alternately = Continuation(copies[0])
     for _ in alternately:
         pass
-    step = Walk.__next__
+    step = HalfContinuation.__next__
 
-    def slowed(walk: Walk) -> BranchPoint:
-        if walk.half.direction == slow:
+    def slowed(one: HalfContinuation) -> BranchPoint:
+        if one.half.direction == slow:
             time.sleep(0.05)
-        return step(walk)
+        return step(one)
 
-    monkeypatch.setattr(Walk, "__next__", slowed)
+    monkeypatch.setattr(HalfContinuation, "__next__", slowed)
     found = Continuation(copies[1]).run()
     kept, = found.half_branches
     assert kept.direction == alternately.branch.half_branches[0].direction

@@ -1,4 +1,4 @@
-"""The map by fixed steps that Newton's method of branches uses, and the steps of the walk."""
+"""The map by fixed steps that Newton's method of branches uses, and the steps along a branch."""
 
 from __future__ import annotations
 

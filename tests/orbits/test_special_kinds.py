@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -50,7 +51,7 @@ def found(multipliers: Multipliers, turn: float | None = None) -> list[SpecialPo
 
 def test_a_multiplier_that_passes_one_without_a_turn_is_not_called_a_fold() -> None:
     special, = found(lambda s: [0.9 + 0.2 * s, 0.5, 0.1, 0.1])
-    assert special.kind == "plus_one" and special.kind_words == "multiplier +1 without a fold"
+    assert special.kind == "multiplier_one" and special.kind_words == "multiplier +1 without a fold"
     assert special.knob == pytest.approx(1000.5, abs=0.01) and special.multiplier == pytest.approx(1.0, abs=0.01)
     assert special.normal_form is None
 
@@ -65,14 +66,27 @@ def test_a_period_doubling_is_found_though_another_multiplier_comes_back_in_the_
     """The number outside is 1 at both ends."""
     special = found(lambda s: [1.05 - 0.1 * s, -1.0 - 0.2 * (s - doubling), 0.1, 0.1])
     kinds = {one.kind: one.knob for one in special}
-    assert len(special) == 2 and set(kinds) == {"period_doubling", "plus_one"}
+    assert len(special) == 2 and set(kinds) == {"period_doubling", "multiplier_one"}
     assert kinds["period_doubling"] == pytest.approx(1000.0 + doubling, abs=0.01)
-    assert kinds["plus_one"] == pytest.approx(1000.5, abs=0.01)
+    assert kinds["multiplier_one"] == pytest.approx(1000.5, abs=0.01)
+
+
+@pytest.mark.parametrize(("more", "fewer", "side"), [(1000.0, 1001.0, "below"), (1001.0, 1000.0, "above")])
+@pytest.mark.parametrize("first", ["more", "fewer"])
+def test_a_grazing_says_on_which_side_of_the_knob_a_contact_closes_more_often(
+        more: float, fewer: float, side: str, first: str) -> None:
+    one = replace(GivenOrbits(lambda s: [0.5] * 4).at(0.0), knob=fewer, closings=np.array([1, 1, 0]))
+    other = replace(one, knob=more, closings=np.array([1, 2, 0]))
+    before, after = (other, one) if first == "more" else (one, other)
+    special = SpecialPoint("grazing", 1000.5, (1000.0, 1001.0), before, after, contact=1, gained="open interval")
+    assert special.gained_side == side
+    turned = replace(special, after=replace(after, tangent=-after.tangent))
+    assert turned.gained_side is None  # both orbits lie on one side of the turning point
 
 
 def test_both_are_reported_where_they_pass_within_one_narrow_interval() -> None:
     special = found(lambda s: [1.05 - 0.1 * s, -1.0 - 0.2 * (s - 0.5), 0.1, 0.1])
-    assert sorted(one.kind for one in special) == ["period_doubling", "plus_one"]
+    assert sorted(one.kind for one in special) == ["multiplier_one", "period_doubling"]
 
 
 def test_a_pair_that_becomes_real_outside_is_no_period_doubling() -> None:

@@ -56,7 +56,7 @@ def test_the_careful_search_takes_over_and_finds_the_same(fast: Branch, broken: 
 
 
 def test_the_walks_orbits_do_not_depend_on_the_search(fast: Branch, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("granchain_core.orbits.branch.walk.special_between", lambda between: [])
+    monkeypatch.setattr("granchain_core.orbits.branch.half_branch.special_between", lambda between: [])
     bare = followed()
     for one, other in zip(fast.points, bare.points, strict=True):
         np.testing.assert_array_equal(one.x, other.x)

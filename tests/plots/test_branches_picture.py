@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import unicodedata
 from typing import Any
 
 import pytest
@@ -12,6 +14,7 @@ from app.plots.theme import THEMES
 from granchain_core import resonance_curve, scene
 from granchain_core.orbits import Branch
 from granchain_core.orbits.branch.special import SPECIAL_KINDS
+from tools.marks import table_of_special_points
 
 
 @pytest.fixture(scope="module")
@@ -27,6 +30,20 @@ def data(plot: Any, name: str) -> dict[str, list[Any]]:
 
 def test_every_kind_of_special_point_has_words_and_a_mark() -> None:
     assert tuple(SPECIAL) == tuple(SPECIAL_STYLES) == SPECIAL_KINDS
+
+
+def test_the_table_of_special_points_has_the_marks_that_are_drawn(branch: Branch) -> None:
+    """By the name in Unicode: a white shape is hollow. A mark without an inside is filled."""
+    shapes = {"inverted_triangle": "DOWN-POINTING TRIANGLE", "hex": "HEXAGON", "circle": "CIRCLE", "square": "SQUARE"}
+    plot = branches([branch], THEMES["light"])
+    drawn = []
+    for kind in SPECIAL_KINDS:
+        glyph = next(one.glyph for one in plot.renderers if getattr(one, "data_source", None) is not None
+                     and one.data_source.name == kind)
+        colour = "BLACK" if glyph.fill_color == glyph.line_color else "WHITE"
+        drawn.append(f"{colour} {shapes[glyph.marker]}" if glyph.marker in shapes else "PLUS SIGN")
+    signs = re.findall(r"^\| (\S) ", table_of_special_points(), re.MULTILINE)
+    assert [unicodedata.name(sign) for sign in signs] == drawn
 
 
 def test_orbits_around_special_points_are_drawn_in_their_places(branch: Branch) -> None:
@@ -54,7 +71,8 @@ def test_a_piece_begins_where_the_last_one_ended_and_holds_one_kind_of_orbit(bra
 def test_special_points_are_told_with_their_uncertainty(branch: Branch) -> None:
     told = {s.kind: special_words(s, branch) for s in branch.special}
     assert told["period_doubling"].startswith("period doubling at 255.") and " ± 0.00" in told["period_doubling"]
-    assert "contact 3 has one open interval more per orbit on one side" in told["grazing"]
+    grazing = next(s for s in branch.special if s.kind == "grazing")
+    assert told["grazing"].endswith(f": contact 3 has one open interval more per orbit below {grazing.knob:.4f} Hz")
     plot = branches([branch], THEMES["light"])
     assert data(plot, "period_doubling")["tooltip"] == [told["period_doubling"]]
     assert data(plot, "period_doubling")["criticality"][0].startswith("subcritical: ")

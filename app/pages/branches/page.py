@@ -33,10 +33,10 @@ NOT_PERIODIC = ("The motion on the screen does not repeat, so it lies on no bran
 
 @dataclass
 class _Drawn:
-    """An arm, and how many of its points and special points the page has been sent."""
+    """A half-branch, and how many of its points and special points the page has been sent."""
 
     branch: Branch
-    arm: HalfBranch
+    half: HalfBranch
     points: int = 0
     special: int = 0
 
@@ -138,9 +138,9 @@ class BranchesPage(Page):
 
     def _load_orbit(self, message: dict[str, Any]) -> None:
         """Show an orbit on the main page: a stable one settled, an unstable one live, to be seen leaving."""
-        arm: Any = message.get("arm")
-        drawn = listed("branch", self._drawn, arm)
-        point = listed("orbit", self._rows.orbits.get(arm, []), message.get("place"))
+        half: Any = message.get("arm")
+        drawn = listed("branch", self._drawn, half)
+        point = listed("orbit", self._rows.orbits.get(half, []), message.get("place"))
         self._host.show(drawn.branch.axis.scene_at(point.knob), drawn.branch.state(point),
                         "settled" if point.stable else "live")
 
@@ -177,7 +177,7 @@ class BranchesPage(Page):
 
     def _add(self, continuation: Continuation) -> None:
         self._followed.append(continuation)
-        self._drawn.extend(_Drawn(continuation.branch, arm) for arm in continuation.branch.half_branches)
+        self._drawn.extend(_Drawn(continuation.branch, half) for half in continuation.branch.half_branches)
         self.scene_changed()
         self._draw()
 
@@ -194,10 +194,10 @@ class BranchesPage(Page):
             self._view.send(type="add", **added)
 
     def _draw(self) -> None:
-        """Send what is new; a special point goes before the orbit that follows it on its arm."""
+        """Send what is new; a special point goes before the orbit that follows it on its half-branch."""
         for number, drawn in enumerate(self._drawn):
-            points = drawn.arm.points[drawn.points :]
-            special = drawn.arm.special[drawn.special :]
+            points = drawn.half.points[drawn.points :]
+            special = drawn.half.special[drawn.special :]
             if not points:
                 continue
             self._special.extend((drawn.branch, s) for s in special)
@@ -209,11 +209,11 @@ class BranchesPage(Page):
 
     def _show_status(self, status: Status, sentence: str = "") -> None:
         self.status = status
-        arms = [drawn.arm for drawn in self._drawn]
-        orbits, special = sum(len(arm.points) for arm in arms), sum(len(arm.special) for arm in arms)
-        words = f"{orbits} orbits, {special} special points" if arms else ""
+        halves = [drawn.half for drawn in self._drawn]
+        orbits, special = sum(len(half.points) for half in halves), sum(len(half.special) for half in halves)
+        words = f"{orbits} orbits, {special} special points" if halves else ""
         if status == "following":
-            words += "; now at " + " and ".join(f"{arm.points[-1].knob:.1f} Hz" for arm in arms if not arm.ended)
+            words += "; now at " + " and ".join(f"{half.points[-1].knob:.1f} Hz" for half in halves if not half.ended)
         self._view.update_state(**WORDS.of(status, sentence), words=words,
-                                ended=[arm.reason for arm in arms if arm.ended],
-                                unfinished=any(not arm.ended for arm in arms))
+                                ended=[half.reason for half in halves if half.ended],
+                                unfinished=any(not half.ended for half in halves))

@@ -37,11 +37,11 @@ class ObserverPage(Page):
         self._task = Task(host, PICTURES, self._said, "The observer", report_to_host=True)
         self._run: ObserverRun | None = None
         self._asked = False
-        self._wishes: list[str] = []
+        self._requests: list[str] = []
         self.actions: Actions = {
             "observer-more": lambda _: self._more(),
-            "observer-nudge": lambda _: self._wish("nudge"), "observer-rest": lambda _: self._wish("rest"),
-            "observer-again": lambda _: self._wish("again"),
+            "observer-nudge": lambda _: self._request("nudge"), "observer-rest": lambda _: self._request("rest"),
+            "observer-again": lambda _: self._request("again"),
         }
 
     def scene_changed(self) -> None:
@@ -51,8 +51,8 @@ class ObserverPage(Page):
         if self._run is not None and self._run.scene.digest != scene.digest:
             self._view.update_state(sentence="", failure="", predicted=None, measured=None)
 
-    def _wish(self, name: str) -> None:
-        self._wishes.append(name)
+    def _request(self, name: str) -> None:
+        self._requests.append(name)
         self._more()
 
     def _more(self) -> None:
@@ -61,8 +61,8 @@ class ObserverPage(Page):
             return
         self._asked = False
         session = self._host.session
-        wishes, self._wishes = self._wishes, []
-        self._task.start(partial(self._next_in_thread, session.scene, session.settled, self._run, wishes))
+        requests, self._requests = self._requests, []
+        self._task.start(partial(self._next_in_thread, session.scene, session.settled, self._run, requests))
 
     def _said(self, status: Status, sentence: str) -> None:
         if status in ("compiling", "failed"):
@@ -70,22 +70,22 @@ class ObserverPage(Page):
         elif self._asked:
             self._more()
 
-    def _next_in_thread(self, scene: Scene, settled: Settled | None, run: ObserverRun | None, wishes: list[str],
+    def _next_in_thread(self, scene: Scene, settled: Settled | None, run: ObserverRun | None, requests: list[str],
                         job: Job) -> None:
         """In a worker thread: compute one more period of this scene's run; `run` is the one so far."""
         job.compile(scene, DOP853_KERNELS, OBSERVER_KERNELS)
         mine = settled if settled is not None and settled.run.scene.digest == scene.digest else None
         began = False
-        if run is None or run.scene.digest != scene.digest or "again" in wishes:
-            run, began = ObserverRun(scene, mine, job.stop, None if "again" in wishes else run), True
+        if run is None or run.scene.digest != scene.digest or "again" in requests:
+            run, began = ObserverRun(scene, mine, job.stop, None if "again" in requests else run), True
         run.pair.engine.stop = job.stop
         if run.orbit is None and not run.failure and mine is not None and mine.final \
                 and mine.regime.period is not None:
             run.predict(mine)
-        for wish in wishes:
-            if wish != "again":
+        for request in requests:
+            if request != "again":
                 began = True
-                (run.nudge if wish == "nudge" else run.from_rest)()
+                (run.nudge if request == "nudge" else run.from_rest)()
         if not run.in_step or began:
             job.next_tick(self._show, _Moved(run, run.step(), began))
 

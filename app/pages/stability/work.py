@@ -12,7 +12,12 @@ from granchain_core import ComputationError, Scene, Settled, State
 from granchain_core.execution.stop import Stop
 from granchain_core.orbits import Orbit, periodic_orbit
 from granchain_core.orbits.modes import Mode, mode, orbit_section
-from granchain_core.orbits.search import search_orbit
+from granchain_core.orbits.search import (
+    OWN_ORBIT_DISTANCE,
+    distance_of_states,
+    refuse_own_orbit,
+    search_orbit,
+)
 from granchain_core.steady.poincare import Section, iter_section
 from granchain_core.steady.settling.regime_decisions import EXAMINED_AFTER
 
@@ -26,8 +31,6 @@ _CLOUD_PERIODS = 1200
 _MOST_MODE_VALUES = 60_000
 #: A mode that ends farther than this from μ times itself contradicts μ; correct ones are within about 1e-8.
 _LARGEST_MODE_ERROR = 1e-4
-#: An orbit within this distance of a settled motion is that of the motion; one farther away is another.
-_OWN_ORBIT_DISTANCE = 1e-3
 
 
 @dataclass(frozen=True)
@@ -62,8 +65,8 @@ def analyse(target: OrbitTarget, observer: bool, rank: int, stop: Stop) -> Orbit
     began = time.perf_counter()
     scene = target.scene
     orbit = periodic_orbit(scene, target.period, target.start, observer=observer, stop=stop)
-    distance = _apart(orbit.state, target.start)
-    if target.followed and distance > _OWN_ORBIT_DISTANCE:
+    distance = distance_of_states(orbit.state, target.start)
+    if target.followed and distance > OWN_ORBIT_DISTANCE:
         raise ComputationError(f"Newton's method ended {distance:.0e} away from the settled motion, on another orbit; "
                                "its multipliers are not those of what the chain does.", "another-orbit")
     orbit.find_errors(stop)  # here, because the words about the orbit are made in the event loop
@@ -74,12 +77,6 @@ def analyse(target: OrbitTarget, observer: bool, rank: int, stop: Stop) -> Orbit
                                f"prediction by {found.closure:.1g} of its size.", "contradicted")
     section = orbit_section(orbit, PHASES, stop)
     return OrbitAnalysis(target, orbit, found, section, distance, time.perf_counter() - began)
-
-
-def _apart(one: State, other: State) -> float:
-    """Largest difference of two states over the largest displacement and velocity."""
-    return max(float(np.abs(a - b).max() / max(1e-300, np.abs(b).max()))
-               for a, b in ((one.displacement, other.displacement), (one.velocity, other.velocity)))
 
 
 def section_of(settled: Settled, start: State | None, stop: Stop) -> Iterator[Section]:
@@ -108,7 +105,6 @@ def search(settled: Settled, section: Section | None, period: int, stop: Stop) -
     found = search_orbit(scene, period, settled.state, strobes, stop)
     run = settled.run
     here = [State(u, v) for u, v in zip(run.displacement[:: run.samples], run.velocity[:: run.samples], strict=True)]
-    if settled.regime.name == "periodic" and min(_apart(found.state, one) for one in here) < _OWN_ORBIT_DISTANCE:
-        raise ComputationError(f"Newton's method ended on the orbit that the chain follows, of {found.period} drive "
-                               f"period{'s' if found.period > 1 else ''}; try another period.", "same-orbit")
+    if settled.regime.name == "periodic":
+        refuse_own_orbit(found, here)
     return OrbitTarget(scene, found.period, found.state, followed=False, residuals=found.newton_residuals)

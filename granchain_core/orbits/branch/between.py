@@ -48,7 +48,8 @@ class Between:
         if a.turning != b.turning:
             slope = self.equations.quick_slope(newton.z, newton.steps)
             newton.matrix[:-1, -1] = slope
-        if (a.turning, a.unstable, a.doubling_sign) == (b.turning, b.unstable, b.doubling_sign):
+        if (a.turning, a.unstable_multipliers, a.doubling_sign) \
+                == (b.turning, b.unstable_multipliers, b.doubling_sign):
             tangent = self.equations.tangent_by(newton.matrix, a.tangent)
         else:
             derivative = newton.flow(ROUGH_TOLERANCE).derivative

@@ -27,10 +27,10 @@ from ..orbit import periodic_orbit
 from ..stroboscopic_map import FLOW_METHOD
 from .axis import STATIC_OVERLAP, KnobAxis
 from .equations import BranchEquations
+from .half_branch import HalfBranch, HalfContinuation
 from .point import ON_CIRCLE, BranchPoint, branch_point, state_at
 from .special import SpecialPoint
 from .tables import branch_tables
-from .walk import HalfBranch, Walk
 
 #: Points of one half-branch at most: a branch that folds without end has to stop somewhere.
 MOST_POINTS = 20_000
@@ -47,7 +47,7 @@ class Branch(Labelled):
     period : int
         Period of its orbits in drive periods.
     half_branches : tuple of HalfBranch
-        One or two directions from the same seed; `ended` and `reason` say how each ended.
+        One or two directions from the same starting orbit; `ended` and `reason` say how each ended.
     period_note : str
         Why period 1 was taken, in words, where none was given and the steady state has none (`Orbit.period_note`); else
         empty, as in a branch from a file.
@@ -146,12 +146,12 @@ class Continuation(Iterator[BranchPoint]):
     def __init__(self, branch: Branch, stop: Stop | None = None) -> None:
         self.branch = branch
         self.stop = Stop() if stop is None else stop
-        self._walks = [Walk(BranchEquations(branch.axis, branch.period, self.stop), half)
+        self._continuations = [HalfContinuation(BranchEquations(branch.axis, branch.period, self.stop), half)
                        for half in branch.half_branches]
 
     def __next__(self) -> BranchPoint:
-        while left := [walk for walk in self._walks if self._grows(walk)]:
-            shorter: Walk = min(left, key=lambda walk: len(walk.half.points))
+        while left := [one for one in self._continuations if self._grows(one)]:
+            shorter: HalfContinuation = min(left, key=lambda one: len(one.half.points))
             point = next(shorter, None)
             if point is not None:
                 self._drop_double()
@@ -161,38 +161,38 @@ class Continuation(Iterator[BranchPoint]):
     def run(self, most_points: int = MOST_POINTS, on_point: Callable[[HalfBranch], None] | None = None) -> Branch:
         """Follow all half-branches to their ends, each in a thread, or until one has `most_points`."""
 
-        def follow(walk: Walk) -> None:
-            while self._grows(walk) and len(walk.half.points) < most_points and next(walk, None) is not None:
+        def follow(one: HalfContinuation) -> None:
+            while self._grows(one) and len(one.half.points) < most_points and next(one, None) is not None:
                 if on_point is not None:
-                    on_point(walk.half)
+                    on_point(one.half)
 
-        with ThreadPoolExecutor(len(self._walks)) as pool:
-            for future in [pool.submit(follow, walk) for walk in self._walks]:
+        with ThreadPoolExecutor(len(self._continuations)) as pool:
+            for future in [pool.submit(follow, one) for one in self._continuations]:
                 future.result()
         self._drop_double()
         return self.branch
 
-    def _grows(self, walk: Walk) -> bool:
+    def _grows(self, one: HalfContinuation) -> bool:
         """Whether a half-branch goes on: it has not ended, and is shorter than every half-branch that has closed."""
-        return not walk.half.ended and len(walk.half.points) < min(map(len, self._closed), default=math.inf)
+        return not one.half.ended and len(one.half.points) < min(map(len, self._closed), default=math.inf)
 
     @property
     def _closed(self) -> list[list[BranchPoint]]:
-        return [walk.half.points for walk in self._walks if walk.half.ended == "closed"]
+        return [one.half.points for one in self._continuations if one.half.ended == "closed"]
 
     def _drop_double(self) -> None:
         """Keep the half-branch that has closed with the fewest orbits, the first of two, once no other can do so."""
         closed = [half for half in self.branch.half_branches if half.ended == "closed"]
-        if closed and not any(self._grows(walk) for walk in self._walks):
+        if closed and not any(self._grows(one) for one in self._continuations):
             self.branch = replace(self.branch, half_branches=(min(closed, key=lambda half: len(half.points)),))
 
 
 def begin_branch(scene: Scene, knob: str, start: float, end: float, period: int | None = None,
                  start_state: State | None = None, both: bool = False, stop: Stop | None = None,
                  amplitude: Amplitude | None = None) -> Branch:
-    """The seed of a branch, from which a `Continuation` goes on.
+    """The starting orbit of a branch, from which a `Continuation` goes on.
 
-    The seed is the orbit of `period` drive periods at knob = `start` near `start_state`, or near the steady state from
+    It is the orbit of `period` drive periods at knob = `start` near `start_state`, or near the steady state from
     rest. With `both` it is the orbit at the scene's own value of the knob, and the branch goes both ways, to `start`
     and to `end`. With `amplitude` A0 follows f. Raises `BadInput`, `ComputationError` where there is no such orbit, and
     `Cancelled`.
@@ -216,7 +216,7 @@ def begin_branch(scene: Scene, knob: str, start: float, end: float, period: int 
 
 def half_branches_from(equations: BranchEquations, x: np.ndarray, value: float,
                        directions: tuple[int, ...]) -> tuple[HalfBranch, ...]:
-    """Half-branches with their seed only, the orbit at the knob's `value` near the scaled state x."""
+    """Half-branches with their starting orbit only, the orbit at the knob's `value` near the scaled state x."""
     fixed = np.zeros(equations.size + 1)
     fixed[-1] = 1.0
     solved = equations.solve(equations.point(x, value), fixed)

@@ -7,9 +7,9 @@ import numpy as np
 from ...steady.residuals import ACCEPTED_RESIDUAL
 from ..orbit import ROUNDING
 from .branch import Branch
+from .half_branch import HalfBranch
 from .point import BranchPoint
 from .steps import LONGEST_STEP
-from .walk import HalfBranch
 
 #: Factor by which neighbours may be farther apart than the longest step, because the correction adds to it.
 _DISTANCE_FACTOR = 1.2

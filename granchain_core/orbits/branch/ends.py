@@ -1,4 +1,4 @@
-"""The ends of a branch: at an end of the axis, at its own seed, or where it merges with one of half its period."""
+"""The ends of a branch: at an end of the axis, at its own start, or where it merges with one of half its period."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from .newton import Near
 from .point import BranchPoint, branch_point
 from .special import SpecialPoint
 
-#: [branch] Distance of the seed from a step, relative to the step's length, within which the step passes the seed.
+#: [branch] Distance of the starting orbit from a step, relative to the step's length, within which the step passes it.
 _PASSING_DISTANCE = 0.2
-#: [branch] Distance of the corrected point from the seed within which the branch has closed.
+#: [branch] Distance of the corrected point from the starting orbit within which the branch has closed.
 _CLOSING_DISTANCE = 1e-7
 
 
@@ -29,14 +29,14 @@ class Ending:
 
 
 class Ends:
-    """The ends of the branch that begins at `seed`."""
+    """The ends of the branch that begins at `start`."""
 
-    def __init__(self, equations: BranchEquations, seed: BranchPoint) -> None:
-        self.equations, self.seed = equations, seed
-        self._seeds = _images(equations, seed)
+    def __init__(self, equations: BranchEquations, start: BranchPoint) -> None:
+        self.equations, self.start = equations, start
+        self._starts = _images(equations, start)
 
     def of_step(self, last: Ending, beyond: Ending, z: np.ndarray, may_close: bool) -> Ending:
-        """The end of a step from `last` to `beyond`, at z; an earlier orbit if it passes the seed or the axis's end.
+        """The end of a step from `last` to `beyond`, at z; an earlier orbit if it passes the start or the axis's end.
 
         z shows that the end is passed; the knob's value does not, because it is limited to the allowed range.
         """
@@ -44,13 +44,13 @@ class Ends:
         closing = self._closing(last, beyond) if may_close else None
         if closing is not None:
             reason = (f"closed on itself at {axis.text(closing.knob)} after {closing.arclength:.3g} of arclength: the "
-                      "orbit there is the seed's")
+                      "orbit there is the starting one")
             return Ending(closing, beyond.near, "closed", reason)
         low, high = axis.coordinate(axis.low), axis.coordinate(axis.high)
         if low <= z[-1] <= high:
             return beyond
         point, near = self._landed(last.point, beyond.point, z, axis.high if z[-1] > high else axis.low)
-        if point.knob == self.seed.knob:
+        if point.knob == self.start.knob:
             return Ending(point, near, "returned", f"came back to {axis.text(point.knob)}")
         return Ending(point, near, "reached", f"reached {axis.text(point.knob)}")
 
@@ -59,7 +59,7 @@ class Ends:
         if self.equations.period % 2:
             return None
         for place, one in enumerate(special):
-            if one.kind in ("fold", "plus_one") and self._halves(one.before) @ self._halves(one.after) < 0.0:
+            if one.kind in ("fold", "multiplier_one") and self._halves(one.before) @ self._halves(one.after) < 0.0:
                 return place
         return None
 
@@ -82,16 +82,16 @@ class Ends:
         return self.equations.stroboscopic_map(point.knob, self.equations.period // 2).end(point.x) - point.x
 
     def _closing(self, last: Ending, beyond: Ending) -> BranchPoint | None:
-        """The seed again, if the step from `last` to `beyond` passed it and Newton's method leads there."""
+        """The starting orbit again, if the step from `last` to `beyond` passed it and Newton's method leads there."""
         za, zb = self._z(last.point), self._z(beyond.point)
         way = zb - za
         length = float(np.linalg.norm(way))
-        for seed in self._seeds:
-            along = float((seed - za) @ way) / length**2
-            if 0.0 < along <= 1.0 and np.linalg.norm(seed - za - along * way) < _PASSING_DISTANCE * length:
+        for start in self._starts:
+            along = float((start - za) @ way) / length**2
+            if 0.0 < along <= 1.0 and np.linalg.norm(start - za - along * way) < _PASSING_DISTANCE * length:
                 between = Between(self.equations, last.point, beyond.point, (last.near, beyond.near))
                 found = between.careful(last.point, beyond.point, along)
-                if np.linalg.norm(self._z(found) - seed) < _CLOSING_DISTANCE:
+                if np.linalg.norm(self._z(found) - start) < _CLOSING_DISTANCE:
                     return found
         return None
 
@@ -99,10 +99,10 @@ class Ends:
         return self.equations.point(point.x, point.knob)
 
 
-def _images(equations: BranchEquations, seed: BranchPoint) -> list[np.ndarray]:
-    """The seed's orbit started at each of its drive periods."""
-    x, images = seed.x, []
+def _images(equations: BranchEquations, start: BranchPoint) -> list[np.ndarray]:
+    """The starting orbit at the beginning of each of its drive periods."""
+    x, images = start.x, []
     for _ in range(equations.period):
-        images.append(equations.point(x, seed.knob))
-        x = equations.stroboscopic_map(seed.knob, 1).end(x)
+        images.append(equations.point(x, start.knob))
+        x = equations.stroboscopic_map(start.knob, 1).end(x)
     return images

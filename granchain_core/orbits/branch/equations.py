@@ -80,7 +80,7 @@ class BranchEquations:
         return found
 
     def drive_rate(self, z: np.ndarray) -> float:
-        """The drive's rate β in scaled time near z."""
+        """The scaled drive frequency β near z."""
         scene = self.axis.scene_at(self.value(z))
         return 2.0 * np.pi * scene.f / scales_of(scene).phi
 

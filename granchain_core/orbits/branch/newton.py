@@ -85,7 +85,7 @@ class Equations(Protocol):
         """The map at a knob value."""
 
     def drive_rate(self, z: np.ndarray) -> float:
-        """The drive's rate in scaled time near z."""
+        """The scaled drive frequency β near z."""
 
     def quick_steps(self, z: np.ndarray) -> int:
         """Steps in a period of the quick map near z."""

@@ -16,10 +16,10 @@ import numpy as np
 from ...execution.checkpoints import Kept, digest_of
 from .axis import STATIC_OVERLAP, KnobAxis
 from .branch import Branch
+from .half_branch import HalfBranch
 from .normal_forms import EARLIER_REASONS, NormalForm
 from .point import BranchPoint
 from .special import EVENTS, SpecialPoint
-from .walk import HalfBranch
 
 #: Entries of a point that are arrays.
 _ARRAYS = ("x", "tangent", "multipliers", "closings", "slope", "turns")
@@ -63,7 +63,7 @@ class OrbitCheckpoints:
                 self.add(branch.period, half)
 
     def branch(self) -> Branch | None:
-        """The branch in the blocks, each half-branch up to the first orbit that is missing; None without a seed.
+        """The branch in the blocks, each half-branch up to the first orbit that is missing; None without its start.
         """
         halves: dict[int, HalfBranch] = {}
         period = 0

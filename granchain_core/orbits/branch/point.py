@@ -37,7 +37,7 @@ class BranchPoint:
     """A periodic orbit on a branch.
 
     `knob` in SI; `x` (2N,) is the scaled state (u, w) at phase 0; `tangent` (2N + 1,) the branch's unit tangent in
-    (x/√(2N), p); `arclength` counts from the seed. `multipliers` (2N,) come largest modulus first. The three largest
+    (x/√(2N), p); `arclength` counts from the start. `multipliers` (2N,) come largest modulus first. The three largest
     forces are in N. `closings` (N + 1,) count how often each contact closes along the orbit: 0 if it is always
     open, −1 if it is always closed. `slope` (2N,) is the map's change with p. `residuals` are those of Newton's method,
     the last being the orbit's; `liouville` is how far ln |det| of the monodromy matrix is from ∫ trace. `turns` are the
@@ -65,9 +65,14 @@ class BranchPoint:
         return self.residuals[-1]
 
     @property
-    def unstable(self) -> int:
+    def unstable_multipliers(self) -> int:
         """Number of multipliers outside the unit circle; without damping, outside by more than `ON_CIRCLE`."""
         return int((np.abs(self.multipliers) >= self._circle).sum())
+
+    @property
+    def unstable(self) -> int:
+        """The older name of `unstable_multipliers`."""
+        return self.unstable_multipliers
 
     @property
     def _circle(self) -> float:
@@ -77,7 +82,7 @@ class BranchPoint:
     @property
     def stable(self) -> bool:
         """Whether no multiplier is outside the unit circle."""
-        return self.unstable == 0
+        return self.unstable_multipliers == 0
 
     @property
     def turning(self) -> int:
@@ -93,7 +98,7 @@ class BranchPoint:
     @property
     def signature(self) -> tuple[int, ...]:
         """Numbers that change at special points and nowhere else."""
-        return (self.turning, self.unstable, self.doubling_sign, *(int(n) for n in self.closings))
+        return (self.turning, self.unstable_multipliers, self.doubling_sign, *(int(n) for n in self.closings))
 
 
 def branch_point(equations: BranchEquations, solved: Solved, tangent: np.ndarray, arclength: float) -> BranchPoint:

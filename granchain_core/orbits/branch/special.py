@@ -1,12 +1,6 @@
 """Special points of a branch: changes between two neighbouring orbits, enclosed in a narrow interval of the knob.
 
-fold             the knob turns; a real multiplier passes +1 (LP in AUTO, LPC in MatCont)
-period_doubling  a real multiplier passes −1 (PD); at the end of a doubled branch, where AUTO and MatCont have a branch
-                 point (BP, BPC), one of its own passes +1 (ends.py)
-neimark_sacker   a complex pair passes the unit circle (TR in AUTO, NS in MatCont)
-plus_one         a real multiplier passes +1 and the knob does not turn: no fold, and not classified further (a branch
-                 point, BP and BPC, would be one)
-grazing          a contact has one closed or one open interval more, or less, along the orbit; not in AUTO and MatCont
+`KINDS` has all kinds, with their names in AUTO and MatCont.
 
 Each change lies between two computed orbits (docs/branches.md says what the interval is). Test functions only choose
 the next orbit to compute, so a wrong test function cannot make an interval wrong.
@@ -24,9 +18,41 @@ from .between import Between
 from .normal_forms import NOT_DECIDED, NormalForm
 from .point import CONTACT, OVERLAP, TIME, TURN_SIGN, BranchPoint
 
-#: Where stability changes, and all kinds of special points; results, files and JSON spell them so.
-BIFURCATIONS = ("fold", "period_doubling", "neimark_sacker")
-SPECIAL_KINDS = (*BIFURCATIONS, "plus_one", "grazing")
+_BOTH_KNOBS = "the two orbits' knobs"
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of special point: how results, files and JSON spell it, its words, and its names in AUTO and MatCont.
+
+    `passes` is what changes there, `interval` what the stated interval of the knob is.
+    """
+
+    name: str
+    words: str
+    auto: str
+    matcont: str
+    passes: str
+    interval: str = _BOTH_KNOBS
+
+
+#: All kinds of special points; bifurcations with a normal form come first.
+KINDS = (
+    Kind("fold", "fold", "LP", "LPC", "a real multiplier passes +1 and the branch turns back in the knob",
+         "from the nearer orbit to the farthest point where the tangents of both can meet"),
+    Kind("period_doubling", "period doubling", "PD", "PD", "a real multiplier passes −1"),
+    Kind("neimark_sacker", "Neimark–Sacker", "TR", "NS", "a complex pair passes the unit circle"),
+    Kind("multiplier_one", "multiplier +1 without a fold", "BP", "BPC",
+         "a real multiplier passes +1 and the knob does not turn: not classified; it may be a branch point"),
+    Kind("grazing", "grazing", "", "", "a contact has one closed or one open interval more, or less, per orbit"),
+)
+#: The end `merged` of a doubled branch (ends.py), which AUTO and MatCont report as a branch point.
+MERGED = Kind("period_doubling", "the end `merged` of a doubled branch", "BP", "BPC",
+              "a doubled branch meets its parent: one of its own multipliers passes +1")
+SPECIAL_KINDS = tuple(kind.name for kind in KINDS)
+#: Where stability changes.
+BIFURCATIONS = SPECIAL_KINDS[:3]
+_WORDS = {kind.name: kind.words for kind in KINDS}
 #: What a contact has once more on one side of a grazing, and how JSON and files spell it.
 EVENTS = {"closed interval": "touch", "open interval": "separation"}
 #: [branch] Width of an interval that is narrow enough, relative to the knob or to a thousandth of the range's larger
@@ -55,10 +81,10 @@ class SpecialPoint:
     """A special point: its kind, the interval of the knob that holds it, and the two orbits around it.
 
     `kind` is one of `SPECIAL_KINDS`, `knob` the middle of the interval.
-    `contact` and `gained` belong to a grazing: on one side of it the contact has one `gained` more per orbit, a "closed
-    interval" or an "open interval". `multiplier` is the one that passes the unit circle. `normal_form` has the
-    criticality and its coefficient; it is None for a grazing, for `plus_one`, at the end of a doubled branch, and in
-    older files.
+    `contact` and `gained` belong to a grazing: on the side `gained_side` of it the contact has one `gained` more per
+    orbit, a "closed interval" or an "open interval". `multiplier` is the one that passes the unit circle. `normal_form`
+    has the criticality and its coefficient; it is None for a grazing, for `multiplier_one`, at the end of a doubled
+    branch, and in older files.
     """
 
     kind: str
@@ -77,9 +103,17 @@ class SpecialPoint:
         return None if self.gained is None else EVENTS[self.gained]
 
     @property
+    def gained_side(self) -> str | None:
+        """On which side of `knob` a contact has one `gained` more: "below" or "above"; None where the knob turns."""
+        if self.contact is None or self.before.turning != self.after.turning:
+            return None
+        more, fewer = _more_and_fewer(self.before, self.after, self.contact)
+        return None if more.knob == fewer.knob else "below" if more.knob < fewer.knob else "above"
+
+    @property
     def kind_words(self) -> str:
         """The kind in words."""
-        return "multiplier +1 without a fold" if self.kind == "plus_one" else self.kind.replace("_", " ")
+        return _WORDS[self.kind]
 
     @property
     def criticality(self) -> str | None:
@@ -105,7 +139,7 @@ def special_between(between: Between) -> list[SpecialPoint]:
     """All special points between two neighbours, in their order.
 
     Rough orbits find brackets, whose ends are then computed exactly. Where that fails, or an exact end is not on the
-    side of its rough one, all orbits are computed as those of the walk.
+    side of its rough one, all orbits are computed as those of the branch.
     """
     axis, a, b = between.equations.axis, between.a, between.b
     try:
@@ -205,8 +239,8 @@ def _inverse_quadratic_root(a: BranchPoint, b: BranchPoint, values: tuple[float,
 def _test_values(a: BranchPoint, b: BranchPoint) -> tuple[float, float] | None:
     if a.turning != b.turning:
         return float(a.tangent[-1]), float(b.tangent[-1])
-    if a.unstable != b.unstable:
-        k = max(a.unstable, b.unstable) - 1
+    if a.unstable_multipliers != b.unstable_multipliers:
+        k = max(a.unstable_multipliers, b.unstable_multipliers) - 1
         return float(np.log(abs(a.multipliers[k]))), float(np.log(abs(b.multipliers[k])))
     if a.doubling_sign != b.doubling_sign:
         return float(np.prod(1.0 + a.multipliers).real), float(np.prod(1.0 + b.multipliers).real)
@@ -216,7 +250,7 @@ def _test_values(a: BranchPoint, b: BranchPoint) -> tuple[float, float] | None:
 
 def _turning_values(a: BranchPoint, b: BranchPoint, contact: int) -> tuple[float, float] | None:
     """The overlap at the turning point that passes zero, at a and at b; None if it is not found in both."""
-    more, fewer = (a, b) if _closings(a, contact) > _closings(b, contact) else (b, a)
+    more, fewer = _more_and_fewer(a, b, contact)
     nearest = _slightest_crossing(more, contact)
     if nearest is None:
         return None
@@ -244,6 +278,11 @@ def _turns(point: BranchPoint, contact: int) -> np.ndarray:
     return point.turns[point.turns[:, CONTACT] == contact]
 
 
+def _more_and_fewer(a: BranchPoint, b: BranchPoint, contact: int) -> tuple[BranchPoint, BranchPoint]:
+    """Of two orbits first the one along which a contact closes more often."""
+    return (a, b) if _closings(a, contact) > _closings(b, contact) else (b, a)
+
+
 def _closings(point: BranchPoint, contact: int) -> int:
     """Number of closings of a contact along the orbit."""
     return max(0, int(point.closings[contact]))
@@ -265,7 +304,7 @@ def _classified(axis: KnobAxis, a: BranchPoint, b: BranchPoint) -> list[SpecialP
         special_points.append(SpecialPoint(kind, knob, interval, a, b, multiplier=mu))
     for contact in np.flatnonzero(a.closings != b.closings):
         special_points.append(SpecialPoint("grazing", knob, interval, a, b, contact=int(contact),
-                                  gained=_gained(a, b, int(contact))))
+                                           gained=_gained(a, b, int(contact))))
     return special_points
 
 
@@ -274,17 +313,17 @@ def _passing(a: BranchPoint, b: BranchPoint) -> list[complex]:
 
     Of two that pass in opposite directions, one of them through −1, those at a that are nearest to −1 and to +1.
     """
-    if a.unstable == b.unstable and a.doubling_sign != b.doubling_sign:
+    if a.unstable_multipliers == b.unstable_multipliers and a.doubling_sign != b.doubling_sign:
         real = a.multipliers[a.multipliers.imag == 0.0]
         return [complex(real[np.argmin(np.abs(real - through))]) for through in (-1.0, 1.0)]
-    more, fewer = (a, b) if a.unstable > b.unstable else (b, a)
-    passing = more.multipliers[fewer.unstable : more.unstable]
+    more, fewer = (a, b) if a.unstable_multipliers > b.unstable_multipliers else (b, a)
+    passing = more.multipliers[fewer.unstable_multipliers : more.unstable_multipliers]
     return [complex(mu) for mu in passing if mu.imag >= 0.0]
 
 
 def _gained(a: BranchPoint, b: BranchPoint, contact: int) -> str:
     """The interval of a contact that one of two orbits has and the other has not, a key of `EVENTS`."""
-    more, fewer = (a, b) if _closings(a, contact) > _closings(b, contact) else (b, a)
+    more, fewer = _more_and_fewer(a, b, contact)
     if _closings(fewer, contact) == 0:
         return "open interval" if fewer.closings[contact] < 0 else "closed interval"
     nearest = _slightest_crossing(more, contact)
@@ -295,7 +334,7 @@ def _gained(a: BranchPoint, b: BranchPoint, contact: int) -> str:
 def _merged(special_points: list[SpecialPoint]) -> list[SpecialPoint]:
     """A fold's turning and its multiplier's passage through 1 are one, also where a bracket ended between them.
 
-    A multiplier that passes 1 without a turn is `plus_one`.
+    A multiplier that passes 1 without a turn is `multiplier_one`.
     """
     merged: list[SpecialPoint] = []
     for one in special_points:
@@ -307,5 +346,5 @@ def _merged(special_points: list[SpecialPoint]) -> list[SpecialPoint]:
                                       multiplier=one.multiplier or last.multiplier)
         else:
             merged.append(one)
-    return [replace(one, kind="plus_one") if one.kind == "fold" and one.before.turning == one.after.turning else one
-            for one in merged]
+    return [replace(one, kind="multiplier_one")
+            if one.kind == "fold" and one.before.turning == one.after.turning else one for one in merged]

@@ -1,4 +1,4 @@
-"""The steps of a walk along a branch: where the next orbit is expected, and how long the step after it is.
+"""The steps along a branch: where the next orbit is expected, and how long the step after it is.
 
 The length of a step keeps two things small: the turn of the branch, and the distance of the orbit from its prediction.
 Both are measured on the step before, so the length does not depend on how Newton's method found the orbit. After a step

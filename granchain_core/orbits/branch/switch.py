@@ -12,9 +12,9 @@ from ...errors import BadInput, ComputationError
 from ...execution.stop import Stop
 from .branch import Branch
 from .equations import BranchEquations, Solved
+from .half_branch import HalfBranch
 from .point import branch_point
 from .special import SpecialPoint
-from .walk import HalfBranch
 
 #: Distances ε along the eigenvector that are tried, in arclength.
 _DISTANCES = (0.02, 0.005, 0.05, 0.001)
@@ -64,5 +64,5 @@ def doubling_direction(equations: BranchEquations, x: np.ndarray, value: float) 
 
 def _half(equations: BranchEquations, solved: Solved, away: np.ndarray) -> HalfBranch:
     tangent = equations.tangent(solved, away)
-    seed = branch_point(equations, solved, tangent, 0.0)
-    return HalfBranch(seed.turning, [seed])
+    start = branch_point(equations, solved, tangent, 0.0)
+    return HalfBranch(start.turning, [start])

@@ -10,19 +10,21 @@ from ...scene.quantities import QUANTITIES
 from ...tables import MAXIMA, Column, Table, axis, contact_axis, force_columns
 from ...tables.words import multiplier_columns
 from .axis import KnobAxis
+from .half_branch import HalfBranch
 from .normal_forms import NormalForm
 from .point import BranchPoint
 from .special import SPECIAL_KINDS, SpecialPoint
-from .walk import HalfBranch
 
 #: What is told of a special point without a normal form.
 _NO_NORMAL_FORM = NormalForm("")
+#: What the column `arm` holds.
+_HALF_BRANCH = "half-branch: 0 first, 1 second; direction in the attribute branch"
 #: The contact of a special point that is not a grazing.
 NO_CONTACT = -1
 
 
 def branch_tables(over: KnobAxis, half_branches: Sequence[HalfBranch]) -> tuple[Table, ...]:
-    """All tables of a branch. Orbits come half-branch by half-branch, each from the seed."""
+    """All tables of a branch. Orbits come half-branch by half-branch, each from the starting orbit."""
     points = [(place, point) for place, half in enumerate(half_branches) for point in half.points]
     special = [(place, one) for place, half in enumerate(half_branches) for one in half.special]
     return (_orbits("branch", over, [point for _, point in points], [place for place, _ in points]),
@@ -50,17 +52,18 @@ def _orbits(name: str, over: KnobAxis, points: Sequence[BranchPoint],
     forces = np.array([[getattr(point, one) for one in MAXIMA] for point in points]).reshape(-1, 3)
     of_state, of_tangent = ("point", "component"), ("point", "coordinate")
     which = {} if half_branches is None else {
-        "arm": Column(np.array(half_branches, dtype=np.int64), along, "1", "which way from the seed")}
+        "arm": Column(np.array(half_branches, dtype=np.int64), along, "1", _HALF_BRANCH)}
     return Table(name, {
         **axis("point", np.arange(len(points)), "1", "orbit along the branch"),
         **axis("component", np.arange(2 * n), "1", "displacements, then w"), **contact_axis(n),
         **axis("coordinate", np.arange(2 * n + 1), "1", "state over √(2N), then the knob's coordinate"),
         **axis("iteration", np.arange(longest), "1", "evaluation of Newton's method"),
     }, {
-        **column("knob", knob.unit, knob.label), **column("arclength", "1", "arclength from the seed"),
+        **column("knob", knob.unit, knob.label), **column("arclength", "1", "arclength from the starting orbit"),
         **force_columns(forces, along, "along the orbit"),
         **column("stable", "1", "1 if no multiplier is outside", np.int8),
-        **column("unstable", "1", "multipliers outside the unit circle", np.int64),
+        "unstable": Column(np.array([point.unstable_multipliers for point in points], dtype=np.int64), along, "1",
+                           "multipliers outside the unit circle"),
         **column("liouville", "1", "ln |det| against the integral of the trace"),
         "residual": Column(residuals, ("point", "iteration"), "1", "residuals of Newton's method"),
         "state": Column(wide("x", 2 * n), of_state, "1", "scaled state at phase 0"),
@@ -105,4 +108,4 @@ def _special(over: KnobAxis, special: Sequence[SpecialPoint], half_branches: Seq
         "coefficient_error": Column(number([form.error for form in forms]), along, "1",
                                     "error of the coefficient"),
         "undecided": Column(words([form.reason for form in forms]), along, "", "why it is not decided"),
-        "arm": Column(np.array(half_branches, dtype=np.int64), along, "1", "which way from the seed")})
+        "arm": Column(np.array(half_branches, dtype=np.int64), along, "1", _HALF_BRANCH)})

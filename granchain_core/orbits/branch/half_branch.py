@@ -2,9 +2,9 @@
 
 A failed step is halved; at the smallest step the branch ends, and the last residuals are reported.
 
-Other threads record the forces and contacts of an orbit and look for the special points before it, while the walk goes
-some orbits ahead; an orbit is added when all before it are known, so that the branch is the same as without threads, to
-the last bit.
+Other threads record the forces and contacts of an orbit and look for the special points before it, while the
+continuation goes some orbits ahead; an orbit is added when all before it are known, so that the branch is the same as
+without threads, to the last bit.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ from .point import BranchPoint, recorded, unrecorded
 from .special import SpecialPoint, special_between
 from .steps import FIRST_STEP, LARGEST_CORRECTION, LEAST_COSINE, SHORTEST_STEP, next_step, predicted
 
-#: Points from the seed on before the branch may close on itself.
+#: Points from the starting orbit on before the branch may close on itself.
 _POINTS_BEFORE_CLOSING = 4
 #: An orbit that is back within this, relatively, after a part of its period is refused: where the branches of both
 #: periods meet, an orbit of the shorter one is found with an error far above its residual.
 _SHORTER_PERIOD_DISTANCE = 1e-6
-#: Orbits that the walk is ahead of the search for special points, at most.
+#: Orbits that the continuation is ahead of the search for special points, at most.
 _ORBITS_AHEAD = 4
 #: Threads that search, at most; there are no more than processors.
 _THREADS = 2
@@ -40,10 +40,10 @@ _THREADS = 2
 
 @dataclass
 class HalfBranch:
-    """One direction of a branch from its seed: points (the seed first), special points, and its end.
+    """One direction of a branch from its starting orbit: points (that one first), special points, and its end.
 
     `ended` is "" while there is more to come, else "reached", "returned", "closed", "merged" or "lost"; `reason` is
-    a sentence. `step` is the next step in arclength: with it and the last point the walk goes on as if it had
+    a sentence. `step` is the next step in arclength: with it and the last point the continuation goes on as if it had
     never stopped.
     """
 
@@ -68,10 +68,10 @@ class _Ahead:
     found: Future[tuple[BranchPoint, list[SpecialPoint]]]
 
 
-class Walk(Iterator[BranchPoint]):
+class HalfContinuation(Iterator[BranchPoint]):
     """The points of one half-branch, one after the other; each `next` adds one, with the special points before it.
 
-    A walk that is not iterated is paused; one whose stop flag is set raises `Cancelled` and can go on later.
+    One that is not iterated is paused; one whose stop flag is set raises `Cancelled` and can go on later.
     """
 
     def __init__(self, equations: BranchEquations, half: HalfBranch) -> None:
@@ -116,7 +116,7 @@ class Walk(Iterator[BranchPoint]):
 
     @property
     def _last_two(self) -> list[BranchPoint]:
-        """The last two orbits, or the seed alone."""
+        """The last two orbits, or the starting orbit alone."""
         return [*self.half.points[-2:], *(one.ending.point for one in self._ahead)][-2:]
 
     def _advance(self) -> None:
@@ -175,7 +175,7 @@ class Walk(Iterator[BranchPoint]):
 
     @property
     def _before_last(self) -> tuple[np.ndarray, np.ndarray] | None:
-        """Point and tangent of the last orbit but one; None at the seed."""
+        """Point and tangent of the last orbit but one; None at the starting orbit."""
         before = self._last_two[:-1]
         return (self._z(before[0]), before[0].tangent) if before else None
 

@@ -1,0 +1,38 @@
+"""Orbits that a motion passes without following them: `orbit_near_motion` and `granchain orbit --start near`."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+import granchain_core
+from app.cli import main
+from granchain_core import ComputationError, scene
+from granchain_core.orbits import orbit_near_motion
+
+
+def test_the_orbit_that_a_doubling_left_unstable_is_found() -> None:
+    shown = scene("sec2").evolve(f=1576.0)
+    found = orbit_near_motion(shown, 2)
+    assert found.period < 4 and not found.stable and found.residual < 1e-9 and found.period_note == ""
+
+
+def test_without_a_period_it_is_one_and_the_command_says_so(capsys: pytest.CaptureFixture[str]) -> None:
+    main(["orbit", "rig", "--set", "f=140", "--start", "near", "--json"])  # chaotic
+    said = capsys.readouterr()
+    found = json.loads(said.out)
+    assert found["period"] == 1 and not found["stable"] and found["residual"] < 1e-9
+    assert found["period_note"] == "period 1 was taken, because a start was given without a period"
+    again = granchain_core.orbit(scene("rig").evolve(f=140.0), 1, orbit_near_motion(scene("rig").evolve(f=140.0)).state)
+    assert found["multipliers"][0][0] == pytest.approx(again.multipliers[0].real, rel=1e-6)
+
+
+def test_the_orbit_that_the_chain_follows_is_not_one_nearby() -> None:
+    with pytest.raises(ComputationError, match="the orbit that the chain follows, of 1 drive period;"):
+        orbit_near_motion(scene("sec2"))
+
+
+def test_the_observer_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["orbit", "sec2", "--start", "near", "--observer"]) == 2
+    assert "--observer cannot be combined with --start near" in capsys.readouterr().err
