@@ -9,10 +9,8 @@ from tornado.web import HTTPError, RequestHandler
 
 from ..monitoring.metrics import METRICS
 from .limits import RETRY_AFTER
+from .proxy_headers import UNKNOWN
 from .rules import Rules
-
-#: Tornado's address of an unknown client. `ipaddress` calls it private, so it is refused by name.
-_UNKNOWN = "0.0.0.0"
 
 
 class Liveness(RequestHandler):
@@ -42,7 +40,8 @@ class MetricsHandler(RequestHandler):
 
     def get(self) -> None:
         """Answer this machine and private networks with the metrics."""
-        asking = ipaddress.ip_address(self.request.remote_ip or _UNKNOWN)
+        asking = ipaddress.ip_address(self.request.remote_ip or UNKNOWN)
+        # `ipaddress` calls the unknown address private, so it is refused by name
         if asking.is_unspecified or not asking.is_private:
             raise HTTPError(403, "metrics are for private addresses")
         self.set_header("Content-Type", "text/plain; version=0.0.4; charset=utf-8")
