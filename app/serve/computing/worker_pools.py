@@ -7,6 +7,7 @@ because a picture must never wait for long work.
 
 from __future__ import annotations
 
+import logging
 import threading
 from collections import Counter, deque
 from collections.abc import Callable
@@ -17,6 +18,8 @@ from queue import SimpleQueue
 from typing import TypeVar
 
 from .priorities import begin, has_lower_priority, lower_priority
+
+log = logging.getLogger("granchain")
 
 Result = TypeVar("Result")
 
@@ -62,7 +65,8 @@ class WorkerPool:
     def submit(self, work: Callable[..., Result], *args: object, owner: object = None) -> Future[Result]:
         """Call `work` as soon as a thread is free; the future has its result or its error.
 
-        Work without an `owner` has no limit. If the future is cancelled before the work begins, the work is not done,
+        Work without an `owner` has no limit. Raises what `Thread.start` raises if the pool has no thread and the system
+        allows none. If the future is cancelled before the work begins, the work is not done,
         and nothing keeps the work or its arguments alive.
         """
         future: Future[Result] = Future()
@@ -94,19 +98,17 @@ class WorkerPool:
             if limited and self._taken[owner] == self.per_owner_limit:
                 self._held.setdefault(owner, deque()).append(do)
             else:
-                self._taken.update([owner] if limited else [])
                 self._give(do)
+                self._taken.update([owner] if limited else [])
         return future
 
     def _give(self, do: Callable[[], None]) -> None:
         """Give work to a free or a new thread, or queue it; called with the lock held."""
-        self._given.put(do)
         if self._free:
             self._free -= 1
-        elif len(self._threads) < self._workers:
-            self._begin()
-        else:
+        elif len(self._threads) == self._workers or not self._begin():
             self.queued += 1
+        self._given.put(do)
 
     def _let_go(self, owners: list[object], do: Callable[[], None]) -> bool:
         """Drop cancelled work that is held because of its owner's limit; return whether it was held.
@@ -134,11 +136,34 @@ class WorkerPool:
             if not self._taken[owner]:
                 del self._taken[owner]
 
-    def _begin(self) -> None:
-        """Start one more thread; called with the lock held."""
+    def _begin(self) -> bool:
+        """Start one more thread; called with the lock held.
+
+        If the system allows no more threads, return False: the threads of the pool do all work, later. Raise the error
+        if the pool has no thread.
+        """
         thread = threading.Thread(target=self._serve, daemon=True, name=f"{self.name} {next(self._numbers)}")
+        try:
+            begin(thread)
+        except Exception:
+            if not self._threads:
+                raise
+            log.warning("the pool %s could not start another thread", self.name, exc_info=True)
+            return False
         self._threads.append(thread)
-        begin(thread)
+        return True
+
+    def _is_replaced(self) -> bool:
+        """Let this thread leave the pool, and start another if work is queued; called with the lock held.
+
+        If no other thread can be started, return False: this thread has to stay, though its priority is lower.
+        """
+        if self.queued:
+            if not self._begin():
+                return False
+            self.queued -= 1
+        self._threads.remove(threading.current_thread())
+        return True
 
     def _serve(self) -> None:
         """Do one piece of work after the other, in a thread.
@@ -152,11 +177,7 @@ class WorkerPool:
             work()
             del work  # otherwise a waiting thread would keep objects of the last session alive
             with self._lock:
-                if has_lower_priority() and not self._low_priority:  # the next work gets a new thread
-                    self._threads.remove(threading.current_thread())
-                    if self.queued:
-                        self.queued -= 1
-                        self._begin()
+                if has_lower_priority() and not self._low_priority and self._is_replaced():
                     return
                 if self.queued:
                     self.queued -= 1
