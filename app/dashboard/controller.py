@@ -146,9 +146,9 @@ class Controller:
         """See `Host`."""
         self.sentences.report_failure(error)
 
-    def report_fault(self, error: Exception, sentence: str) -> None:
+    def report_fault(self, error: Exception, sentence: str, fault: str = "") -> None:
         """See `Host`."""
-        self.sentences.report_fault(error, sentence)
+        self.sentences.report_fault(error, sentence, fault)
 
     def close(self, session_context: object) -> None:
         """Bokeh has dropped the session: see `leave`."""
