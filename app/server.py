@@ -24,7 +24,7 @@ from .serve.computing.shared import Shared
 from .serve.computing.turns import TURNS
 from .serve.computing.worker_pools import COMPUTING, POOLS, SESSION_WORK, WorkerPool
 from .serve.http.guard import is_guarded
-from .serve.http.health import Liveness, MetricsHandler, Readiness
+from .serve.http.health import HANDLERS
 from .serve.http.limits import LARGEST_UPLOAD, USUAL_SESSIONS
 from .serve.http.rules import Rules
 from .serve.http.sessions import TOKEN_LIFETIME, Sessions
@@ -38,8 +38,8 @@ from .session.session import Session
 #: The largest message of a page, an uploaded file in base64 [bytes].
 LARGEST_MESSAGE = 4 * LARGEST_UPLOAD // 3 + 100_000
 #: Time for which a thread may keep the GIL from the event loop [s]. Answering one knob move acquires the GIL about ten
-#: times, so with Python's default, 5 ms, the answer could wait 50 ms for a busy thread. Measurements are in
-#: docs/reliability.md, "Many visitors".
+#: times, so with Python's default, 5 ms, the answer could wait 50 ms for a busy thread. Measurements contradict each
+#: other, and it is not known whether the shorter time helps (docs/reliability.md, "Many visitors").
 SWITCH_INTERVAL = 5e-4
 #: Time until a silent connection is closed [s]; the head of a request must come within it.
 IDLE_TIME = 60
@@ -123,7 +123,7 @@ def server_at(port: int, address: str, access: Access | None = None) -> Server:
         {"/": _guarded_page}, port=port, address=address, start=False, show=False, title="granchain", location=False,
         verbose=False, websocket_origin=[name for name in names if not _is_ipv6(name)],
         websocket_max_message_size=LARGEST_MESSAGE,
-        extra_patterns=[(r"/liveness", Liveness), (r"/readiness", Readiness), (r"/metrics", MetricsHandler)],
+        extra_patterns=list(HANDLERS.items()),
         http_server_kwargs={"idle_connection_timeout": IDLE_TIME, "body_timeout": BODY_TIME,
                             "max_body_size": LARGEST_BODY},
         websocket_ping_interval=PING_INTERVAL, websocket_ping_timeout=PING_INTERVAL,

@@ -46,7 +46,7 @@ class _Alarms:
             self._changed.notify()
 
     def _start(self) -> None:
-        """Start the thread. If the system allows none now, the next call tries again; until then no action is called."""
+        """Start the thread. If the system allows none now, the next call tries again; until then no action is due."""
         thread = threading.Thread(target=self._serve, daemon=True, name="alarms")
         try:
             thread.start()

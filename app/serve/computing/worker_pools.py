@@ -26,6 +26,7 @@ Result = TypeVar("Result")
 
 class WorkerPool:
     """At most `workers` threads for work of one kind, first come, first served. A thread is started when it is needed.
+    `purpose` says what the work is (docs/dashboard.md).
 
     The threads are daemons: a branch or a map takes minutes, and a server that ends does not wait for them. Threads of
     a `low_priority` pool leave the processor to others (priorities.py).
@@ -37,10 +38,12 @@ class WorkerPool:
     would be given to the same thread, and wait although another thread is free.
     """
 
-    def __init__(self, name: str, workers: int, low_priority: bool = False, per_owner_limit: int | None = None) -> None:
+    def __init__(self, name: str, workers: int, purpose: str = "", low_priority: bool = False,
+                 per_owner_limit: int | None = None) -> None:
         self.name = name
+        self.purpose = purpose
         self.per_owner_limit = per_owner_limit
-        self._workers = workers
+        self.workers = workers
         self._low_priority = low_priority
         self._given: SimpleQueue[Callable[[], None]] = SimpleQueue()
         self._threads: list[threading.Thread] = []
@@ -106,7 +109,7 @@ class WorkerPool:
         """Give work to a free or a new thread, or queue it; called with the lock held."""
         if self._free:
             self._free -= 1
-        elif len(self._threads) == self._workers or not self._begin():
+        elif len(self._threads) == self.workers or not self._begin():
             self.queued += 1
         self._given.put(do)
 
@@ -185,33 +188,41 @@ class WorkerPool:
                     self._free += 1
 
 
-#: One thread for each session that waits for its picture; live steps, energy accounts and drafts of curves are computed
-#: in these threads. Their number is limited because a thread takes memory. The limit is below the largest
-#: `--max-sessions`, since most pages rest.
-SESSION_WORK = WorkerPool("session_work", 1000)
-#: Pictures. There are more threads than cores, because turns decide which threads compute (turns.py), and a picture
-#: that waits for the compiler keeps its thread. If more pictures than this have a thread or wait for one, first
-#: pictures no longer go before refinements.
-PICTURES = WorkerPool("pictures", 200)
-#: Analyses of a picture while the knobs rest: short, and cancelled when a knob moves.
-ANALYSES = WorkerPool("analyses", 8, low_priority=True)
-#: Reading and writing visitors' files, which would hold up everybody on the event loop. The files of one session are
-#: read one by one, so that they cannot take both threads.
-FILES = WorkerPool("files", 2, per_owner_limit=1)
-#: Loading kernels before a session needs them.
-LOADING = WorkerPool("loading", 1)
-#: One thread for each session that waits for its resonance curve. A map waits for a curve that is under way: in one
-#: pool maps could take all threads and wait for curves that have no thread.
-CURVES = WorkerPool("curves", 200)
-#: The computations of these curves. Each uses all cores, which the system divides among them.
-SWEEPS = WorkerPool("sweeps", 8, low_priority=True)
-#: Work that takes minutes: maps, searches for attractors, branches, analyses, figures of the paper, virtual
-#: experiments. One session can start all six, and two sessions could fill the pool; so each has two at a time.
-LONG = WorkerPool("long", 8, low_priority=True, per_owner_limit=2)
-#: Timings and hard cases, one at a time for all sessions, because two timings at once disturb each other.
-MEASUREMENTS = WorkerPool("measurements", 1)
-#: Waiting for processes that compile.
-COMPILATIONS = WorkerPool("compilations", 2)
+#: Their number is limited because a thread takes memory. The limit is below the largest `--max-sessions`, since most
+#: pages rest.
+SESSION_WORK = WorkerPool(
+    "session_work", 1000,
+    "a thread for each session that waits for its main picture; live steps, drafts of the curve, energy accounts")
+#: There are more threads than cores, because turns decide which threads compute (turns.py), and a picture that waits
+#: for the compiler keeps its thread. If more pictures than this have a thread or wait for one, first pictures no longer
+#: go before refinements.
+PICTURES = WorkerPool("pictures", 200, "the main pictures, for all sessions that wait; the Observer page, without a "
+                                       "turn")
+#: Short work, which is cancelled when a knob moves.
+ANALYSES = WorkerPool(
+    "analyses", 8,
+    "while the knobs rest: Stability, pinned motions, the motion of a story's step, the names of peaks, where a "
+    "measured series lies over the picture", low_priority=True)
+#: On the event loop this work would hold up everybody. The files of one session are read one by one, so that they
+#: cannot take both threads.
+FILES = WorkerPool("files", 2, "reading a measurement, writing an export", per_owner_limit=1)
+LOADING = WorkerPool("loading", 1, "kernels loaded before a session needs them")
+#: A map waits for a curve that is under way: in one pool maps could take all threads and wait for curves that have no
+#: thread.
+CURVES = WorkerPool("curves", 200, "a thread for each session that waits for its resonance curve, or for that of a "
+                                   "pinned picture")
+#: Each computation uses all cores, which the system divides among them.
+SWEEPS = WorkerPool(
+    "sweeps", 8, "the resonance curves, and frequencies for the names of peaks, for all sessions that wait",
+    low_priority=True)
+#: One session could start all of this work, and two sessions could fill the pool; so each has a limit.
+LONG = WorkerPool(
+    "long", 8,
+    "parameter maps, searches for attractors, branches, analyses, figures of the paper, virtual experiments",
+    low_priority=True, per_owner_limit=2)
+#: One at a time for all sessions, because two timings at once disturb each other.
+MEASUREMENTS = WorkerPool("measurements", 1, "timings of Accuracy and Effects, and hard cases")
+COMPILATIONS = WorkerPool("compilations", 2, "waiting for processes that compile kernels")
 
 #: All pools.
 POOLS = (SESSION_WORK, PICTURES, ANALYSES, FILES, LOADING, CURVES, SWEEPS, LONG, MEASUREMENTS, COMPILATIONS)

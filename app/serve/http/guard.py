@@ -119,7 +119,7 @@ def _opens_page(handler: RequestHandler) -> bool:
     """Whether a request may open a page. Without Bokeh's class of such handlers, every unknown handler may."""
     if SessionHandler is not None:
         return isinstance(handler, SessionHandler)
-    return not isinstance(handler, (StaticFileHandler, WebSocketHandler, *HANDLERS))
+    return not isinstance(handler, (StaticFileHandler, WebSocketHandler, *HANDLERS.values()))
 
 
 def is_guarded() -> bool:

@@ -27,12 +27,14 @@ class Readiness(RequestHandler):
     rules: Rules
 
     def get(self) -> None:
-        """Answer `{"/readiness": true}`, or false with status 503."""
-        full = self.rules.sessions.full
-        if full:
-            self.set_status(503)
-            self.set_header("Retry-After", random.randint(*RETRY_AFTER))
-        self.write({"/readiness": not full})
+        """Answer `{"/readiness": true}`, or false with status 503 and the reason."""
+        sessions = self.rules.sessions
+        if not sessions.full:
+            self.write({"/readiness": True})
+            return
+        self.set_status(503)
+        self.set_header("Retry-After", random.randint(*RETRY_AFTER))
+        self.write({"/readiness": False, "reason": f"all {sessions.most} places for sessions are taken"})
 
 
 class MetricsHandler(RequestHandler):
@@ -48,4 +50,5 @@ class MetricsHandler(RequestHandler):
         self.write(METRICS.text())
 
 
-HANDLERS = (Liveness, Readiness, MetricsHandler)
+#: The handlers by address; a new health check is one more row.
+HANDLERS: dict[str, type[RequestHandler]] = {"/liveness": Liveness, "/readiness": Readiness, "/metrics": MetricsHandler}

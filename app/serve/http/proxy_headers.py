@@ -1,8 +1,8 @@
 """The visitor's address and protocol behind a proxy.
 
-Tornado's `xheaders` lets `X-Real-IP` win over `X-Forwarded-For`, and `X-Scheme` over `X-Forwarded-Proto`. Behind a proxy
-that sets only the second of two, a client could then choose the first, and with it the address that `/metrics` and the
-log see. So the server reads these headers itself and believes no value that a client may have sent.
+Tornado's `xheaders` lets `X-Real-IP` win over `X-Forwarded-For`, and `X-Scheme` over `X-Forwarded-Proto`. Behind a
+proxy that sets only the second of two, a client could then choose the first, and with it the address that `/metrics`
+and the log see. So the server reads these headers itself and believes no value that a client may have sent.
 """
 
 from __future__ import annotations
