@@ -34,7 +34,7 @@ class Pending:
 
 
 class FakeHost(Pending):
-    """A `WorkHost` for tasks and debouncing, and a part of `Host` (tests/session/test_host.py)."""
+    """A `WorkHost` for tasks and debouncing, and a part of `PageHost` (tests/session/test_host.py)."""
 
     busy = awaiting_picture = curve_computing = False
 

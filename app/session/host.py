@@ -53,7 +53,7 @@ class WorkHost(Caller, Protocol):
         """
 
 
-class Host(WorkHost, Protocol):
+class PageHost(WorkHost, Protocol):
     """One session's dashboard, as its pages see it.
 
     Any thread may call `next_tick` and read the flags `busy`, `awaiting_picture` and `curve_computing`. Everything else
