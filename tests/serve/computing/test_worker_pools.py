@@ -11,7 +11,7 @@ import pytest
 import waiting
 
 from app.serve.computing import worker_pools
-from app.serve.computing.latest_wins import LatestWins
+from app.serve.computing.latest_wins import LatestWins, _Alarms
 from app.serve.computing.worker_pools import WorkerPool
 
 pytestmark = pytest.mark.quick
@@ -202,3 +202,11 @@ def test_a_session_whose_thread_could_not_be_started_gets_its_next_picture(monke
     system.full = False
     jobs.submit(lambda _: iter(["next"]))
     waiting.until(lambda: found == ["next"])
+
+
+def test_an_alarm_whose_thread_could_not_be_started_rings_with_the_next_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    later, rung, system = _Alarms(), list[int](), NoThreads(monkeypatch)
+    later(0.0, rung.append, 1)
+    system.full = False
+    later(0.0, rung.append, 2)
+    waiting.until(lambda: rung == [1, 2])
