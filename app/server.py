@@ -24,7 +24,7 @@ from .serve.computing.shared import Shared
 from .serve.computing.turns import TURNS
 from .serve.computing.worker_pools import COMPUTING, POOLS, SESSION_WORK, WorkerPool
 from .serve.http.guard import is_guarded
-from .serve.http.health import Liveness, MetricsHandler, Readiness
+from .serve.http.health import HANDLERS
 from .serve.http.limits import LARGEST_UPLOAD, USUAL_SESSIONS
 from .serve.http.rules import Rules
 from .serve.http.sessions import TOKEN_LIFETIME, Sessions
@@ -38,8 +38,8 @@ from .session.session import Session
 #: The largest message of a page, an uploaded file in base64 [bytes].
 LARGEST_MESSAGE = 4 * LARGEST_UPLOAD // 3 + 100_000
 #: Time for which a thread may keep the GIL from the event loop [s]. Answering one knob move acquires the GIL about ten
-#: times, so with Python's default, 5 ms, the answer could wait 50 ms for a busy thread. Measurements are in
-#: docs/reliability.md, "Many visitors".
+#: times, so with Python's default, 5 ms, the answer could wait 50 ms for a busy thread. Measurements contradict each
+#: other, and it is not known whether the shorter time helps (docs/reliability.md, "Many visitors").
 SWITCH_INTERVAL = 5e-4
 #: Time until a silent connection is closed [s]; the head of a request must come within it.
 IDLE_TIME = 60
@@ -61,7 +61,7 @@ class Access:
 
     `secret` signs sessions; without it a server makes a random one. `origins` are the names under which browsers reach
     the server (`HOST` or `HOST:PORT`), `sign_in` the keyword arguments of Panel's `serve` for basic authentication or
-    OAuth. Behind a `proxy` the visitor's address is in a header.
+    OAuth. Behind a `proxy` the visitor's address is in a header, which `proxy_header` names if it is not empty.
     """
 
     origins: tuple[str, ...] = ()
@@ -70,6 +70,7 @@ class Access:
     embedding: tuple[str, ...] = ()
     proxy: bool = False
     sign_in: tuple[tuple[str, str], ...] = field(default=(), repr=False)
+    proxy_header: str = ""
 
 
 def is_loopback(address: str) -> bool:
@@ -116,14 +117,15 @@ def server_at(port: int, address: str, access: Access | None = None) -> Server:
     names = [*access.origins, *(f"{host}:{port}" for host in ("localhost", "127.0.0.1", _in_url(address)) if host)]
     hosts = frozenset(_name_of(origin) for origin in names)
     secret = access.secret or secrets.token_bytes(32)
-    rules = Rules(hosts, Sessions(access.max_sessions), access.embedding, secret, frozenset(filter(_is_ipv6, names)))
+    rules = Rules(hosts, Sessions(access.max_sessions), access.embedding, secret, frozenset(filter(_is_ipv6, names)),
+                  access.proxy, access.proxy_header)
     server = rules.sessions.server = pn.serve(
         {"/": _guarded_page}, port=port, address=address, start=False, show=False, title="granchain", location=False,
         verbose=False, websocket_origin=[name for name in names if not _is_ipv6(name)],
         websocket_max_message_size=LARGEST_MESSAGE,
-        extra_patterns=[(r"/liveness", Liveness), (r"/readiness", Readiness), (r"/metrics", MetricsHandler)],
+        extra_patterns=list(HANDLERS.items()),
         http_server_kwargs={"idle_connection_timeout": IDLE_TIME, "body_timeout": BODY_TIME,
-                            "max_body_size": LARGEST_BODY, "xheaders": access.proxy},
+                            "max_body_size": LARGEST_BODY},
         websocket_ping_interval=PING_INTERVAL, websocket_ping_timeout=PING_INTERVAL,
         unused_session_lifetime_milliseconds=UNCONNECTED_MS, check_unused_sessions_milliseconds=SESSION_CHECK_MS,
         session_token_expiration=TOKEN_LIFETIME,
@@ -167,9 +169,10 @@ def add_shared_metrics() -> None:
         Metric("queue_busy", "gauge", "The former name of `granchain_pool_busy_threads`, with the same names.",
                partial(busy, former=True), "queue"),
         *(metric for name, cache in shared.items() for metric in (
-            Metric(f"{name}_cache_hits_total", "counter", f"Requests of a {name} that was there or under way.",
+            Metric(f"{name}_cache_hits_total", "counter", f"Requests for a {name} that was cached or already "
+                                                                  "being computed.",
                    partial(getattr, cache, "hits")),
-            Metric(f"{name}_cache_misses_total", "counter", f"Requests of a {name} that had to be computed.",
+            Metric(f"{name}_cache_misses_total", "counter", f"Requests for a {name} that had to be computed.",
                    partial(getattr, cache, "misses")),
             Metric(f"{name}_cache_bytes", "gauge", f"Memory of the {name}s that are kept.",
                    partial(getattr, cache, "used")))))

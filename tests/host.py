@@ -34,7 +34,7 @@ class Pending:
 
 
 class FakeHost(Pending):
-    """A `WorkHost` for tasks and debouncing, and a part of `Host` (tests/session/test_host.py)."""
+    """A `WorkHost` for tasks and debouncing, and a part of `PageHost` (tests/session/test_host.py)."""
 
     busy = awaiting_picture = curve_computing = False
 
@@ -45,6 +45,7 @@ class FakeHost(Pending):
         super().__init__()
         self.failures: list[Exception] = []
         self.faults: list[tuple[Exception, str]] = []
+        self.fault_ids: list[str] = []
         self.closing: list[Callable[[], object]] = []
 
     def next_tick(self, action: Callable[..., None], *args: Any) -> None:
@@ -68,6 +69,7 @@ class FakeHost(Pending):
         """What has no place on a page."""
         self.failures.append(error)
 
-    def report_fault(self, error: Exception, sentence: str) -> None:
-        """An error of granchain itself, and what is said of it beside the page."""
+    def report_fault(self, error: Exception, sentence: str, fault: str = "") -> None:
+        """An error of granchain itself, what is said of it beside the page, and its id."""
         self.faults.append((error, sentence))
+        self.fault_ids.append(fault)

@@ -1,6 +1,6 @@
 """Lists that follow from tables in the code: knobs (docs/model.md), methods (docs/method.md), equations and
-scenes (README.md), drives by a formula (docs/scenes.md), what is used of libraries (docs/libraries.md), and metrics
-(docs/deployment.md).
+scenes (README.md), drives by a formula (docs/scenes.md), what is used of libraries (docs/libraries.md), metrics
+(docs/deployment.md), and worker pools (docs/dashboard.md).
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import textwrap
 from pathlib import Path
 
 from app import library_internals
+from app.serve.computing.worker_pools import POOLS
 from app.serve.monitoring.metrics import FORMER_NAMES, HISTOGRAM, HISTOGRAM_HELP, METRICS
 from app.server import add_shared_metrics
 from granchain_core import scene, scene_names
@@ -84,6 +85,12 @@ def table_of_libraries() -> str:
             used = "<br>".join(f"`{row.owner}`: {', '.join(f'`{name}`' for name in row.names)}" for row in table if row.without == without)
             rows.append(f"| {used} | `{module.replace('.', '/')}.py` | {without} |")
     return "\n".join(["| what | where | without it |", "|---|---|---|", *rows])
+
+
+def table_of_worker_pools() -> str:
+    """The table of docs/dashboard.md: every pool of threads, its limits and its purpose."""
+    rows = [f"| `{pool.name.upper()}` | {pool.workers} | {pool.per_owner_limit or '–'} | {pool.purpose} |" for pool in POOLS]
+    return "\n".join(["| pool | threads | work of one session at once | what runs there |", "|---|---|---|---|", *rows])
 
 
 def table_of_metrics() -> str:

@@ -6,7 +6,7 @@
   (docs/method.md), knobs (docs/model.md), equations and scenes (README.md), commands (README.md, docs/command-line.md),
   drives by a formula (docs/scenes.md), marks of the figures (docs/marks.md), special points and their names
   in AUTO and MatCont (docs/branches.md, glossary.md), what is used of libraries (docs/libraries.md), metrics
-  (docs/deployment.md), the dashboard's pages in the map of the code (docs/design.md) and its messages
+  (docs/deployment.md), the dashboard's pages in the map of the code (docs/design.md) and its messages and worker pools
   (docs/dashboard.md);
 - a row for every new scene in the test of share links (tools/links.py);
 - for every new or changed scene the largest values that its pictures are drawn to (tools/scales.py) and its picture in
@@ -36,6 +36,7 @@ from tools.lists import (
     table_of_metrics,
     table_of_orders,
     table_of_scenes,
+    table_of_worker_pools,
 )
 from tools.marks import (
     table_of_lines_over_a_knob,
@@ -83,6 +84,7 @@ _TABLES = (
     ("docs/design.md", "pages of the dashboard", table_of_pages),
     ("docs/dashboard.md", "messages of the browser", table_of_messages_of_the_browser),
     ("docs/dashboard.md", "messages of the server", table_of_messages_of_the_server),
+    ("docs/dashboard.md", "worker pools", table_of_worker_pools),
 )
 
 

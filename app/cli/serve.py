@@ -15,7 +15,7 @@ from pathlib import Path
 
 from granchain_core import BadInput
 
-from ..serve.http.limits import MOST_SESSIONS, USUAL_SESSIONS
+from ..serve.http.limits import ADDRESS_HEADERS, MOST_SESSIONS, USUAL_SESSIONS
 from .options import whole
 from .waiting import Waiting
 
@@ -45,7 +45,10 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--max-sessions", "--most-visitors", type=whole, default=USUAL_SESSIONS, metavar="N",
                         help="pages that may be open at once")
     parser.add_argument("--behind-proxy", action="store_true",
-                        help="take the visitor's address from X-Real-IP or X-Forwarded-For, which a proxy sets")
+                        help="take the visitor's address from X-Real-IP or X-Forwarded-For, which a proxy sets; where "
+                             "both are there and differ, the address is unknown")
+    parser.add_argument("--proxy-header", choices=ADDRESS_HEADERS,
+                        help="with --behind-proxy: take the address from this header alone")
     parser.add_argument("--basic-auth", metavar="FILE",
                         help="a JSON file of user names and passwords (Panel's basic_auth)")
     parser.add_argument("--oauth-provider", metavar="NAME",
@@ -61,6 +64,8 @@ def do(arguments: argparse.Namespace) -> None:
     if not 1 <= arguments.max_sessions <= MOST_SESSIONS:
         raise BadInput(f"--max-sessions {arguments.max_sessions} is outside 1 to {MOST_SESSIONS}; the usual number "
                        f"is {USUAL_SESSIONS}.")
+    if arguments.proxy_header and not arguments.behind_proxy:
+        raise BadInput("--proxy-header is read with --behind-proxy only; add --behind-proxy.")
     with contextlib.closing(Waiting(arguments.address, arguments.port)) as waiting:
         _serve(arguments, waiting.close)
 
@@ -88,7 +93,8 @@ def _serve(arguments: argparse.Namespace, on_ready_to_listen: Callable[[], None]
             "which browsers reach it, and a secret that signs sessions: add --allow-websocket-origin "
             "HOST:PORT, and --generate-secret or --secret-file FILE (docs/security.md).")
     access = Access(tuple(arguments.allow_websocket_origin or ()), secret, arguments.max_sessions,
-                    tuple(arguments.allow_embedding or ()), arguments.behind_proxy, tuple(sign_in.items()))
+                    tuple(arguments.allow_embedding or ()), arguments.behind_proxy, tuple(sign_in.items()),
+                    arguments.proxy_header or "")
 
     def ready() -> None:  # the log has been set up by then
         if arguments.secret_file is not None and Path(arguments.secret_file).stat().st_mode & stat.S_IROTH:

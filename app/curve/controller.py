@@ -20,7 +20,7 @@ from ..serve.computing.worker_pools import CURVES
 from ..session.activities import Activity
 from ..session.budget import curve_affordable
 from ..session.debounce import Debounce
-from ..session.host import Host
+from ..session.host import PageHost
 from ..session.progress import COMPUTING, OFF, READY
 from ..session.scene_facts import rig_beads, slider_range, without_frequency
 from ..session.share import joined
@@ -42,7 +42,7 @@ class CurveController:
     where on the curve the present motion lies.
     """
 
-    def __init__(self, host: Host, figure: CurveFigure, bar: CurveBar, placed: Callable[[], None]) -> None:
+    def __init__(self, host: PageHost, figure: CurveFigure, bar: CurveBar, placed: Callable[[], None]) -> None:
         self._host = host
         self._figure = figure
         self._bar = bar

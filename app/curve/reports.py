@@ -7,7 +7,7 @@ import threading
 import time
 from collections.abc import Callable
 
-from ..session.host import Host
+from ..session.host import PageHost
 from .sweep import Progress
 
 #: Time between two drawings of a curve that grows [s]: each has all its points.
@@ -20,7 +20,7 @@ class Reports:
     Drawn one by one, the curves of a whole class would keep the event loop busy.
     """
 
-    def __init__(self, host: Host, draw: Callable[[list[Progress]], None]) -> None:
+    def __init__(self, host: PageHost, draw: Callable[[list[Progress]], None]) -> None:
         self._host = host
         self._draw = draw
         self._lock = threading.Lock()

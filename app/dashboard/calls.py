@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Callable
 from functools import partial
 
@@ -11,9 +10,8 @@ from bokeh.document import Document
 from ..serve.document.changes import batched_changes
 from ..serve.document.document_lock import with_document_lock
 from ..serve.document.locked_callbacks import LockedCallbacks
-from ..serve.monitoring.metrics import METRICS
-
-log = logging.getLogger("granchain.page")
+from ..serve.document.part_messages import call_with
+from ..serve.monitoring.faults import log_fault, new_fault_id
 
 
 class Calls:
@@ -23,6 +21,7 @@ class Calls:
         self._document = document
         self._failed = failed
         self._callbacks = LockedCallbacks(document)
+        call_with(document, self.call_and_report)
         self._closing: list[Callable[[], object]] = []
         self._closed = False
 
@@ -66,7 +65,6 @@ class Calls:
         for action in self._closing:
             try:
                 action()
-            except Exception:
-                METRICS.count("errors")
-                log.exception("cleanup of a closed session failed")
+            except Exception as error:
+                log_fault(error, new_fault_id(), "cleanup of a closed session failed")
         self._closing.clear()

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 
 class Controller:
-    """One session's dashboard, and the `Host` of its pages.
+    """One session's dashboard, and the `PageHost` of its pages.
 
     Everything runs with the document locked, except `next_tick` and the flags `busy`, `awaiting_picture` and
     `curve_computing`, which any thread may read.
@@ -127,15 +127,15 @@ class Controller:
     # What the pages ask for
 
     def next_tick(self, action: Callable[..., None], *args: Any) -> None:
-        """See `Host`."""
+        """See `PageHost`."""
         self._calls.next_tick(action, *args)
 
     def call_later(self, seconds: float, action: Callable[..., None], *args: Any) -> None:
-        """See `Host`."""
+        """See `PageHost`."""
         self._calls.call_later(seconds, action, *args)
 
     def on_close(self, action: Callable[[], object]) -> None:
-        """See `Host`."""
+        """See `PageHost`."""
         self._calls.on_close(action)
 
     def show_message(self, sentence: str) -> None:
@@ -143,12 +143,12 @@ class Controller:
         self.sentences.show_message(sentence)
 
     def report_failure(self, error: Exception) -> None:
-        """See `Host`."""
+        """See `PageHost`."""
         self.sentences.report_failure(error)
 
-    def report_fault(self, error: Exception, sentence: str) -> None:
-        """See `Host`."""
-        self.sentences.report_fault(error, sentence)
+    def report_fault(self, error: Exception, sentence: str, fault: str = "") -> None:
+        """See `PageHost`."""
+        self.sentences.report_fault(error, sentence, fault)
 
     def close(self, session_context: object) -> None:
         """Bokeh has dropped the session: see `leave`."""
@@ -160,50 +160,50 @@ class Controller:
 
     @property
     def busy(self) -> bool:
-        """See `Host`."""
+        """See `PageHost`."""
         return self.pictures.busy
 
     @property
     def awaiting_picture(self) -> bool:
-        """See `Host`."""
+        """See `PageHost`."""
         return self.pictures.awaiting_picture
 
     @property
     def overlays(self) -> tuple[str, ...]:
-        """See `Host`."""
+        """See `PageHost`."""
         return overlay_names()
 
     @property
     def curve_computing(self) -> bool:
-        """See `Host`."""
+        """See `PageHost`."""
         return self.curves.computing
 
     def complete_curve(self) -> list[CurvePoint]:
-        """See `Host`."""
+        """See `PageHost`."""
         return self.curves.complete(self.session.scene).get("rest", [])
 
     def show_measured_curve(self, measured: Measured | None) -> Difference | None:
-        """See `Host`."""
+        """See `PageHost`."""
         return self.curves.measured(measured)
 
     def show_measured_series(self, found: Overlay | None) -> None:
-        """See `Host`."""
+        """See `PageHost`."""
         self.views.trains.measured(found)
 
     def show(self, scene: Scene, state: State | None = None, mode: str = "settled") -> None:
-        """See `Host`."""
+        """See `PageHost`."""
         self._scenes.show(scene, state, mode)
 
     def open(self, scene: Scene, state: State | None, curves: str) -> None:
-        """See `Host`."""
+        """See `PageHost`."""
         self._scenes.open(scene, state, curves)
 
     def address_changed(self) -> None:
-        """See `Host`."""
+        """See `PageHost`."""
         self.views.header.send(type="address", query=self.session.link)
 
     def activities(self) -> list[Activity]:
-        """See `Host`."""
+        """See `PageHost`."""
         return [
             *picture_activities(self.session, self.busy), *self.curves.activities(),
             account_activity(self.session, self.busy), *(page.activity for page in self.pages if page.activity),

@@ -15,7 +15,7 @@ from granchain_core.store import save
 from ..curve.controller import CurveController
 from ..serve.computing.worker_pools import FILES
 from ..session.export import EXPORTS, TEXTS, Screen
-from ..session.host import Host
+from ..session.host import PageHost
 from ..session.message_checks import quoted
 from ..session.page import Actions
 from ..session.task import Job, Task, report_nothing
@@ -30,7 +30,7 @@ _PASSES = ("Only a settled picture can be exported as a script; a live run depen
 class Exports:
     """Sends the share link and files; files are written in the background."""
 
-    def __init__(self, host: Host, views: Views, curves: CurveController, pictures: MainPicture) -> None:
+    def __init__(self, host: PageHost, views: Views, curves: CurveController, pictures: MainPicture) -> None:
         self._host = host
         self._views = views
         self._curves = curves

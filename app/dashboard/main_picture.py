@@ -28,7 +28,7 @@ from ..serve.connection.pacing import PicturePacer
 from ..serve.monitoring.metrics import METRICS
 from ..session.budget import WHOLE_PICTURE, RefusedPicture, TooLong, check_first_picture
 from ..session.energy_account import with_account
-from ..session.host import Host
+from ..session.host import PageHost
 from ..session.live import LiveRun, LiveStep
 from .layout import Views
 from .show import show_live, show_regime, show_settled
@@ -102,7 +102,7 @@ class MainPicture:
     before the picture waits for the browser.
     """
 
-    def __init__(self, host: Host, views: Views, show_notice: Callable[[str], None],
+    def __init__(self, host: PageHost, views: Views, show_notice: Callable[[str], None],
                  picture_ready: Callable[[Settled], None]) -> None:
         self._host = host
         self._session = host.session
@@ -134,7 +134,7 @@ class MainPicture:
 
     @property
     def awaiting_picture(self) -> bool:
-        """See `Host.awaiting_picture`; a live run computes all the time and does not count."""
+        """See `PageHost.awaiting_picture`; a live run computes all the time and does not count."""
         return self._jobs.busy and self.live is None
 
     @property

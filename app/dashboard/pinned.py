@@ -15,7 +15,7 @@ from ..serve.compiling.compiler import PICTURE_PIECES
 from ..serve.computing.cpu_time import CpuTime
 from ..serve.computing.worker_pools import ANALYSES, CURVES
 from ..session.budget import check_first_picture, curve_affordable
-from ..session.host import Host
+from ..session.host import PageHost
 from ..session.message_checks import listed
 from ..session.page import Actions
 from ..session.pins import NAMES, Pin, compared_rows, setting_words
@@ -31,7 +31,7 @@ class Pinned:
     A pin is a scene and an initial state, so it fits into a link; its motion is computed.
     """
 
-    def __init__(self, host: Host, views: Views) -> None:
+    def __init__(self, host: PageHost, views: Views) -> None:
         self._host = host
         self._session = host.session
         self._views = views

@@ -37,14 +37,14 @@ class SceneChanges:
         self.actions: Actions = {"set": self._set, "restore": self._restore, "scene": self._scene, "go": self._go}
 
     def show(self, scene: Scene, state: State | None, mode: str) -> None:
-        """Turn the knobs to `scene` and show its motion; see `Host.show`."""
+        """Turn the knobs to `scene` and show its motion; see `PageHost.show`."""
         self._session.set_mode(mode)
         self._session.scene = scene
         self._follow_mode(state)
         self._show_turned_knobs(state)
 
     def open(self, scene: Scene, state: State | None, curves: str) -> None:
-        """Open a scene, maybe another preset; see `Host.open`."""
+        """Open a scene, maybe another preset; see `PageHost.open`."""
         session = self._session
         another = scene.name != session.scene.name
         session.open(scene)

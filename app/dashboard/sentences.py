@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Callable
 from typing import Any
 
 from granchain_core import BadInput, ComputationError, Scene
 
 from ..parts.status.status_line import StatusLine
+from ..serve.monitoring.faults import log_fault, new_fault_id, with_fault_id
 from ..serve.monitoring.metrics import METRICS
 from ..session.budget import RefusedPicture
 from ..session.page import Actions
 from ..session.session import Session
-
-log = logging.getLogger("granchain")
 
 
 class Sentences:
@@ -55,12 +53,15 @@ class Sentences:
             self.report_fault(error, f"Something went wrong inside granchain ({type(error).__name__}); the last "
                                      "picture stays. Move the knob back or reset, and please report it.")
 
-    def report_fault(self, error: Exception, sentence: str) -> None:
-        """Log and count an error of granchain itself, and show `sentence` unless it is empty."""
-        METRICS.count("errors")
-        log.error("unexpected failure", exc_info=error)
+    def report_fault(self, error: Exception, sentence: str, fault: str = "") -> None:
+        """Log and count an error of granchain itself, and show `sentence` with an id unless the sentence is empty.
+
+        `fault` is the id if the visitor sees it elsewhere; otherwise it is made here.
+        """
+        fault = fault or new_fault_id()
+        log_fault(error, fault)
         if sentence:
-            self.show_message(sentence)
+            self.show_message(with_fault_id(sentence, fault))
 
     def _show(self) -> None:
         self._line.update_state(sentence=f"{self._session.sentence} {self._session.notice}".strip(),

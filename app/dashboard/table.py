@@ -28,7 +28,7 @@ from ..pages.stability.page import StabilityPage
 from ..pages.stability.view import Stability
 from ..pages.stories.page import StoriesPage
 from ..parts.toolkit.component import Component
-from ..session.host import Host
+from ..session.host import PageHost
 from ..session.page import Page
 
 #: The heights of a tab.
@@ -58,7 +58,7 @@ class PageSpec:
     """
 
     name: str
-    page: Callable[[Host, Any], Page]
+    page: Callable[[PageHost, Any], Page]
     view: Callable[..., Component] | None
     placeholder: str = ""
     height: Height = "taller"

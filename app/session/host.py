@@ -46,11 +46,14 @@ class WorkHost(Caller, Protocol):
     def report_failure(self, error: Exception) -> None:
         """Show the visitor a failure for which a page has no place."""
 
-    def report_fault(self, error: Exception, sentence: str) -> None:
-        """Log an error of granchain itself, and show `sentence`; it is empty if a page shows a sentence of its own."""
+    def report_fault(self, error: Exception, sentence: str, fault: str = "") -> None:
+        """Log an error of granchain itself, and show `sentence` with an id.
+
+        The sentence is empty if a page shows a sentence of its own, which has the id `fault`.
+        """
 
 
-class Host(WorkHost, Protocol):
+class PageHost(WorkHost, Protocol):
     """One session's dashboard, as its pages see it.
 
     Any thread may call `next_tick` and read the flags `busy`, `awaiting_picture` and `curve_computing`. Everything else

@@ -46,7 +46,7 @@ class Page:
         """
 
     def curve_ready(self) -> None:
-        """The resonance curve from rest is complete: `Host.complete_curve` has it."""
+        """The resonance curve from rest is complete: `PageHost.complete_curve` has it."""
 
     def curve_compared(self, difference: Difference | None) -> None:
         """A measured curve was compared with the complete curve from rest; with None, a new curve was begun."""

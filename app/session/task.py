@@ -13,6 +13,7 @@ from granchain_core.execution.stop import Stop
 from ..serve.compiling.compiler import COMPILER
 from ..serve.computing.turns import Flag
 from ..serve.computing.worker_pools import WorkerPool
+from ..serve.monitoring.faults import new_fault_id, with_fault_id
 from .host import WorkHost
 from .progress import Status
 
@@ -116,7 +117,10 @@ class Task:
         """Queue `work` in place of work that was started before."""
         self.cancel()
         self._job = job = Job(self._host, self._report)
-        self._queued = self._pool.submit(self._run, work, job, owner=self._host)
+        try:
+            self._queued = self._pool.submit(self._run, work, job, owner=self._host)
+        except Exception as error:  # the system allows no more threads
+            self._report_fault(job, error)
 
     def cancel(self) -> bool:
         """Cancel the work under way; return whether there was any. No further result of the work arrives.
@@ -142,12 +146,16 @@ class Task:
         except (ComputationError, BadInput) as problem:
             job.next_tick(self._end, "failed", str(problem), problem)
         except Exception as error:
-            sentence = (f"{self._title} failed because of an error in granchain ({type(error).__name__}); "
-                        "please report it.")
-            job.next_tick(self._end, "failed", sentence)
-            self._host.next_tick(self._host.report_fault, error, sentence if self._report_to_host else "")
+            self._report_fault(job, error)
         else:
             job.next_tick(self._end, "done")
+
+    def _report_fault(self, job: Job, error: Exception) -> None:
+        """Report an error of granchain itself, from any thread; page and log have the same id."""
+        fault = new_fault_id()
+        sentence = f"{self._title} failed because of an error in granchain ({type(error).__name__}); please report it."
+        job.next_tick(self._end, "failed", with_fault_id(sentence, fault))
+        self._host.next_tick(self._host.report_fault, error, sentence if self._report_to_host else "", fault)
 
     def _end(self, status: Status, sentence: str = "", problem: Exception | None = None) -> None:
         self._job = None

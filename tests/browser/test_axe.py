@@ -1,11 +1,11 @@
-"""axe-core finds nothing on any tab, page and popover; what the page says to those who do not see it."""
+"""axe-core finds nothing on any tab, page and popover."""
 
 from __future__ import annotations
 
 import pytest
 from axe_playwright_python.sync_playwright import Axe
-from knobs import COMPILED, Visit, settled, type_into
-from playwright.sync_api import Page, expect
+from knobs import COMPILED, Visit
+from playwright.sync_api import Page
 
 from app.plots.theme import THEMES
 
@@ -102,38 +102,3 @@ def everywhere(page: Page) -> dict[str, dict[str, list[str]]]:
         page.get_by_role("button", name=name, exact=True).click()
         found[name] = violations(page, "#bar")
     return found
-
-
-def test_the_pictures_are_told_in_words_and_tables(visit: Visit) -> None:
-    page = visit("?v=1&scene=sec2&f=850")
-    settled(page)
-    summary = page.locator("#summary")
-    expect(summary).to_contain_text("At 850 Hz: period 1")
-    expect(summary).to_contain_text("591 mN, and at most 237 mN arrive at the wall, 0.401 times as much. Bead 1 has the most")
-    expect(page.locator("main")).to_have_attribute("aria-describedby", "summary")
-    expect(page.locator("#announced")).to_contain_text("period 1")
-    page.get_by_role("tab", name="numbers").click()
-    rows = page.locator("#tabs .numbers tbody tr")
-    expect(rows).to_have_count(25)
-    page.get_by_label("which table").select_option("beads")
-    expect(rows).to_have_count(11)
-    type_into(page, "f", "340")
-    expect(summary).to_contain_text("arrive at the wall, 0.901 times as much")
-    page.wait_for_selector(".peak-names button", timeout=COMPILED)
-    page.get_by_label("which table").select_option("curve")
-    assert rows.count() > 75
-    expect(rows.first).to_contain_text("mN")
-
-
-def test_the_keyboard_has_a_sheet_and_moves_time(visit: Visit) -> None:
-    page = visit()
-    settled(page)
-    page.keyboard.press("?")
-    expect(page.get_by_text("play or pause", exact=True)).to_be_visible()
-    page.keyboard.press("Escape")
-    expect(page.get_by_text("play or pause", exact=True)).to_be_hidden()
-    cursor = page.get_by_role("slider", name="time cursor")
-    cursor.focus()
-    for key, told in (("Home", "0.00"), ("PageDown", "1.00"), ("End", "4.00"), ("PageUp", "3.00")):
-        page.keyboard.press(key)
-        expect(cursor).to_have_attribute("aria-valuetext", f"{told} drive periods")

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import http.client
+import http.server
 import re
 import shutil
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Iterator
 from contextlib import ExitStack
@@ -26,31 +28,46 @@ events {{}}
 http {{
     access_log off; client_body_temp_path {folder}/body; proxy_temp_path {folder}/proxy;
     fastcgi_temp_path {folder}/fastcgi; uwsgi_temp_path {folder}/uwsgi; scgi_temp_path {folder}/scgi;
-    add_header X-Process $upstream_addr always;
     {configuration}
     {below_a_path}
 }}
 """
 
 
-def below_a_path(port: int) -> str:
+def below_a_path(port: int, cookie_port: int) -> str:
     """A second server with the locations that docs/deployment.md has for a path."""
     page = (ROOT / "docs" / "deployment.md").read_text(encoding="utf-8")
     (locations,) = re.findall(r"```nginx\n(.+?)```", page, re.DOTALL)
     whole = (ROOT / "docs" / "nginx.conf").read_text(encoding="utf-8")
     headers = "\n".join(re.findall(r"^    proxy_.+;$", whole, re.MULTILINE))
     (busy,) = re.findall(r"^    location @busy \{.+?^    \}$", whole, re.MULTILINE | re.DOTALL)
-    return f"server {{ listen 127.0.0.1:{port};\n{headers}\n{locations}\n{busy}\n}}"
+    cookies = f"location = /cookie {{ proxy_pass http://127.0.0.1:{cookie_port}; }}"
+    return f"server {{ listen 127.0.0.1:{port};\n{headers}\n{locations}\n{busy}\n{cookies}\n}}"
 
 
-def adapted(port: int, processes: list[int]) -> str:
+class SetsCookie(http.server.BaseHTTPRequestHandler):
+    """Answers with a cookie as Panel sets it."""
+
+    def do_GET(self) -> None:
+        """The cookie alone."""
+        self.send_response(204)
+        self.send_header("Set-Cookie", "user=ada; HttpOnly; Path=/")
+        self.end_headers()
+
+    def log_message(self, format: str, *args: object) -> None:
+        """Nothing."""
+
+
+def adapted(port: int, plain: int, processes: list[int]) -> str:
     """The configuration of the page, with ports of this test and without a certificate."""
     lines = (ROOT / "docs" / "nginx.conf").read_text(encoding="utf-8").splitlines()
     kept = [line for line in lines if not re.match(r"\s*(ssl_|server 127)", line)]
     assert len(lines) - len(kept) == 6  # four processes, a certificate and its key
     servers = " ".join(f"server 127.0.0.1:{one};" for one in processes)
     text = "\n".join(kept).replace("upstream granchain {", f"upstream granchain {{ {servers}")
-    return text.replace("listen 443 ssl;", f"listen 127.0.0.1:{port};")
+    assert text.count("listen 443 ssl;") == text.count("listen 80;") == 1
+    text = text.replace("listen 443 ssl;", f"listen 127.0.0.1:{port};\n add_header X-Process $upstream_addr always;")
+    return text.replace("listen 80;", f"listen 127.0.0.1:{plain};")
 
 
 def answers(port: int, path: str, source: str = "127.0.0.1") -> http.client.HTTPResponse:
@@ -66,28 +83,33 @@ def asked(port: int, path: str, source: str) -> http.client.HTTPConnection:
 
 
 @pytest.fixture(scope="module")
-def port(ports: tuple[int, int]) -> int:
+def port(ports: tuple[int, int, int]) -> int:
     """The port of nginx, behind which two processes answer."""
     return ports[0]
 
 
 @pytest.fixture(scope="module")
-def path(ports: tuple[int, int]) -> str:
+def path(ports: tuple[int, int, int]) -> str:
     """The address of the page below a path."""
     return f"http://127.0.0.1:{ports[1]}/tools/granchain"
 
 
 @pytest.fixture(scope="module")
-def ports(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[int, int]]:
-    """The ports of nginx: one with the page alone, one with the page below a path."""
+def ports(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[int, int, int]]:
+    """The ports of nginx: one with the page alone, one with the page below a path, and the one without TLS."""
     folder = tmp_path_factory.mktemp("nginx")
-    outside, below, *processes = free_port(), free_port(), free_port(), free_port()
+    outside, below, plain, *processes = free_port(), free_port(), free_port(), free_port(), free_port()
+    cookies = http.server.HTTPServer(("127.0.0.1", 0), SetsCookie)
+    threading.Thread(target=cookies.serve_forever, daemon=True).start()
     (folder / "secret").write_text("0123456789abcdef0123456789abcdef")
-    (folder / "nginx.conf").write_text(AROUND.format(folder=folder, configuration=adapted(outside, processes), below_a_path=below_a_path(below)))
+    (folder / "nginx.conf").write_text(AROUND.format(folder=folder, configuration=adapted(outside, plain, processes),
+                                                      below_a_path=below_a_path(below, cookies.server_port)))
     commands = [[sys.executable, "-m", "app.cli", "serve", "--port", str(one), "--behind-proxy", "--allow-websocket-origin",
                  f"127.0.0.1:{outside}", "--allow-websocket-origin", f"127.0.0.1:{below}", "--secret-file", str(folder / "secret")] for one in processes]
     commands.append([str(NGINX), "-c", str(folder / "nginx.conf"), "-e", str(folder / "error.log")])
     with ExitStack() as stack, (folder / "log").open("wb") as log:
+        stack.callback(cookies.server_close)
+        stack.callback(cookies.shutdown)
         for command in commands:
             process = stack.enter_context(subprocess.Popen(command, cwd=ROOT, stdout=log, stderr=log))
             stack.callback(process.terminate)
@@ -96,7 +118,7 @@ def ports(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[int, int]]
             while not alive(one):
                 assert time.monotonic() < end, (folder / "log").read_text()
                 time.sleep(0.1)
-        yield outside, below
+        yield outside, below, plain
 
 
 def alive(port: int) -> bool:
@@ -127,7 +149,7 @@ def test_a_page_below_a_path_has_its_pictures_and_answers_a_knob(visit: Visit, p
     assert "/tools/granchain/?" in page.evaluate("granchain.address.url().href"), "its links stay below the path"
 
 
-def test_the_path_without_a_slash_leads_to_the_page_and_keeps_the_link(ports: tuple[int, int]) -> None:
+def test_the_path_without_a_slash_leads_to_the_page_and_keeps_the_link(ports: tuple[int, int, int]) -> None:
     answer = answers(ports[1], "/tools/granchain?v=1&scene=sec2")
     assert answer.status == 301 and str(answer.headers["Location"]).endswith("/tools/granchain/?v=1&scene=sec2")
     assert [answers(ports[1], f"/tools/granchain/{name}").status for name in ("liveness", "readiness", "metrics")] == [200, 200, 404]
@@ -140,6 +162,7 @@ def test_pages_beyond_the_rate_are_asked_to_try_again_and_none_waits(port: int) 
     found = [one.getresponse() for one in connections]
     refused = [one for one in found if one.status == 503]
     assert refused and all(one.headers["Retry-After"] == "10" for one in refused)
+    assert all(one.headers["Strict-Transport-Security"] for one in refused)
     assert b"http-equiv=refresh content=10" in refused[0].read()
     assert answers(port, "/liveness", source).status == 200
 
@@ -162,6 +185,19 @@ def test_a_visitor_always_reaches_the_same_process_and_not_all_the_same_one(port
     assert [reached(source) for source in sources] == first
 
 
-def test_the_figures_of_the_server_are_closed_to_the_outside(port: int) -> None:
+def test_browsers_are_sent_to_tls_and_told_to_stay(ports: tuple[int, int, int]) -> None:
+    plain = answers(ports[2], "/?v=1&scene=sec2")
+    assert plain.status == 301 and plain.headers["Location"] == "https://granchain.example.org/?v=1&scene=sec2"
+    for path, status in (("/", 200), ("/liveness", 200), ("/metrics", 404), ("/nothing", 404)):
+        answer = answers(ports[0], path, "127.4.4.4")
+        assert (answer.status, answer.headers["Strict-Transport-Security"]) == (status, "max-age=31536000")
+
+
+def test_cookies_are_sent_over_tls_alone(ports: tuple[int, int, int]) -> None:
+    flags = set(str(answers(ports[1], "/cookie").headers["Set-Cookie"]).lower().split("; "))
+    assert flags == {"user=ada", "httponly", "path=/", "secure", "samesite=lax"}
+
+
+def test_metrics_are_closed_to_the_outside(port: int) -> None:
     assert answers(port, "/metrics").status == 404
     assert answers(port, "/liveness").status == 200

@@ -1,11 +1,56 @@
-"""A visitor who leaves."""
+"""Errors of actions and parts, and a visitor who leaves."""
 
 from __future__ import annotations
 
+import logging
+import re
+
 import pytest
+from bokeh.server.session import ServerSession
+from event_loop import run_async
 from headless_dashboard import Dashboard
 
+from app.serve.document.part_messages import dispatch, register
+from app.serve.monitoring.logs import JsonFormatter
 from app.serve.monitoring.metrics import METRICS
+
+
+def told_fault(dashboard: Dashboard, caplog: pytest.LogCaptureFixture) -> str:
+    """The id of the fault that the visitor is told; the log has a line with it."""
+    found = re.search(r"please report it[.] [(]fault ([0-9a-f]{12})[)]$", dashboard.session.sentence)
+    assert found is not None, dashboard.session.sentence
+    assert [record.__dict__["fault"] for record in caplog.records if record.levelno == logging.ERROR] == [found[1]]
+    assert f'"fault": "{found[1]}"' in JsonFormatter().format(caplog.records[-1])
+    return found[1]
+
+
+def test_an_error_of_an_action_has_an_id_in_its_sentence_and_in_the_log(dashboard: Dashboard, caplog: pytest.LogCaptureFixture) -> None:
+    dashboard._calls.call_and_report(lambda: 1 / 0)  # type: ignore[arg-type, return-value]
+    first = told_fault(dashboard, caplog)
+    caplog.clear()
+    dashboard._calls.call_and_report(lambda: 1 / 0)  # type: ignore[arg-type, return-value]
+    assert told_fault(dashboard, caplog) != first
+
+
+class FailingPart:
+    """A part of the page that fails before it has found an action."""
+
+    def hear(self, message: object) -> None:
+        """Fail."""
+        raise ZeroDivisionError
+
+
+def test_the_visitor_is_told_of_an_error_of_a_part(dashboard: Dashboard, caplog: pytest.LogCaptureFixture) -> None:
+    session, part = ServerSession("tested", dashboard._document), FailingPart()  # type: ignore[arg-type]
+    register(dashboard._document, "p-failing", part.hear)
+    values = {"type": "map", "entries": [["model", {"id": "p-failing"}], ["data", {"type": "map", "entries": []}]]}
+    event = {"kind": "MessageSent", "msg_type": "bokeh_event", "msg_data": {"type": "event", "name": "data_event", "values": values}}
+
+    async def send() -> bool:
+        return dispatch(session, {"events": [event]})
+
+    assert run_async(send())
+    told_fault(dashboard, caplog)
 
 
 def test_a_visitor_who_leaves_ends_everything_although_one_end_fails(dashboard: Dashboard, caplog: pytest.LogCaptureFixture) -> None:

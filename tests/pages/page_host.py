@@ -28,7 +28,7 @@ def picture(f: float = 2000.0) -> Settled:
     return granchain_core.settle(scene("sec2").evolve(N=2, f=f), samples=8)
 
 
-class PageHost(FakeHost):
+class FakePageHost(FakeHost):
     """The host of one page: one visitor's session, and what the page asks of the dashboard."""
 
     overlays = overlay_names()
@@ -79,7 +79,7 @@ class Trial:
 
     def __init__(self, row: PageSpec, monkeypatch: Any) -> None:
         self.row = row
-        self.host = PageHost()
+        self.host = FakePageHost()
         self.view = (row.view or Tabs)()
         self.told: list[dict[str, Any]] = []
         self.given: list[Given] = []

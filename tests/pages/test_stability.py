@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from page_host import PageHost
+from page_host import FakePageHost
 
 from app.pages.stability import page as module
 from app.pages.stability import work
@@ -159,7 +159,7 @@ def test_another_orbit_than_the_settled_one_is_not_shown_for_it() -> None:
         analyse(OrbitTarget(shown.run.scene, 1, far, True), False, 0, Stop())
 
 
-class Page(PageHost):
+class Page(FakePageHost):
     """The host of the page, with what the page shows and sends."""
 
     def __init__(self, mode: str = "settled") -> None:

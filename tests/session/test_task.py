@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import re
 import threading
 import time
 import weakref
@@ -14,6 +15,7 @@ import pytest
 from host import FakeHost
 
 from app.serve.computing.worker_pools import WorkerPool
+from app.serve.monitoring.faults import with_fault_id
 from app.session.task import Job, Task, report_nothing
 from granchain_core import BadInput, Cancelled, ComputationError, scene
 
@@ -86,8 +88,23 @@ def test_a_failure_is_said_and_a_fault_is_told_to_the_host(error: Exception, sen
                                                           task: Task) -> None:
     task.start(failing(error))
     host.run_callbacks_until(lambda: not task.running and not host.callbacks)
-    assert host.said == [("failed", sentence)]
+    assert host.said == [("failed", with_fault_id(sentence, host.fault_ids[0]) if told else sentence)]
     assert host.faults == ([(error, "")] if told else []) and host.failures == []
+
+
+def test_a_task_whose_thread_cannot_be_started_fails_and_the_next_one_runs(host: SayingHost, task: Task, monkeypatch: pytest.MonkeyPatch) -> None:
+    def start(_: threading.Thread) -> None:
+        raise RuntimeError("can't start new thread")
+
+    with monkeypatch.context() as full:
+        full.setattr("app.serve.computing.worker_pools.begin", start)
+        task.start(lambda job: None)
+    host.run_callbacks_until(lambda: not task.running)
+    ((status, sentence),) = host.said
+    assert status == "failed" and "(RuntimeError); please report it. (fault" in sentence and len(host.faults) == 1
+    task.start(lambda job: None)
+    host.run_callbacks_until(lambda: not task.running)
+    assert host.said[1:] == [("done", "")]
 
 
 def test_a_failure_without_a_place_on_the_page_goes_to_the_host(host: SayingHost) -> None:
@@ -101,6 +118,7 @@ def test_a_failure_without_a_place_on_the_page_goes_to_the_host(host: SayingHost
     task.start(failing(fault))
     host.run_callbacks_until(lambda: bool(host.faults))
     assert host.faults == [(fault, FAULT)] and host.failures == [problem]
+    assert re.fullmatch("[0-9a-f]{12}", host.fault_ids[0])
 
 
 def test_nothing_of_cancelled_work_arrives(host: SayingHost, task: Task) -> None:

@@ -16,7 +16,7 @@ from ...plots.accuracy import Annotations
 from ...serve.computing.worker_pools import MEASUREMENTS
 from ...session.active_setting import PlacedSetting, locate, shown_setting
 from ...session.activities import Activity
-from ...session.host import Host
+from ...session.host import PageHost
 from ...session.page import Actions, Page
 from ...session.progress import COMPUTING, OFF, READY, Status, StatusWords
 from ...session.task import Job, Task
@@ -33,7 +33,7 @@ def measured_for(scene: Scene) -> str:
 class AccuracyPage(Page):
     """One measurement at a time; it goes on in the background until it is done, is stopped or the session ends."""
 
-    def __init__(self, host: Host, view: Accuracy) -> None:
+    def __init__(self, host: PageHost, view: Accuracy) -> None:
         self._host = host
         self._view = view
         self._task = Task(host, MEASUREMENTS, self._show_status, "The measurement")

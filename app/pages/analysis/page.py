@@ -8,7 +8,7 @@ from granchain_core import BadInput, Settled
 from granchain_core.precompile.pieces import ORBIT_KERNELS
 
 from ...serve.computing.worker_pools import LONG
-from ...session.host import Host
+from ...session.host import PageHost
 from ...session.page import Actions, Page
 from ...session.progress import Status, StatusWords
 from ...session.task import Job, Task
@@ -37,7 +37,7 @@ class AnalysisPage(Page):
     takes no time, and goes on doing so for every picture until the visitor asks something.
     """
 
-    def __init__(self, host: Host, view: Analysis) -> None:
+    def __init__(self, host: PageHost, view: Analysis) -> None:
         self._host = host
         self._view = view
         self._task = Task(host, LONG, self._show_status, "The analysis")

@@ -15,7 +15,7 @@ from granchain_core.precompile.pieces import BRANCH_KERNELS, DOP853_KERNELS, FIX
 from ...plots.branches import BranchRows
 from ...serve.computing.worker_pools import LONG
 from ...session.budget import curve_affordable
-from ...session.host import Host
+from ...session.host import PageHost
 from ...session.message_checks import listed, whole
 from ...session.page import Actions, Page
 from ...session.progress import Status, StatusWords
@@ -44,7 +44,7 @@ class _Drawn:
 class BranchesPage(Page):
     """Branches of one chain: the first from the orbit on the screen, others from its period doublings."""
 
-    def __init__(self, host: Host, view: Branches) -> None:
+    def __init__(self, host: PageHost, view: Branches) -> None:
         self._host = host
         self._view = view
         self._task = Task(host, LONG, self._show_status, "Following the branch")

@@ -36,7 +36,7 @@ from ...serve.computing.worker_pools import ANALYSES, FILES, LONG
 from ...serve.http.limits import LARGEST_UPLOAD, MOST_UPLOADED_POINTS
 from ...serve.http.message_rules import UPLOAD
 from ...session.budget import WHOLE_PICTURE, check_first_picture
-from ...session.host import Host
+from ...session.host import PageHost
 from ...session.page import Actions, Page
 from ...session.task import Job, Task, report_nothing
 
@@ -66,7 +66,7 @@ _TOO_LARGE = (f"The measurement is larger than {LARGEST_UPLOAD / 1e6:g} MB; a cu
 class DataPage(Page):
     """The tab shows what was understood, what is asked, and the misfit. `Session.measured` is what is drawn."""
 
-    def __init__(self, host: Host, tabs: Component) -> None:
+    def __init__(self, host: PageHost, tabs: Component) -> None:
         self._host = host
         self._tabs = tabs
         self._moving = Task(host, ANALYSES, report_nothing, "Moving the series to the picture", report_to_host=True)

@@ -17,7 +17,7 @@ from ...serve.compiling.compiler import COMPILER, PICTURE_PIECES, Requests
 from ...serve.computing.worker_pools import MEASUREMENTS
 from ...session.activities import Activity
 from ...session.debounce import Debounce
-from ...session.host import Host
+from ...session.host import PageHost
 from ...session.message_checks import quoted
 from ...session.page import Actions, Page
 from ...session.progress import COMPUTING, READY, UNDER_WAY
@@ -33,7 +33,7 @@ _QUIET = 0.7
 class EffectsPage(Page):
     """Lists what is being computed and measures the cost of one effect after the other, while it is on the screen."""
 
-    def __init__(self, host: Host, view: Component) -> None:
+    def __init__(self, host: PageHost, view: Component) -> None:
         self._host = host
         self._view = view
         self._task = Task(host, MEASUREMENTS, self._ended, "The cost measurement")

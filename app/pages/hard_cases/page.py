@@ -10,7 +10,7 @@ from granchain_core.hard_cases import CASES, Case, Check, Picture
 
 from ...serve.computing.worker_pools import MEASUREMENTS
 from ...session.activities import Activity
-from ...session.host import Host
+from ...session.host import PageHost
 from ...session.message_checks import quoted
 from ...session.page import Actions, Page
 from ...session.progress import COMPUTING, OFF, READY, Status, StatusWords
@@ -26,7 +26,7 @@ WORDS = StatusWords()
 class HardCasesPage(Page):
     """Runs the requested cases one after the other; results stay until a case is run again."""
 
-    def __init__(self, host: Host, view: HardCases) -> None:
+    def __init__(self, host: PageHost, view: HardCases) -> None:
         self._view = view
         self._process = CaseProcess()
         self._task = Task(host, MEASUREMENTS, self._end, "The case")

@@ -22,7 +22,7 @@ from ...plots.theme import THEMES, Theme
 from ...serve.compiling.compiler import PICTURE_PIECES
 from ...serve.computing.worker_pools import LONG
 from ...session.debounce import Debounce
-from ...session.host import Host
+from ...session.host import PageHost
 from ...session.message_checks import listed
 from ...session.page import Actions, Page
 from ...session.progress import Status, StatusWords
@@ -58,7 +58,7 @@ def page_grid(scene: Scene) -> Grid:
 class MapPage(Page):
     """Computes its map while the tab is on the screen."""
 
-    def __init__(self, host: Host, view: Component) -> None:
+    def __init__(self, host: PageHost, view: Component) -> None:
         self._host = host
         self._view = view
         self._visible = False

@@ -5,7 +5,7 @@ from __future__ import annotations
 from granchain_core import Settled
 
 from ...parts.toolkit.component import Component
-from ...session.host import Host
+from ...session.host import PageHost
 from ...session.page import Actions, Page
 from .words import beads, forces_over_time, summary
 
@@ -13,7 +13,7 @@ from .words import beads, forces_over_time, summary
 class NumbersPage(Page):
     """It has no view: its tab is drawn by the tabs, and the summary also describes the pictures."""
 
-    def __init__(self, host: Host, view: Component) -> None:
+    def __init__(self, host: PageHost, view: Component) -> None:
         self._host = host
         self._view = view
         self._visible = False

@@ -9,7 +9,7 @@ from granchain_core import Scene, Settled
 from granchain_core.precompile.pieces import DOP853_KERNELS, OBSERVER_KERNELS
 
 from ...serve.computing.worker_pools import PICTURES
-from ...session.host import Host
+from ...session.host import PageHost
 from ...session.page import Actions, Page
 from ...session.progress import Status, StatusWords
 from ...session.task import Job, Task
@@ -31,7 +31,7 @@ class _Moved:
 class ObserverPage(Page):
     """Each message "observer-more" asks for one period; without them nothing is computed."""
 
-    def __init__(self, host: Host, view: Observer) -> None:
+    def __init__(self, host: PageHost, view: Observer) -> None:
         self._host = host
         self._view = view
         self._task = Task(host, PICTURES, self._said, "The observer", report_to_host=True)

@@ -9,7 +9,7 @@ from granchain_core.paper import PaperFigure, Result, compute, figure_of
 from granchain_core.precompile.pieces import CURVE_KERNELS, MOTION_KERNELS, OBSERVER_KERNELS, ORBIT_KERNELS
 
 from ...serve.computing.worker_pools import LONG
-from ...session.host import Host
+from ...session.host import PageHost
 from ...session.page import Actions, Page
 from ...session.progress import Status, StatusWords
 from ...session.task import Job, Task
@@ -32,7 +32,7 @@ WORDS = StatusWords("the figure's kernels", ORBIT_KERNELS)
 class PaperPage(Page):
     """The figures that were computed stay until the session ends."""
 
-    def __init__(self, host: Host, view: Paper) -> None:
+    def __init__(self, host: PageHost, view: Paper) -> None:
         self._view = view
         self._task = Task(host, LONG, self._show_status, "The figure")
         self._found: dict[str, Result] = {}

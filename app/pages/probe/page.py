@@ -6,7 +6,7 @@ from typing import Any
 
 from granchain_core import Settled
 
-from ...session.host import Host
+from ...session.host import PageHost
 from ...session.message_checks import whole
 from ...session.page import Actions, Page
 from .view import Probe
@@ -15,7 +15,7 @@ from .view import Probe
 class ProbePage(Page):
     """Follows the settled picture while it is on the screen; at other times it costs nothing."""
 
-    def __init__(self, host: Host, view: Probe) -> None:
+    def __init__(self, host: PageHost, view: Probe) -> None:
         self._host = host
         self._view = view
         self._bead = 1

@@ -15,7 +15,7 @@ from ...plots.multipliers import plane_state
 from ...serve.computing.worker_pools import ANALYSES
 from ...session.activities import Activity
 from ...session.debounce import Debounce
-from ...session.host import Host
+from ...session.host import PageHost
 from ...session.message_checks import whole
 from ...session.page import Actions, Page
 from ...session.progress import COMPUTING, OFF, READY, Status, StatusWords
@@ -43,7 +43,7 @@ WORDS = StatusWords("the tangent flow", ORBIT_KERNELS)
 class StabilityPage(Page):
     """Analyses every picture that stays, while it is on the screen; a moving knob cancels the analysis."""
 
-    def __init__(self, host: Host, view: Stability) -> None:
+    def __init__(self, host: PageHost, view: Stability) -> None:
         self._host = host
         self._view = view
         self._orbits = Task(host, ANALYSES, self._ended, "The analysis")

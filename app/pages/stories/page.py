@@ -10,7 +10,7 @@ from granchain_core import BadInput, Settled, State
 from ...parts.toolkit.component import Component
 from ...serve.compiling.compiler import PICTURE_PIECES
 from ...serve.computing.worker_pools import ANALYSES
-from ...session.host import Host
+from ...session.host import PageHost
 from ...session.message_checks import whole
 from ...session.page import Actions, Page
 from ...session.stories import Story, StoryStep, state_before, stories, told_words
@@ -37,7 +37,7 @@ def story_step(place: str, overlays: tuple[str, ...]) -> StoryStep:
 class StoriesPage(Page):
     """It turns the knobs of the dashboard to a step, and sends the tab its words."""
 
-    def __init__(self, host: Host, view: Component) -> None:
+    def __init__(self, host: PageHost, view: Component) -> None:
         self._host = host
         self._view = view
         self._task = Task(host, ANALYSES, report_nothing, "The story", report_to_host=True)

@@ -41,7 +41,7 @@ function list(rows) {
 
 const title = (textContent) => element("h2", { textContent });
 
-// At most one of them is open.
+// At most one of them is open. It gets the focus, which goes back to where it was when the box is closed.
 export class Popovers {
   constructor(send, files) {
     this.field = element("input", { readOnly: true, ariaLabel: "link to this picture" });
@@ -64,7 +64,20 @@ export class Popovers {
   }
 
   close() {
+    const inside = this.hasFocus();
     for (const one of this.all) one.hidden = true;
+    if (inside) this.opener?.focus();
+  }
+
+  hasFocus() {
+    return this.all.some((one) => one.contains(one.getRootNode().activeElement));
+  }
+
+  // Opens a box and moves the focus to this element of it. A box that was opened from another one has its opener.
+  open(box, focused) {
+    if (!this.hasFocus()) this.opener = window.granchain.focused;
+    for (const one of this.all) one.hidden = one !== box;
+    focused.focus();
   }
 
   toggleHelp() {
@@ -73,9 +86,9 @@ export class Popovers {
 
   // Opens the box of this name, or closes it if it is open; closes the others.
   toggle(name) {
-    const open = this[name].hidden;
-    this.close();
-    this[name].hidden = !open;
+    const box = this[name];
+    if (box.hidden) this.open(box, box === this.help ? box : box.querySelector("button, select, input"));
+    else this.close();
   }
 
   // Shows the page's address and copies it to the clipboard.
@@ -84,8 +97,7 @@ export class Popovers {
     history.replaceState(history.state, "", href);
     this.field.value = href;
     this.copied.textContent = "";
-    this.close();
-    this.link.hidden = false;
+    this.open(this.link, this.field);
     this.field.select();
     navigator.clipboard
       ?.writeText(href)

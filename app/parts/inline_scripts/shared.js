@@ -116,12 +116,24 @@ window.granchain = (() => {
     }
   }
 
+  /** The first element that a selector matches in `root`, also inside shadow trees; null if there is none. */
+  function find(root, selector) {
+    const found = root.querySelector(selector);
+    if (found) return found;
+    for (const { shadowRoot } of root.querySelectorAll("*")) {
+      const inside = shadowRoot && find(shadowRoot, selector);
+      if (inside) return inside;
+    }
+    return null;
+  }
+
   /**
    * What the parts of the dashboard share in the browser: events, what pages publish, the overlay, the
    * panels of a phone, and one object for each of theme, address, history and connection.
    */
   class Dashboard extends Events {
     #overlay = null; // the name of the overlay
+    #opener = null; // the element that had the focus when the overlay was opened
     pages = new Map(); // what pages have published, by page
     embedded = new URLSearchParams(location.search).get("embed") === "1"; // the picture alone, for a slide
     theme = new Theme(this);
@@ -167,17 +179,45 @@ window.granchain = (() => {
       return this.#overlay;
     }
 
-    /** Opens the overlay of this name. An unknown name closes the open one. */
+    /** The element that has the focus, also inside shadow trees. */
+    get focused() {
+      let found = document.activeElement;
+      while (found?.shadowRoot?.activeElement) found = found.shadowRoot.activeElement;
+      return found;
+    }
+
+    /**
+     * Opens the overlay of this name. An unknown name closes the open one. The focus moves to the heading of the
+     * overlay, and back to the element that had it.
+     */
     openPage(asked) {
       const sheets = [...document.querySelectorAll("[data-overlay]")];
       const name = sheets.some((one) => one.dataset.overlay === asked) ? asked : null;
       if (name === this.#overlay) return;
+      const over = document.getElementById("overlay");
+      const inside = over.contains(document.activeElement);
+      if (this.#overlay === null) this.#opener = this.focused;
       this.#overlay = name;
       document.getElementById("dashboard").classList.toggle("overlaid", name !== null);
       for (const one of sheets) one.hidden = one.dataset.overlay !== name;
       // The main landmark is the part that is on the screen; a web page may have only one.
-      document.getElementById("overlay").setAttribute("role", name === null ? "none" : "main");
+      over.setAttribute("role", name === null ? "none" : "main");
       this.emit("overlay", name);
+      if (name !== null) this.#focusHeading(sheets.find((one) => !one.hidden));
+      else if (inside) this.#focusOpener();
+    }
+
+    #focusHeading(sheet) {
+      const heading = find(sheet, "h2");
+      if (heading === null) return; // a link has opened the overlay before it was drawn
+      heading.tabIndex = -1; // the focus can be moved here, but Tab skips it
+      heading.focus();
+    }
+
+    // A tab may have been drawn again meanwhile, with another button.
+    #focusOpener() {
+      const opener = this.#opener?.isConnected ? this.#opener : null;
+      (opener ?? find(document.getElementById("tabs"), "[role=tab][aria-selected=true]"))?.focus();
     }
 
     closePage() {

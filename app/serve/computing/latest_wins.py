@@ -42,9 +42,18 @@ class _Alarms:
             self._count += 1
             heapq.heappush(self._due, (time.monotonic() + seconds, self._count, action, args))
             if self._thread is None:
-                self._thread = threading.Thread(target=self._serve, daemon=True, name="alarms")
-                self._thread.start()
+                self._start()
             self._changed.notify()
+
+    def _start(self) -> None:
+        """Start the thread. If the system allows none now, the next call tries again; until then no action is due."""
+        thread = threading.Thread(target=self._serve, daemon=True, name="alarms")
+        try:
+            thread.start()
+        except RuntimeError:
+            log.warning("the thread of alarms could not be started", exc_info=True)
+        else:
+            self._thread = thread
 
     def _serve(self) -> None:
         while True:
@@ -100,7 +109,12 @@ class LatestWins:
                 return
             self._running = True
             self._began = time.monotonic()
-        SESSION_WORK.submit(self._drain)
+        try:
+            SESSION_WORK.submit(self._drain)
+        except Exception:  # the caller reports it; the next request has to begin
+            with self._lock:
+                self._running, self._waiting = False, None
+            raise
 
     def _give_up(self, stop: TurnFlag) -> None:
         """End a computation without a result after a second, if newer work waits."""

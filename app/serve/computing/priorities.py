@@ -11,6 +11,7 @@ from __future__ import annotations
 import os
 import sys
 import threading
+from concurrent.futures import Future
 from queue import SimpleQueue
 
 #: Added to the nice value of a thread of lower priority; it then gets a tenth of a processor beside another thread.
@@ -21,31 +22,51 @@ class _Starter:
     """A thread of usual priority that starts other threads."""
 
     def __init__(self) -> None:
-        self.asked: SimpleQueue[threading.Thread] = SimpleQueue()
+        self._asked: SimpleQueue[tuple[threading.Thread, Future[None]]] = SimpleQueue()
         self._lock = threading.Lock()
-        self._running = False
+        self._thread: threading.Thread | None = None
 
-    def run(self) -> None:
-        """Start this thread once; called by a thread of usual priority."""
+    def run(self) -> bool:
+        """Start this thread unless it runs; called by a thread of usual priority. Return whether it runs."""
         with self._lock:
-            if not self._running:
-                threading.Thread(target=self._serve, daemon=True, name="starter").start()
-                self._running = True
+            if self._thread is None or not self._thread.is_alive():
+                thread = threading.Thread(target=self._serve, daemon=True, name="starter")
+                try:
+                    thread.start()
+                except RuntimeError:  # the system allows no more threads now
+                    return False
+                self._thread = thread
+        return True
+
+    def start(self, thread: threading.Thread) -> None:
+        """Have the thread started, and wait until it runs. Raises what `Thread.start` raises."""
+        started: Future[None] = Future()
+        self._asked.put((thread, started))
+        started.result()
 
     def _serve(self) -> None:
         while True:
-            self.asked.get().start()
+            thread, started = self._asked.get()
+            try:
+                thread.start()
+            except BaseException as error:
+                started.set_exception(error)
+            else:
+                started.set_result(None)
+            del thread, started
 
 
 _STARTER = _Starter()
 
 
 def lower_priority() -> None:
-    """Lower the priority of this thread: threads of usual priority get the processor first."""
+    """Lower the priority of this thread: threads of usual priority get the processor first.
+
+    The priority stays if the thread that starts threads of usual priority cannot be started.
+    """
     if sys.platform != "linux" or threading.current_thread() is threading.main_thread():
         return
-    if not has_lower_priority():
-        _STARTER.run()
+    if not has_lower_priority() and _STARTER.run():
         os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), min(_usual() + _ADDED_NICENESS, 19))
 
 
@@ -60,8 +81,8 @@ def _usual() -> int:
 
 
 def begin(thread: threading.Thread) -> None:
-    """Start a thread of usual priority, whatever the priority of this thread."""
+    """Start a thread of usual priority, whatever the priority of this thread. Raises what `Thread.start` raises."""
     if has_lower_priority():
-        _STARTER.asked.put(thread)
+        _STARTER.start(thread)
     else:
         thread.start()

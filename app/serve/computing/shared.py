@@ -65,7 +65,7 @@ class Shared(Generic[Item]):
                 ready = self._finished[key][0]
             else:
                 ready = None
-                computation = self._joined(key, compute, cpu_time)
+                computation = self._join(key, compute, cpu_time)
         if ready is not None:
             yield from ready
             return
@@ -74,17 +74,17 @@ class Shared(Generic[Item]):
         finally:
             self._leave(key, computation, cpu_time)
 
-    def _joined(self, key: Hashable, compute: Callable[[TurnFlag], Iterator[Item]],
+    def _join(self, key: Hashable, compute: Callable[[TurnFlag], Iterator[Item]],
                 cpu_time: CpuTime) -> _Computation[Item]:
         """The computation under way, or a new one; called with the lock held."""
         found = None if key is None else self._under_way.get(key)
         if found is None:
-            self.misses += 1
             found = _Computation()
             found.cpu_time.members.append(cpu_time)
+            self._pool.submit(self._compute, key, found, compute)  # first: it may raise
+            self.misses += 1
             if key is not None:
                 self._under_way[key] = found
-            self._pool.submit(self._compute, key, found, compute)
         else:
             self.hits += 1
             found.cpu_time.members.append(cpu_time)

@@ -1,9 +1,7 @@
-"""Turns to compute, given by *least attained service* with a time slice.
+"""Turns to compute, given by *least attained service* with a time slice; `Turns` has the rule.
 
-Of the sessions that wait, the one that has used the least processor time lately gets the next turn. Kernels run without
-the GIL, so about as many computations as there are cores run at once. A computation is new until it has its first
-result or has taken long; from then on it is a refinement. A new computation begins at once and is not interrupted,
-because it is short. A refinement gives up its turn at the first pause after its time slice.
+Kernels run without the GIL, so about as many computations as there are cores run at once. A computation is new until it
+has its first result or has taken long; from then on it is a refinement.
 """
 
 from __future__ import annotations
@@ -68,12 +66,18 @@ class _Turn:
 
 
 class Turns:
-    """Gives turns to computations that wait; only turns younger than `_LONGEST_TURN` keep others waiting.
+    """Gives turns to computations that wait.
 
-    A new computation gets a turn while fewer than `at_once` new computations have one, whatever else computes. A
-    refinement gets a turn while fewer than `at_once` computations of both kinds have one. A refinement that has waited
-    for `_LONGEST_WAIT` gets a turn while fewer than `at_once` refinements have one. So `2 * at_once` turns are possible
-    for a moment.
+    *Who is next.* New computations go before refinements. Among equals, those that have waited for `_LONGEST_WAIT` go
+    first, then the session that has used the least processor time lately.
+
+    *When.* A new computation gets a turn while fewer than `at_once` new computations have one, whatever else computes.
+    A refinement gets a turn while fewer than `at_once` computations of both kinds have one. A refinement that has
+    waited for `_LONGEST_WAIT` gets a turn while fewer than `at_once` refinements have one. So `2 * at_once` turns are
+    possible for a moment. Only turns younger than `_LONGEST_TURN` count.
+
+    *How long.* A new computation is short and keeps its turn. A refinement gives its turn up at the first pause after
+    its time slice at which `should_yield` finds another due.
     """
 
     def __init__(self, at_once: int, clock: Callable[[], float] = time.monotonic) -> None:

@@ -7,6 +7,7 @@ because a picture must never wait for long work.
 
 from __future__ import annotations
 
+import logging
 import threading
 from collections import Counter, deque
 from collections.abc import Callable
@@ -18,11 +19,14 @@ from typing import TypeVar
 
 from .priorities import begin, has_lower_priority, lower_priority
 
+log = logging.getLogger("granchain")
+
 Result = TypeVar("Result")
 
 
 class WorkerPool:
     """At most `workers` threads for work of one kind, first come, first served. A thread is started when it is needed.
+    `purpose` says what the work is (docs/dashboard.md).
 
     The threads are daemons: a branch or a map takes minutes, and a server that ends does not wait for them. Threads of
     a `low_priority` pool leave the processor to others (priorities.py).
@@ -34,10 +38,12 @@ class WorkerPool:
     would be given to the same thread, and wait although another thread is free.
     """
 
-    def __init__(self, name: str, workers: int, low_priority: bool = False, per_owner_limit: int | None = None) -> None:
+    def __init__(self, name: str, workers: int, purpose: str = "", low_priority: bool = False,
+                 per_owner_limit: int | None = None) -> None:
         self.name = name
+        self.purpose = purpose
         self.per_owner_limit = per_owner_limit
-        self._workers = workers
+        self.workers = workers
         self._low_priority = low_priority
         self._given: SimpleQueue[Callable[[], None]] = SimpleQueue()
         self._threads: list[threading.Thread] = []
@@ -62,7 +68,8 @@ class WorkerPool:
     def submit(self, work: Callable[..., Result], *args: object, owner: object = None) -> Future[Result]:
         """Call `work` as soon as a thread is free; the future has its result or its error.
 
-        Work without an `owner` has no limit. If the future is cancelled before the work begins, the work is not done,
+        Work without an `owner` has no limit. Raises what `Thread.start` raises if the pool has no thread and the system
+        allows none. If the future is cancelled before the work begins, the work is not done,
         and nothing keeps the work or its arguments alive.
         """
         future: Future[Result] = Future()
@@ -94,19 +101,17 @@ class WorkerPool:
             if limited and self._taken[owner] == self.per_owner_limit:
                 self._held.setdefault(owner, deque()).append(do)
             else:
-                self._taken.update([owner] if limited else [])
                 self._give(do)
+                self._taken.update([owner] if limited else [])
         return future
 
     def _give(self, do: Callable[[], None]) -> None:
         """Give work to a free or a new thread, or queue it; called with the lock held."""
-        self._given.put(do)
         if self._free:
             self._free -= 1
-        elif len(self._threads) < self._workers:
-            self._begin()
-        else:
+        elif len(self._threads) == self.workers or not self._begin():
             self.queued += 1
+        self._given.put(do)
 
     def _let_go(self, owners: list[object], do: Callable[[], None]) -> bool:
         """Drop cancelled work that is held because of its owner's limit; return whether it was held.
@@ -134,11 +139,34 @@ class WorkerPool:
             if not self._taken[owner]:
                 del self._taken[owner]
 
-    def _begin(self) -> None:
-        """Start one more thread; called with the lock held."""
+    def _begin(self) -> bool:
+        """Start one more thread; called with the lock held.
+
+        If the system allows no more threads, return False: the threads of the pool do all work, later. Raise the error
+        if the pool has no thread.
+        """
         thread = threading.Thread(target=self._serve, daemon=True, name=f"{self.name} {next(self._numbers)}")
+        try:
+            begin(thread)
+        except Exception:
+            if not self._threads:
+                raise
+            log.warning("the pool %s could not start another thread", self.name, exc_info=True)
+            return False
         self._threads.append(thread)
-        begin(thread)
+        return True
+
+    def _is_replaced(self) -> bool:
+        """Let this thread leave the pool, and start another if work is queued; called with the lock held.
+
+        If no other thread can be started, return False: this thread has to stay, though its priority is lower.
+        """
+        if self.queued:
+            if not self._begin():
+                return False
+            self.queued -= 1
+        self._threads.remove(threading.current_thread())
+        return True
 
     def _serve(self) -> None:
         """Do one piece of work after the other, in a thread.
@@ -152,11 +180,7 @@ class WorkerPool:
             work()
             del work  # otherwise a waiting thread would keep objects of the last session alive
             with self._lock:
-                if has_lower_priority() and not self._low_priority:  # the next work gets a new thread
-                    self._threads.remove(threading.current_thread())
-                    if self.queued:
-                        self.queued -= 1
-                        self._begin()
+                if has_lower_priority() and not self._low_priority and self._is_replaced():
                     return
                 if self.queued:
                     self.queued -= 1
@@ -164,33 +188,41 @@ class WorkerPool:
                     self._free += 1
 
 
-#: One thread for each session that waits for its picture; live steps, energy accounts and drafts of curves are computed
-#: in these threads. Their number is limited because a thread takes memory. The limit is below the largest
-#: `--max-sessions`, since most pages rest.
-SESSION_WORK = WorkerPool("session_work", 1000)
-#: Pictures. There are more threads than cores, because turns decide which threads compute (turns.py), and a picture
-#: that waits for the compiler keeps its thread. If more pictures than this have a thread or wait for one, first
-#: pictures no longer go before refinements.
-PICTURES = WorkerPool("pictures", 200)
-#: Analyses of a picture while the knobs rest: short, and cancelled when a knob moves.
-ANALYSES = WorkerPool("analyses", 8, low_priority=True)
-#: Reading and writing visitors' files, which would hold up everybody on the event loop. The files of one session are
-#: read one by one, so that they cannot take both threads.
-FILES = WorkerPool("files", 2, per_owner_limit=1)
-#: Loading kernels before a session needs them.
-LOADING = WorkerPool("loading", 1)
-#: One thread for each session that waits for its resonance curve. A map waits for a curve that is under way: in one
-#: pool maps could take all threads and wait for curves that have no thread.
-CURVES = WorkerPool("curves", 200)
-#: The computations of these curves. Each uses all cores, which the system divides among them.
-SWEEPS = WorkerPool("sweeps", 8, low_priority=True)
-#: Work that takes minutes: maps, searches for attractors, branches, analyses, figures of the paper, virtual
-#: experiments. One session can start all six, and two sessions could fill the pool; so each has two at a time.
-LONG = WorkerPool("long", 8, low_priority=True, per_owner_limit=2)
-#: Timings and hard cases, one at a time for all sessions, because two timings at once disturb each other.
-MEASUREMENTS = WorkerPool("measurements", 1)
-#: Waiting for processes that compile.
-COMPILATIONS = WorkerPool("compilations", 2)
+#: Their number is limited because a thread takes memory. The limit is below the largest `--max-sessions`, since most
+#: pages rest.
+SESSION_WORK = WorkerPool(
+    "session_work", 1000,
+    "a thread for each session that waits for its main picture; live steps, drafts of the curve, energy accounts")
+#: There are more threads than cores, because turns decide which threads compute (turns.py), and a picture that waits
+#: for the compiler keeps its thread. If more pictures than this have a thread or wait for one, first pictures no longer
+#: go before refinements.
+PICTURES = WorkerPool("pictures", 200, "the main pictures, for all sessions that wait; the Observer page, without a "
+                                       "turn")
+#: Short work, which is cancelled when a knob moves.
+ANALYSES = WorkerPool(
+    "analyses", 8,
+    "while the knobs rest: Stability, pinned motions, the motion of a story's step, the names of peaks, where a "
+    "measured series lies over the picture", low_priority=True)
+#: On the event loop this work would hold up everybody. The files of one session are read one by one, so that they
+#: cannot take both threads.
+FILES = WorkerPool("files", 2, "reading a measurement, writing an export", per_owner_limit=1)
+LOADING = WorkerPool("loading", 1, "kernels loaded before a session needs them")
+#: A map waits for a curve that is under way: in one pool maps could take all threads and wait for curves that have no
+#: thread.
+CURVES = WorkerPool("curves", 200, "a thread for each session that waits for its resonance curve, or for that of a "
+                                   "pinned picture")
+#: Each computation uses all cores, which the system divides among them.
+SWEEPS = WorkerPool(
+    "sweeps", 8, "the resonance curves, and frequencies for the names of peaks, for all sessions that wait",
+    low_priority=True)
+#: One session could start all of this work, and two sessions could fill the pool; so each has a limit.
+LONG = WorkerPool(
+    "long", 8,
+    "parameter maps, searches for attractors, branches, analyses, figures of the paper, virtual experiments",
+    low_priority=True, per_owner_limit=2)
+#: One at a time for all sessions, because two timings at once disturb each other.
+MEASUREMENTS = WorkerPool("measurements", 1, "timings of Accuracy and Effects, and hard cases")
+COMPILATIONS = WorkerPool("compilations", 2, "waiting for processes that compile kernels")
 
 #: All pools.
 POOLS = (SESSION_WORK, PICTURES, ANALYSES, FILES, LOADING, CURVES, SWEEPS, LONG, MEASUREMENTS, COMPILATIONS)

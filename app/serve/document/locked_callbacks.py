@@ -6,7 +6,6 @@ Bokeh creates, wraps, stores, announces and removes its callbacks one by one, wh
 from __future__ import annotations
 
 import asyncio
-import logging
 import threading
 from collections import deque
 from collections.abc import Callable
@@ -23,10 +22,8 @@ except ImportError:  # it is not in Panel's documentation
     set_curdoc = None  # type: ignore[assignment]
 
 from ...library_internals import Internal, internals
-from ..monitoring.metrics import METRICS
+from ..monitoring.faults import log_fault, new_fault_id
 from .changes import batched_changes
-
-log = logging.getLogger("granchain.page")
 
 _WITHOUT = "Bokeh calls back each action by itself, some milliseconds slower"
 #: What is used of Bokeh and Panel beyond their documentation.
@@ -85,9 +82,8 @@ def _act(session: Any, actions: list[Callable[[], None]]) -> list[Any]:
             for action in actions:
                 try:
                     action()
-                except Exception:
-                    METRICS.count("errors")
-                    log.exception("an action failed")
+                except Exception as error:
+                    log_fault(error, new_fault_id(), "an action failed")
     finally:
         pending, session._pending_writes = session._pending_writes, None
     return list(pending)

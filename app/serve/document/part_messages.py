@@ -15,10 +15,14 @@ from bokeh.document import Document
 from .locked_callbacks import can_lock, run_locked
 
 Receive = Callable[[dict[str, Any]], None]
+#: Calls a part with a message, and reports its error to the visitor.
+Call = Callable[[Receive, dict[str, Any]], None]
 
 _NUMBERS = {"nan": float("nan"), "inf": float("inf"), "+inf": float("inf"), "-inf": float("-inf")}
 #: The receiver of a part's messages, by document and model id.
 _RECEIVERS: weakref.WeakKeyDictionary[Document, dict[str, weakref.WeakMethod[Receive]]] = weakref.WeakKeyDictionary()
+#: By document: how its receivers are called.
+_CALLS: weakref.WeakKeyDictionary[Document, weakref.WeakMethod[Call]] = weakref.WeakKeyDictionary()
 
 
 class _NotAPartMessage(Exception):
@@ -28,6 +32,11 @@ class _NotAPartMessage(Exception):
 def register(document: Document, model: str, receive: Receive) -> None:
     """Pass the messages of the model with this id to a method of a part; the part is not kept alive."""
     _RECEIVERS.setdefault(document, {})[model] = weakref.WeakMethod(receive)
+
+
+def call_with(document: Document, call: Call) -> None:
+    """Have receivers of this document called by a method, which handles their errors; it is not kept alive."""
+    _CALLS[document] = weakref.WeakMethod(call)
 
 
 def dispatch(session: Any, content: dict[str, Any]) -> bool:
@@ -44,7 +53,8 @@ def dispatch(session: Any, content: dict[str, Any]) -> bool:
     receive = known[model]() if model in known else None
     if receive is None:
         return False
-    run_locked(session, [partial(receive, message)])
+    call = _CALLS[session.document]() if session.document in _CALLS else None
+    run_locked(session, [partial(receive, message) if call is None else partial(call, receive, message)])
     return True
 
 

@@ -20,6 +20,7 @@ from ...library_internals import Internal, internals
 from ..monitoring.metrics import METRICS
 from .health import HANDLERS
 from .limits import RETRY_AFTER
+from .proxy_headers import read_proxy_headers
 from .rules import Rules
 
 log = logging.getLogger("granchain.requests")
@@ -36,8 +37,8 @@ INTERNALS = internals(
              "a server with as many sessions as it may have also refuses to sign visitors in or out"),
 )
 
-#: Bokeh's addresses that our page does not use; the first would make a session. In Bokeh's pattern, as in this one, the
-#: dot stands for any letter.
+#: Bokeh's addresses that our page does not use; the first would make a session. The dot matches any character, as in
+#: Bokeh's pattern, so that every address that Bokeh's route accepts is refused.
 _UNUSED_ADDRESSES = re.compile(r"/(autoload.js|metadata)/?")
 #: Whether the request that is being answered has passed a guard. A page is made in the context of its request.
 _IS_GUARDED: ContextVar[bool] = ContextVar("is_guarded", default=False)
@@ -59,12 +60,14 @@ class Guard(RequestHandler):
 
     async def prepare(self) -> None:
         """Refuse a request that is not allowed; then let the handler prepare its answer."""
+        if self.rules.proxy:
+            read_proxy_headers(self.request, self.rules.proxy_header)
         self.check_request()
         self.admit()
         _IS_GUARDED.set(True)
-        looked = super().prepare()
-        if looked is not None:
-            await looked
+        pending = super().prepare()
+        if pending is not None:
+            await pending
 
     def check_request(self) -> None:
         """Raise `HTTPError` if the request is not allowed."""
@@ -116,7 +119,7 @@ def _opens_page(handler: RequestHandler) -> bool:
     """Whether a request may open a page. Without Bokeh's class of such handlers, every unknown handler may."""
     if SessionHandler is not None:
         return isinstance(handler, SessionHandler)
-    return not isinstance(handler, (StaticFileHandler, WebSocketHandler, *HANDLERS))
+    return not isinstance(handler, (StaticFileHandler, WebSocketHandler, *HANDLERS.values()))
 
 
 def is_guarded() -> bool:

@@ -29,9 +29,9 @@ log = logging.getLogger("granchain.requests")
 
 #: Status of a websocket that is closed because of what the client did (RFC 6455, section 7.4.1).
 _POLICY_VIOLATION = 1008
-#: Most unread bytes when another message is written. Two pictures of the longest chain with the most rows, in flight to
-#: a slow browser, have a little less; other pictures have a hundredth.
-MOST_UNREAD = 64_000_000
+#: Most bytes that wait to be sent when another message is written. Two pictures of the longest chain with the most
+#: rows, in flight to a slow browser, have a little less; other pictures have a hundredth.
+MOST_UNSENT = 64_000_000
 
 
 class GuardedSocket(Guard):
@@ -43,8 +43,8 @@ class GuardedSocket(Guard):
     _fragments: tuple[str, ...] = ()
     _refused = False
     _left = False
-    #: Bytes that were written and that the client has not read yet.
-    _unread = 0
+    #: Bytes that were written and that the operating system has not taken yet.
+    _unsent = 0
     #: The session whose token came with the request, and the same session once it has its connection.
     _offered = _session_id = ""
     _has_connection = False
@@ -93,9 +93,10 @@ class GuardedSocket(Guard):
         return self.rules.sessions.find(self._session_id) if self._session_id else None
 
     def detach(self) -> IOStream:
-        """The stream of the websocket, which too many frames or too many unread bytes close.
+        """The stream of the websocket, which too many frames or too many unsent bytes close.
 
-        Bytes count as unread until the operating system has taken them. Answers to pings count, too.
+        Bytes count as unsent until the operating system has taken them, which it does as long as the client reads.
+        Answers to pings count, too.
         """
         stream: IOStream = super().detach()
         read, write, bucket = stream.read_bytes, stream.write, FrameBucket(time.monotonic())
@@ -109,25 +110,25 @@ class GuardedSocket(Guard):
             return data
 
         def write_and_count(data: bytes | memoryview) -> Future[None]:
-            if self._unread > MOST_UNREAD:
-                self._refuse("too much that is not read")
-                stream.close()  # a closing frame would wait behind the unread bytes
+            if self._unsent > MOST_UNSENT:
+                self._refuse("too much that waits to be sent")
+                stream.close()  # a closing frame would wait behind the unsent bytes
                 unwritten: Future[None] = Future()
                 unwritten.set_exception(StreamClosedError())
                 unwritten.exception()  # mark it as retrieved: not every writer awaits the future
                 return unwritten
             written = write(data)
             if not written.done():
-                self._unread += len(data)
-                written.add_done_callback(lambda _: self._was_read(len(data)))
+                self._unsent += len(data)
+                written.add_done_callback(lambda _: self._was_sent(len(data)))
             return written
 
         stream.read_bytes = read_and_count  # type: ignore[method-assign]
         stream.write = write_and_count  # type: ignore[method-assign]
         return stream
 
-    def _was_read(self, length: int) -> None:
-        self._unread -= length
+    def _was_sent(self, length: int) -> None:
+        self._unsent -= length
 
     def on_message(self, fragment: str | bytes) -> Awaitable[None] | None:
         """Pass whole messages on; a message that no page sends closes the connection."""

@@ -9,10 +9,8 @@ from tornado.web import HTTPError, RequestHandler
 
 from ..monitoring.metrics import METRICS
 from .limits import RETRY_AFTER
+from .proxy_headers import UNKNOWN
 from .rules import Rules
-
-#: Tornado's address of an unknown client. `ipaddress` calls it private, so it is refused by name.
-_UNKNOWN = "0.0.0.0"
 
 
 class Liveness(RequestHandler):
@@ -29,12 +27,14 @@ class Readiness(RequestHandler):
     rules: Rules
 
     def get(self) -> None:
-        """Answer `{"/readiness": true}`, or false with status 503."""
-        full = self.rules.sessions.full
-        if full:
-            self.set_status(503)
-            self.set_header("Retry-After", random.randint(*RETRY_AFTER))
-        self.write({"/readiness": not full})
+        """Answer `{"/readiness": true}`, or false with status 503 and the reason."""
+        sessions = self.rules.sessions
+        if not sessions.full:
+            self.write({"/readiness": True})
+            return
+        self.set_status(503)
+        self.set_header("Retry-After", random.randint(*RETRY_AFTER))
+        self.write({"/readiness": False, "reason": f"all {sessions.most} places for sessions are taken"})
 
 
 class MetricsHandler(RequestHandler):
@@ -42,11 +42,13 @@ class MetricsHandler(RequestHandler):
 
     def get(self) -> None:
         """Answer this machine and private networks with the metrics."""
-        asking = ipaddress.ip_address(self.request.remote_ip or _UNKNOWN)
+        asking = ipaddress.ip_address(self.request.remote_ip or UNKNOWN)
+        # `ipaddress` calls the unknown address private, so it is refused by name
         if asking.is_unspecified or not asking.is_private:
             raise HTTPError(403, "metrics are for private addresses")
         self.set_header("Content-Type", "text/plain; version=0.0.4; charset=utf-8")
         self.write(METRICS.text())
 
 
-HANDLERS = (Liveness, Readiness, MetricsHandler)
+#: The handlers by address; a new health check is one more row.
+HANDLERS: dict[str, type[RequestHandler]] = {"/liveness": Liveness, "/readiness": Readiness, "/metrics": MetricsHandler}

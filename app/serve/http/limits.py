@@ -1,4 +1,4 @@
-"""Limits of sessions and uploads that several modules need.
+"""Limits of sessions and uploads, and names of headers, that several modules need.
 
 The other limits of docs/security.md are beside what they limit: frame_rate.py, guarded_socket.py, sessions.py,
 message_rules.py, app/server.py, app/session/share.py and app/session/budget.py. This module imports nothing, because
@@ -15,3 +15,5 @@ RETRY_AFTER = (20, 60)
 LARGEST_UPLOAD = 2_000_000
 #: Most points of a measurement.
 MOST_UPLOADED_POINTS = 20_000
+#: Headers in which a proxy may name the visitor's address.
+ADDRESS_HEADERS = ("X-Real-IP", "X-Forwarded-For")

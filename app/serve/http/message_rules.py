@@ -20,7 +20,8 @@ TYPES = ("number", "array", "set", "map", "event")
 #: Properties that BokehJS reports for the figures of our page: their sizes in pixels (the browser tests collect them).
 #: The figures have no tool that moves a range or selects points, and the parts of Panel change no property.
 REPORTED_PROPERTIES = frozenset({"inner_width", "inner_height", "outer_width", "outer_height"})
-#: Most characters of a content without a file. The longest content of a page has a link of at most 4500 characters.
+#: Most characters of a content without a file. The longest content of a page has a link of at most `LONGEST` characters
+#: (app/session/share.py).
 LARGEST_PLAIN_CONTENT = 100_000
 #: Most characters of a header, and of metadata; BokehJS writes an id and a kind.
 LARGEST_HEADER = 1000

@@ -23,6 +23,9 @@ class Rules:
     secret: bytes = field(default=b"", repr=False)
     #: Origins at IPv6 addresses, which Bokeh's own option refuses.
     origins: frozenset[str] = frozenset()
+    #: Whether a proxy is in front of the server, and the header in which it names the visitor's address, if given.
+    proxy: bool = False
+    proxy_header: str = ""
 
     def headers(self) -> dict[str, str]:
         """The headers of every answer.

@@ -22,8 +22,7 @@ class Sessions:
 
     A session is *loading* from the request of its page until its websocket connects. A client that fetches pages and
     never connects would soon take all places. So loading pages have at most half of the places, and the oldest loading
-    page makes room for a new one. With fewer places, many visitors who open the page in the same seconds would lose
-    theirs.
+    page makes room for a new one. A smaller share would evict visitors who open the page at the same moment.
     """
 
     def __init__(self, most: int) -> None:

@@ -1,4 +1,4 @@
-"""The server's log: JSON lines on standard error, with the id of the request if there is one."""
+"""The server's log: JSON lines on standard error, with the id of the request or of the fault if there is one."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ INTERNALS = internals(
 )
 
 #: Fields that a line may have besides time, level, logger and message.
-_FIELDS = ("request", "path", "remote")
+_FIELDS = ("request", "path", "remote", "fault")
 
 
 class JsonFormatter(logging.Formatter):
     """A record as one line of JSON."""
 
     def format(self, record: logging.LogRecord) -> str:
-        """Time in UTC, level, logger, message, the fields of the request, and the failure."""
+        """Time in UTC, level, logger, message, the fields of the request or the id of the fault, and the failure."""
         line = {"time": time.strftime("%Y-%m-%dT%H:%M:%S", time.gmtime(record.created)) + f".{int(record.msecs):03d}Z",
                 "level": record.levelname.lower(), "logger": record.name, "message": record.getMessage()}
         line.update((name, getattr(record, name)) for name in _FIELDS if hasattr(record, name))

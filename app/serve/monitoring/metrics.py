@@ -11,6 +11,8 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Literal, NamedTuple
 
+from granchain_core.version import __version__
+
 from .process import cpu_seconds, most_descriptors, open_descriptors, os_threads, resident_memory, start_time
 
 #: Upper bounds of the histogram of answers [s].
@@ -34,8 +36,8 @@ COUNTERS = {
     "cancelled": "Computations of pictures that were cancelled.",
     "refused_sessions": "Sessions refused because there were as many as `--max-sessions`.",
     "refused_pictures": "Pictures refused because they would take too long.",
-    "refused_messages": "Messages that no page sends, too many frames, and too much that is not read; each closed its "
-                        "connection.",
+    "refused_messages": "Messages that no page sends, too many frames, and too much that waits to be sent; each closed "
+                        "its connection.",
     "errors": "Unexpected failures; each is in the log.",
 }
 
@@ -137,6 +139,8 @@ class Metrics:
     def table(self) -> list[Metric]:
         """All metrics but the histogram."""
         return [
+            Metric("build_info", "gauge", "Always 1; the label says which release of granchain answers.",
+                   lambda: {__version__: 1}, "version"),
             Metric("sessions", "gauge", "Sessions: pages that are open.", lambda: self.sessions),
             Metric("sessions_opened_total", "counter", "Sessions opened.", lambda: self.opened),
             *(Metric(f"{name}_total", "counter", text, partial(self.counted.__getitem__, name))

@@ -11,9 +11,10 @@ from collections.abc import Callable, Iterator
 import pytest
 import waiting
 
+from app.serve.computing import priorities
 from app.serve.computing.cpu_time import CpuTime
 from app.serve.computing.latest_wins import LatestWins
-from app.serve.computing.priorities import has_lower_priority, lower_priority
+from app.serve.computing.priorities import begin, has_lower_priority, lower_priority
 from app.serve.computing.turns import TurnFlag, Turns
 from app.serve.computing.worker_pools import WorkerPool
 
@@ -98,3 +99,58 @@ def test_the_thread_of_the_event_loop_never_gives_way() -> None:
     before = niceness() if sys.platform == "linux" else 0
     lower_priority()
     assert not has_lower_priority() and (sys.platform != "linux" or niceness() == before)
+
+
+class Failing(threading.Thread):
+    """A thread that the system does not allow."""
+
+    def start(self) -> None:
+        """Fail as `Thread.start` does."""
+        raise RuntimeError("can't start new thread")
+
+
+@linux
+def test_a_thread_that_cannot_be_started_is_an_error_and_the_next_one_starts() -> None:
+    def starts() -> tuple[str, int]:
+        lower_priority()
+        try:
+            begin(Failing())
+        except RuntimeError as problem:
+            said = str(problem)
+        found = list[int]()
+        thread = threading.Thread(target=lambda: found.append(niceness()))
+        begin(thread)
+        thread.join(60)
+        return said, found[0]
+
+    assert WorkerPool("test", 1).submit(starts).result(60.0) == ("can't start new thread", niceness())
+
+
+@linux
+def test_the_priority_stays_where_nothing_could_start_threads_of_usual_priority(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(priorities, "_STARTER", priorities._Starter())
+    pool = WorkerPool("test", 1)
+    assert pool.submit(int).result(60.0) == 0
+    with monkeypatch.context() as full:
+        full.setattr(threading.Thread, "start", Failing.start)
+        assert pool.submit(lambda: (lower_priority(), has_lower_priority())[1]).result(60.0) is False
+    assert pool.submit(lambda: (lower_priority(), has_lower_priority())[1]).result(60.0) is True
+
+
+@linux
+def test_work_behind_a_thread_of_lower_priority_is_done_by_it_where_no_other_can_be_started(monkeypatch: pytest.MonkeyPatch) -> None:
+    pool, begun, go = WorkerPool("test", 1), threading.Event(), threading.Event()
+
+    def long() -> None:
+        begun.set()
+        assert go.wait(60.0)
+        lower_priority()
+
+    pool.submit(long)
+    assert begun.wait(60.0)
+    last = pool.submit(threading.get_native_id)
+    monkeypatch.setattr("app.serve.computing.worker_pools.begin", lambda thread: Failing().start())
+    go.set()
+    assert last.result(60.0) > 0
+    waiting.until(lambda: pool.busy_threads == 0)
+    assert pool.queued == 0

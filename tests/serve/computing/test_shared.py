@@ -141,3 +141,17 @@ def test_nothing_is_delivered_to_a_visitor_who_left() -> None:
     gone.set()
     until(lambda: not jobs.busy)
     assert delivered == [] and not went_on.is_set()
+
+
+def test_a_computation_whose_thread_could_not_be_started_is_not_under_way(monkeypatch: pytest.MonkeyPatch) -> None:
+    one = shared()
+    with monkeypatch.context() as full:
+        full.setattr("app.serve.computing.worker_pools.begin", fails)
+        with pytest.raises(RuntimeError, match="new thread"):
+            next(one.follow("key", lambda _: iter([1]), Flag(), CpuTime()))
+    assert (one.hits, one.misses) == (0, 0)
+    assert list(one.follow("key", lambda _: iter([2]), Flag(), CpuTime())) == [2]
+
+
+def fails(_: threading.Thread) -> None:
+    raise RuntimeError("can't start new thread")

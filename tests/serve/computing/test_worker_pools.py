@@ -11,7 +11,7 @@ import pytest
 import waiting
 
 from app.serve.computing import worker_pools
-from app.serve.computing.latest_wins import LatestWins
+from app.serve.computing.latest_wins import LatestWins, _Alarms
 from app.serve.computing.worker_pools import WorkerPool
 
 pytestmark = pytest.mark.quick
@@ -152,3 +152,61 @@ def test_work_beyond_a_share_is_counted_as_held() -> None:
 
 def test_all_pools_are_in_the_metrics() -> None:
     assert set(worker_pools.POOLS) == {one for one in vars(worker_pools).values() if isinstance(one, WorkerPool)}
+
+
+class NoThreads:
+    """A system that allows no more threads while `full`."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, full: bool = True) -> None:
+        self.full = full
+        start = threading.Thread.start
+
+        def started(thread: threading.Thread) -> None:
+            if self.full:
+                raise RuntimeError("can't start new thread")
+            start(thread)
+
+        monkeypatch.setattr(threading.Thread, "start", started)
+
+
+@pytest.mark.parametrize("limit", [None, 1])
+def test_a_pool_that_could_not_start_its_first_thread_does_the_next_work(limit: int | None, monkeypatch: pytest.MonkeyPatch) -> None:
+    pool, system, owner = WorkerPool("tested", 1, per_owner_limit=limit), NoThreads(monkeypatch), object()
+    with pytest.raises(RuntimeError, match="new thread"):
+        pool.submit(int, owner=owner)
+    assert (pool.queued, pool.held, pool.busy_threads) == (0, 0, 0)
+    system.full = False
+    assert pool.submit(int, owner=owner).result(60) == 0
+    waiting.until(lambda: pool.busy_threads == 0)
+
+
+def test_where_no_other_thread_can_be_started_the_threads_there_are_do_all_work(monkeypatch: pytest.MonkeyPatch) -> None:
+    pool, go_on, system = WorkerPool("tested", 3), threading.Event(), NoThreads(monkeypatch, full=False)
+    first = pool.submit(go_on.wait, 120)
+    system.full = True
+    others = [pool.submit(int) for _ in range(3)]
+    assert (pool.busy_threads, pool.queued) == (1, 3)
+    go_on.set()
+    assert first.result(60) and [one.result(60) for one in others] == [0, 0, 0]
+    waiting.until(lambda: pool.busy_threads == 0)
+    assert pool.queued == 0
+
+
+def test_a_session_whose_thread_could_not_be_started_gets_its_next_picture(monkeypatch: pytest.MonkeyPatch) -> None:
+    found = list[object]()
+    monkeypatch.setattr("app.serve.computing.latest_wins.SESSION_WORK", WorkerPool("tested", 2))
+    jobs, system = LatestWins(found.append, lambda error: pytest.fail(str(error))), NoThreads(monkeypatch)
+    with pytest.raises(RuntimeError, match="new thread"):
+        jobs.submit(lambda _: iter(["lost"]))
+    assert not jobs.busy
+    system.full = False
+    jobs.submit(lambda _: iter(["next"]))
+    waiting.until(lambda: found == ["next"])
+
+
+def test_an_alarm_whose_thread_could_not_be_started_rings_with_the_next_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    later, rung, system = _Alarms(), list[int](), NoThreads(monkeypatch)
+    later(0.0, rung.append, 1)
+    system.full = False
+    later(0.0, rung.append, 2)
+    waiting.until(lambda: rung == [1, 2])

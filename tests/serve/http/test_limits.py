@@ -56,13 +56,12 @@ def test_the_limits_of_the_document_are_those_of_the_code() -> None:
                                f"{LARGEST_PLAIN_CONTENT // 1000} kB without a file",
         "websocket frames": f"{FRAME_RATE:g} a second, {FRAME_BURST:g} at once, of any kind; one counts once more for every {FRAME_UNIT // 1000} kB "
                             "of it; beyond that the connection is closed (1008)",
-        "what a websocket has not read": f"{guarded_socket.MOST_UNREAD // 1_000_000} MB when another message is to be sent, as two pictures of the longest "
+        "bytes that wait to be sent to a page": f"{guarded_socket.MOST_UNSENT // 1_000_000} MB when another message is to be sent, as two pictures of the longest "
                                          "chain; beyond that the connection is closed",
         "a page that is being loaded": f"{server.UNCONNECTED_MS // 1000} s; at most half of the sessions",
         "a link": f"{LONGEST} characters",
         "sessions at once": f"{Access().max_sessions}",
-        "long computations of a visitor at once": f"{LONG.per_owner_limit} (parameter maps, searches, branches, analyses, figures of the paper, virtual "
-                                                  "experiments); more wait",
+        "long computations of a visitor at once": f"{LONG.per_owner_limit} ({LONG.purpose}); more wait",
         "first picture, steady state": f"{FIRST_PICTURE:g} s (estimated), {WHOLE_PICTURE:g} s of processor time",
         "pictures and curves kept for all visitors": f"{PICTURES_SHARED.memory / 1e6:g} MB and {CURVES_SHARED.memory / 1e6:g} MB",
     } == {limit: value for limit, (value, _) in LIMITS.items()}
@@ -217,7 +216,7 @@ def test_as_many_frames_as_are_allowed_at_once_are_taken(kind: str, dashboard: L
 
 def test_a_page_that_does_not_read_is_closed(monkeypatch: pytest.MonkeyPatch) -> None:
     """It may answer pings meanwhile. Its frames are within all limits, and their answers would fill the memory."""
-    monkeypatch.setattr(guarded_socket, "MOST_UNREAD", 100_000)
+    monkeypatch.setattr(guarded_socket, "MOST_UNSENT", 100_000)
     monkeypatch.setattr(frame_rate, "FRAME_RATE", 1e6)
     monkeypatch.setattr(frame_rate, "FRAME_BURST", 1e6)
     one = Listening(Access(secret=SECRET))

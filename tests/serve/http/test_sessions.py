@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import logging
 import time
 from collections.abc import Iterator
@@ -81,7 +82,7 @@ def test_there_are_at_most_so_many_sessions(caplog: pytest.LogCaptureFixture) ->
         caplog.clear()
         with caplog.at_level(logging.DEBUG, "granchain.requests"):
             status, headers, text = one.ask("/readiness")
-        assert status == 503 and text == '{"/readiness": false}' and 20 <= int(headers["Retry-After"]) <= 60
+        assert status == 503 and json.loads(text) == {"/readiness": False, "reason": "all 2 places for sessions are taken"} and 20 <= int(headers["Retry-After"]) <= 60
         assert caplog.messages == [], "waiting pages ask again and again"
         for _, each in there:
             each.close()

@@ -24,7 +24,7 @@ from app.serve.computing.worker_pools import (
     WorkerPool,
 )
 from app.serve.monitoring.metrics import COUNTERS, FORMER_NAMES, METRICS, Metric, Metrics
-from granchain_core import Stop
+from granchain_core import Stop, __version__
 
 ROOT = Path(__file__).parents[3]
 
@@ -120,6 +120,10 @@ def test_each_pool_has_its_own_gauges() -> None:
     for pool in POOLS:
         assert shown(f'pool_busy_threads{{pool="{pool.name}"}}') >= 0.0
         assert shown(f'pool_queued{{pool="{pool.name}"}}') >= 0.0
+
+
+def test_the_release_that_answers_is_named() -> None:
+    assert shown(f'build_info{{version="{__version__}"}}') == 1.0
 
 
 def test_what_was_renamed_is_found_as_it_was_called() -> None:
