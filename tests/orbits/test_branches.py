@@ -10,7 +10,7 @@ import pytest
 from chains import scaled
 
 import granchain_core
-from granchain_core import BadInput, ComputationError, Scene, State, orbit, run, scene, settle
+from granchain_core import BadInput, ComputationError, Scene, State, branch, orbit, run, scene, settle
 from granchain_core.orbits import (
     Branch,
     BranchPoint,
@@ -130,6 +130,17 @@ def test_a_doubling_has_a_doubled_branch_that_leads_to_the_next_one(doubling: Br
     settled_there = settle(found.axis.scene_at(middle.knob).evolve(accuracy=_ASKED))
     assert settled_there.regime.period == 2
     assert settled_there.run.max_output_force_elastic == pytest.approx(middle.max_output_force_elastic, rel=1e-5)
+
+
+def test_doublings_beside_grazings_bound_one_doubled_branch() -> None:
+    """The normal forms have coefficients of some thousands: only orbits very near the doubling are found from it."""
+    valley = branch(scene("sec2"), "f", 390.0, 402.0, 1)
+    lower, upper = (s for s in valley.special if s.kind == "period_doubling")
+    doubled = Continuation(switch_to_doubled(valley, upper)).run()
+    assert lower.knob == pytest.approx(396.11, abs=0.01) and upper.knob == pytest.approx(400.917, abs=0.01)
+    assert doubled.half_branches[0].ended == "merged" and all(p.stable for p in doubled.points)
+    assert doubled.special[-1].knob == pytest.approx(lower.knob, abs=0.01)
+    switch_to_doubled(valley, lower)
 
 
 def test_between_doublings_the_disturbed_chain_leaves_its_orbit(doubling: Branch) -> None:

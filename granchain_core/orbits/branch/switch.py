@@ -16,8 +16,9 @@ from .half_branch import HalfBranch
 from .point import branch_point
 from .special import SpecialPoint
 
-#: Distances ε along the eigenvector that are tried, in arclength.
-_DISTANCES = (0.02, 0.005, 0.05, 0.001)
+#: Distances ε along the eigenvector that are tried, in arclength. The knob changes by about ε² times the coefficient of
+#: the normal form. Next to grazings that coefficient is large, and only the last distances are small enough.
+_DISTANCES = (0.02, 0.005, 0.05, 0.001, 1e-4, 3e-5)
 #: Largest change of the knob's coordinate: of order ε², but possibly with a large factor.
 _LARGEST_KNOB_CHANGE = 0.3
 #: Smallest difference of the orbit's halves, relative to the one expected from ε.
