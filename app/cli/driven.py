@@ -27,9 +27,6 @@ def do_driven(arguments: argparse.Namespace, chosen: Scene) -> None:
     """Run a scene with the signal of --drive in place of its own drive."""
     from granchain_core import drive
     from granchain_core.experiment import Sensors, compared_forces
-    from granchain_core.experiment.sensors import SAMPLES_PER_BANDWIDTH
-    from granchain_core.prescribed_drive.signal import MOST_KNOTS
-    from granchain_core.results.recorded_motion import MOST_RECORDED
     from granchain_core.store import check_writable
 
     for option, usual in PERIODIC.items():
@@ -45,10 +42,8 @@ def do_driven(arguments: argparse.Namespace, chosen: Scene) -> None:
         say(f"The chain begins in {begin.words}; the driver begins at {begin.displacement:.4g} m.")
         signal = signal.shifted(begin.displacement)
     say(f"The driver moves by {signal.words}: {len(signal.time)} knots, {signal.time[-1] - signal.time[0]:.4g} s.")
-    if sensors.filters:  # the computed forces pass a filter, which needs them between the samples too
-        knots = min(MOST_RECORDED // chosen.N, MOST_KNOTS) - len(signal.time)
-        duration = float(signal.time[-1] - signal.time[0])
-        signal = signal.finer(max(1.0 / (SAMPLES_PER_BANDWIDTH * sensors.bandwidth), duration / max(1, knots)))
+    if sensors.filters:
+        signal = _fine_enough(signal, chosen, sensors)
     start = None if begin is None else begin.state
     found = in_background(lambda stop: drive(chosen, signal, start, stop=stop))
     if found.status != "done":
@@ -66,6 +61,22 @@ def do_driven(arguments: argparse.Namespace, chosen: Scene) -> None:
                    "bandwidth": sensors.bandwidth if sensors.filters else None})
     else:
         _show(found, differences)
+
+
+def _fine_enough(signal: Signal, chosen: Scene, sensors: Sensors) -> Signal:
+    """The signal with the knots at which the low-pass of the sensors needs forces; fewer, with a sentence, if a record
+    of this chain cannot hold so many."""
+    from granchain_core.experiment.sensors import SAMPLES_PER_BANDWIDTH
+    from granchain_core.prescribed_drive.signal import MOST_KNOTS
+    from granchain_core.results.recorded_motion import MOST_RECORDED
+
+    needed = 1.0 / (SAMPLES_PER_BANDWIDTH * sensors.bandwidth)
+    knots = min(MOST_RECORDED // chosen.N, MOST_KNOTS) - len(signal.time)
+    finest = float(signal.time[-1] - signal.time[0]) / max(1, knots)
+    if finest > needed:
+        say(f"The low-pass of {sensors.bandwidth:g} Hz needs forces {needed:.3g} s apart; with {chosen.N} beads this "
+            f"record holds them {finest:.3g} s apart, so the comparison is less exact. A shorter record would do.")
+    return signal.finer(max(needed, finest))
 
 
 def chosen_signal(arguments: argparse.Namespace, chosen: Scene) -> tuple[Signal, Series | None]:

@@ -19,10 +19,11 @@ from bokeh.plotting import figure
 
 import granchain
 from app.cli import main
+from app.cli.driven import _fine_enough
 from granchain_core import BadInput, Driven, Run, Signal, drive, run, scene
 from granchain_core.errors import Cancelled
 from granchain_core.execution.stop import Stop
-from granchain_core.experiment import Series, read_experiment
+from granchain_core.experiment import Sensors, Series, read_experiment
 from granchain_core.prescribed_drive.moved_chain import MovedChain
 from granchain_core.prescribed_drive.signal import KNOTS
 from granchain_core.scene.state import rest
@@ -351,3 +352,13 @@ def test_a_raised_flag_ends_a_long_chain_within_milliseconds_of_work() -> None:
     with pytest.raises(Cancelled):
         chain.run(rest(chain.scaled.scene), 0)
     assert chain.counts.steps <= most
+
+
+def test_a_record_too_long_for_the_low_pass_is_said(capsys: pytest.CaptureFixture[str]) -> None:
+    """Of 5,000 beads a record holds 10,000 instants: 0.1 s of a 1 kHz sensor needs 12,800."""
+    signal, sensors = sine(1e-7, 100.0, 10.0), Sensors(bandwidth=1000.0)
+    short = _fine_enough(signal, scene("sec2").evolve(N=11), sensors)
+    assert np.diff(short.time).max() <= 1.0 / 128_000.0 * (1.0 + 1e-9) and capsys.readouterr().err == ""
+    long = _fine_enough(signal, scene("sec2").evolve(N=5000), sensors)
+    assert len(long.time) <= 10_000
+    assert "needs forces 7.81e-06 s apart" in capsys.readouterr().err

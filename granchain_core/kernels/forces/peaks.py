@@ -12,7 +12,7 @@ from ..simd.vector import blank, load_batch, positive_mask, store
 ROWS = 5
 
 #: The quartic's maximum is at most this factor times the largest of its values, since only smooth peaks are
-#: interpolated (`choose_peak`). The largest factor of ten million random peaks was 1.06.
+#: interpolated (`choose_peak`). The largest factor of ten million random peaks was 1.055.
 HIGHEST = 1.25
 
 #: An array of peaks: for each of the three forces its `ROWS` values, the largest first, ...
