@@ -21,9 +21,21 @@ from ..kernels.batch.begin import (
     coarse_contraction,
     orbits_until_checked,
 )
-from ..kernels.batch.checks import check_member
+from ..kernels.batch.checks import begin_or_check_member
 from ..kernels.batch.record import MAXIMA, STROBES_KEPT
-from ..kernels.batch.run import IS_NEIGHBOUR, NO_NEIGHBOUR, BatchState, Members, run_batch
+from ..kernels.batch.run import run_batch
+from ..kernels.batch.state import (
+    IS_NEIGHBOUR,
+    NO_NEIGHBOUR,
+    BatchState,
+    Members,
+    Motion,
+    Pairs,
+    Record,
+    Schedule,
+    Search,
+    Work,
+)
 from ..kernels.batch.unequal import Unequal
 from ..kernels.batch_size import BATCH_SIZE
 from ..kernels.compiling.by_address import address_of
@@ -70,6 +82,40 @@ def _slots_of_members(scaled: ScaledChain) -> Slots:
                    for slot in effects))
 
 
+def _integers() -> np.ndarray:
+    return np.zeros(BATCH_SIZE, dtype=np.int64)
+
+
+def _numbers(*shape: int) -> np.ndarray:
+    return np.zeros((BATCH_SIZE, *shape))
+
+
+def _empty_state(beads: int) -> BatchState:
+    """The arrays of a batch whose chains have so many beads."""
+    bodies = beads + 2
+    rows, contacts = 2 * bodies, beads + 1
+    return BatchState(
+        Motion(y=_rows(rows), h=_rows(1), phase=_rows(2), half_step=_rows(2), overlaps=_rows(contacts),
+               static_overlap=_rows(contacts), end_contacts=_rows(4), peaks=_rows(BATCH_PEAKS),
+               stages=(_rows(rows), _rows(rows), _rows(rows))),
+        Schedule(begins=_integers(), drive_period=_numbers(), steps=_integers(), steps_left=_integers(),
+                 fine_steps=_integers(), next_check=_integers(), return_at=_integers(), due=_integers()),
+        Record(periods=_integers(), strobes=_numbers(2 * STROBES_KEPT, 2, bodies), strobe_count=_integers(),
+               first_strobe=np.zeros((2, BATCH_SIZE), dtype=np.int64), maxima=_numbers(STROBES_KEPT, MAXIMA)),
+        Search(extrapolate_from=_integers(), wait_after_undo=_integers(), slowest_contraction=_numbers(),
+               contraction_before=_numbers(), change_before=_numbers(), tested_period=_integers(),
+               state_before=_numbers(2, bodies), last_check=_numbers(CHECK_COLUMNS),
+               coarse_orbit=_numbers(ORBIT_COLUMNS), fine_record=_numbers(FINE_COLUMNS)),
+        Pairs(neighbour=_integers(), distance=_numbers(), growth=_numbers(STROBES_KEPT)),
+        Work(scale=np.zeros(2), change=change_workspace(LONGEST_PERIOD), limit=np.zeros((2, bodies)),
+             basis=np.zeros((ORBITS, rows)), triangle=np.zeros((ORBITS, ORBITS))),
+    )
+
+
+def _no_check(*arguments: object) -> None:
+    """What stands for a check of types until the kernel is known."""
+
+
 class Batch:
     """BATCH_SIZE lanes for scenes of one structure and one N, run by one thread."""
 
@@ -78,45 +124,26 @@ class Batch:
         self.stop = stop
         self._run: Any = None
         self._check = 0
-        self._guard: Callable[..., None] = lambda *later: None
+        self._guard: Callable[..., None] = _no_check
         n = example.N
         self.members = Members(
             wall=_rows(1), unequal=None if is_uniform(scaled) else Unequal(_rows(n + 2), _rows(n + 1)),
             slots=_slots_of_members(scaled), beta=_rows(1),
         )
-        rows = 2 * (n + 2)
-        counts = {name: np.zeros(BATCH_SIZE, dtype=np.int64) for name in (
-            "begins", "steps", "steps_left", "finer_steps", "periods", "return_at", "next_check", "extrapolate_from",
-            "wait_after_undo", "due", "neighbour", "strobe_count", "tested_period")}
-        numbers = {name: np.zeros(BATCH_SIZE) for name in (
-            "drive_period", "slowest_decay", "slowest_decay_before", "change_before_extrapolation", "distance")}
-        self.state = BatchState(
-            **counts, **numbers, y=_rows(rows), h=_rows(1), turn=_rows(2), overlaps=_rows(n + 1),
-            static_overlap=_rows(n + 1), end_contacts=_rows(4), phase=_rows(2),
-            first_strobe=np.zeros((2, BATCH_SIZE), dtype=np.int64),
-            peaks=_rows(BATCH_PEAKS), growth=np.zeros((BATCH_SIZE, STROBES_KEPT)),
-            state_before=np.zeros((BATCH_SIZE, 2, n + 2)),
-            fine_record=np.zeros((BATCH_SIZE, FINE_COLUMNS)), coarse_orbit=np.zeros((BATCH_SIZE, ORBIT_COLUMNS)),
-            strobes=np.zeros((BATCH_SIZE, 2 * STROBES_KEPT, 2, n + 2)),
-            maxima=np.zeros((BATCH_SIZE, STROBES_KEPT, MAXIMA)),
-            last_check=np.zeros((BATCH_SIZE, CHECK_COLUMNS)), scale=np.zeros(2),
-            change=change_workspace(LONGEST_PERIOD), limit=np.zeros((2, n + 2)), basis=np.zeros((ORBITS, rows)),
-            triangle=np.zeros((ORBITS, ORBITS)),
-            stages=(_rows(rows), _rows(rows), _rows(rows)),
-        )
+        self.state = _empty_state(n)
         for member in range(BATCH_SIZE):
             self.empty(member)
 
     def empty(self, member: int) -> None:
         """Leave a lane empty: it holds the example at rest, which is never checked."""
-        self.put(member, self.example, np.zeros(len(self.state.y)), 1, NEVER, NEVER)
+        self.put(member, self.example, np.zeros(len(self.state.motion.y)), 1, NEVER, NEVER)
 
     def put(self, member: int, scaled: ScaledChain, y: np.ndarray, refine: float, return_at: int,
-            earliest: int = 0, finer: int = 0) -> None:
+            earliest: int = 0, fine: int = 0) -> None:
         """Make a scene a member, from the scaled state y at phase 0, with `refine` times the fixed-step method's steps.
 
         It is due after `return_at` periods at the latest; from period `earliest` on its regime is checked. Once its
-        orbit is found, it goes on with `finer` times the steps, or is due if that is 0 (kernels/batch/begin.py). Raises
+        orbit is found, it goes on with `fine` times the steps, or is due if that is 0 (kernels/batch/begin.py). Raises
         `ValueError` for a chain of another structure, and for one whose driver is at rest: in all lanes the driver's
         displacement is sin θ.
         """
@@ -131,16 +158,17 @@ class Batch:
             members.unequal.inverse_mass[:, member] = slots.chain.inverse_mass
             members.unequal.stiffness[:, member] = slots.chain.stiffness
         if slots.preload is not None:
-            state.static_overlap[:, member] = slots.preload.static
+            state.motion.static_overlap[:, member] = slots.preload.static
         for slot, its in zip(members.slots, slots, strict=True):
             if slot is not None:
                 for rows, value in zip(slot, its, strict=True):
                     rows[:, member] = value
         members.beta[0, member] = scaled.beta
-        state.begins[member], state.y[:, member], state.drive_period[member] = 1, y, scaled.period
-        state.steps[member], state.finer_steps[member] = steps, steps * finer
-        state.return_at[member], state.next_check[member] = return_at, earliest
-        state.fine_record[member], state.neighbour[member] = 0.0, NO_NEIGHBOUR
+        schedule = state.schedule
+        schedule.begins[member], state.motion.y[:, member], schedule.drive_period[member] = 1, y, scaled.period
+        schedule.steps[member], schedule.fine_steps[member] = steps, steps * fine
+        schedule.return_at[member], schedule.next_check[member] = return_at, earliest
+        state.search.fine_record[member], state.pairs.neighbour[member] = 0.0, NO_NEIGHBOUR
 
     def _takes(self, scaled: ScaledChain) -> bool:
         """Whether a chain has the structure of the batch."""
@@ -148,16 +176,17 @@ class Batch:
         alike = chain is example.slots.chain or self.members.unequal is not None or is_uniform(scaled)
         return alike and scaled.slot_types == example.slot_types
 
-    def put_fine(self, member: int, scaled: ScaledChain, y: np.ndarray, refine: float, period: int, decay: float,
+    def put_fine(self, member: int, scaled: ScaledChain, y: np.ndarray, refine: float, period: int, contraction: float,
                  maxima: np.ndarray) -> None:
-        """Make a scene a member, on the orbit y of a coarser run, with its period, decay per orbit and largest forces.
+        """Make a scene a member, on the orbit y of a coarser run.
 
-        It is checked once the difference from that orbit has decayed.
+        `contraction` is that run's observed contraction factor per orbit, `maxima` (3,) are its largest forces. The
+        member is checked once the difference from that orbit has decayed.
         """
-        contraction = coarse_contraction(decay)
+        contraction = coarse_contraction(contraction)
         orbits = orbits_until_checked(contraction)
         self.put(member, scaled, y, refine, NEVER, orbits * period)
-        self.state.fine_record[member] = period, contraction, *maxima, orbits, 0.0, 0.0
+        self.state.search.fine_record[member] = period, contraction, *maxima, orbits, 0.0, 0.0
 
     def put_pair(self, member: int, neighbour: int, scaled: ScaledChain, y: np.ndarray, offset: np.ndarray,
                  distance: float, periods: int) -> None:
@@ -170,23 +199,23 @@ class Batch:
             raise ValueError(f"a pair runs for at most {STROBES_KEPT} periods, not for {periods}")
         self.put(member, scaled, y, 1, periods, NEVER)
         self.put(neighbour, scaled, y + offset, 1, NEVER, NEVER)
-        state = self.state
-        state.neighbour[member], state.neighbour[neighbour], state.distance[member] = neighbour, IS_NEIGHBOUR, distance
+        pairs = self.state.pairs
+        pairs.neighbour[member], pairs.neighbour[neighbour], pairs.distance[member] = neighbour, IS_NEIGHBOUR, distance
 
     def checks_address(self) -> int:
         """Address of the kernel that checks a member's regime, compiled first where it is not there yet."""
-        return address_of(check_member, self.state, 0)
+        return address_of(begin_or_check_member, self.state, 0)
 
     def growth(self, member: int) -> np.ndarray:
         """Logarithm of the growth of the distance to the member's neighbour in each period (periods,); NaN if lost."""
-        return self.state.growth[member, : int(self.state.periods[member])]
+        return self.state.pairs.growth[member, : int(self.state.record.periods[member])]
 
     def run(self) -> tuple[int, bool]:
         """Run until a member is due; its number, and whether it is finite."""
         if self._run is None:
             self._run = entry(run_batch, self.members, self.state, self.stop.flag, 0)
             self._check = self.checks_address()
-            self._guard = type_guard(check_member, self.state, 0)
+            self._guard = type_guard(begin_or_check_member, self.state, 0)
         self._guard(self.state, 0)
         arguments = self.members, self.state, self.stop.flag, self._check
         status, member = self._run(*arguments)
@@ -199,31 +228,32 @@ class Batch:
 
         They begin where the member was last moved to another state.
         """
-        kept = int(self.state.strobe_count[member])
-        return self.state.strobes[member, max(int(self.state.first_strobe[0, member]), kept - most) : kept, :, 1:-1]
+        record = self.state.record
+        kept = int(record.strobe_count[member])
+        return record.strobes[member, max(int(record.first_strobe[0, member]), kept - most) : kept, :, 1:-1]
 
-    def runs_finer(self, member: int) -> bool:
-        """Whether a member is in its finer run."""
-        return bool(self.state.fine_record[member, FINE_PERIOD] > 0.0)
+    def is_fine(self, member: int) -> bool:
+        """Whether a member is in its fine run."""
+        return bool(self.state.search.fine_record[member, FINE_PERIOD] > 0.0)
 
     def grew(self, member: int) -> bool:
-        """Whether changes from orbit to orbit grew in a member's finer run: its orbit may be unstable."""
-        return bool(self.state.fine_record[member, FINE_GREW] > 0.0)
+        """Whether changes from orbit to orbit grew in a member's fine run: its orbit may be unstable."""
+        return bool(self.state.search.fine_record[member, FINE_GREW] > 0.0)
 
     def coarse_maxima(self, member: int) -> np.ndarray:
-        """Largest forces (3,) on the orbit of the coarse run, scaled, of a member in its finer run."""
-        return self.state.fine_record[member, FINE_FORCES : FINE_FORCES + 3].copy()
+        """Largest forces (3,) on the orbit of the coarse run, scaled, of a member in its fine run."""
+        return self.state.search.fine_record[member, FINE_FORCES : FINE_FORCES + 3].copy()
 
     def settled_maxima(self, member: int, period: int) -> np.ndarray:
         """Largest forces on the orbit a coarse member has settled on: from before it was disturbed, if it was."""
-        disturbed = self.state.slowest_decay[member] > 0.0
+        disturbed = self.state.search.slowest_contraction[member] > 0.0
         return self.coarse_maxima(member) if disturbed else self.maxima(member, period)[0]
 
     def maxima(self, member: int, periods: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Largest input, output and elastic output force (3,) of the last `periods` periods, and of input and output
         force the largest jumps (2,) and the largest unresolved peaks (2,) (kernels/forces/peaks.py); in scaled units.
         """
-        run = int(self.state.periods[member])
+        run = int(self.state.record.periods[member])
         places = np.arange(max(1, run - min(periods, STROBES_KEPT) + 1), run + 1) % STROBES_KEPT
-        largest = self.state.maxima[member, places].max(axis=0)
+        largest = self.state.record.maxima[member, places].max(axis=0)
         return largest[:3], largest[3:5], largest[5:]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ..kernels.strobes.periodicity import assumed_decay
+from ..kernels.strobes.periodicity import assumed_contraction
 
 #: What a motion can be called.
 NAMES = ("periodic", "quasi-periodic", "chaotic", "unsettled")
@@ -115,11 +115,13 @@ class Regime:
 
     @property
     def assumed_contraction(self) -> float:
-        """Factor by which a distance is taken to shrink per orbit: |μ|, else the observed one, else `DECAY_NOT_SEEN`.
+        """Factor by which a distance is taken to shrink per orbit.
+
+        It is |μ|, else the observed one, else `CONTRACTION_NOT_SEEN`.
         """
         if self.multiplier is not None:
             return min(1.0 - LEAST_BELOW_1, self.multiplier)
-        return assumed_decay(self.observed_contraction or 0.0)
+        return assumed_contraction(self.observed_contraction or 0.0)
 
     @property
     def contraction(self) -> float:

@@ -67,11 +67,11 @@ class MeasuredGrowth:
 def growth_of(batch: Batch, member: int) -> MeasuredGrowth:
     """The growth of a member that is due and has kept its neighbour."""
     growth = batch.growth(member)
-    periods, state = len(growth), batch.state
-    strobes = state.strobes[member, : periods + 1]
+    periods, state, y = len(growth), batch.state, batch.state.motion.y
+    strobes = state.record.strobes[member, : periods + 1]
     last = np.arange(periods - LONGEST_PERIOD + 1, periods + 1) % STROBES_KEPT
-    return MeasuredGrowth(growth.copy(), strobes[1:, :, 1:-1].copy(), state.maxima[member, last, :3].copy(),
-                          strobes[-1].ravel().copy(), state.y[:, state.neighbour[member]] - state.y[:, member])
+    return MeasuredGrowth(growth.copy(), strobes[1:, :, 1:-1].copy(), state.record.maxima[member, last, :3].copy(),
+                          strobes[-1].ravel().copy(), y[:, state.pairs.neighbour[member]] - y[:, member])
 
 
 @functools.cache

@@ -30,9 +30,9 @@ def in_batches(beads: int, evaluations: float) -> float:
     """Contact evaluations a second of the chains of a batch, from a chain already in motion."""
     batch = Batch(scene("sec2").evolve(N=beads, f=problem.FREQUENCY), Stop())
     steps = max(4, round(evaluations / (4 * BATCH_SIZE * (beads + 1))))
-    stirred(batch.state.y, beads)
-    batch_steps(batch.members, batch.state, 2)
-    spent = timed(lambda: batch_steps(batch.members, batch.state, steps), 0.1, 7)
+    stirred(batch.state.motion.y, beads)
+    batch_steps(batch.members, batch.state.motion, 2)
+    spent = timed(lambda: batch_steps(batch.members, batch.state.motion, steps), 0.1, 7)
     return 4 * BATCH_SIZE * (beads + 1) * steps / spent.median
 
 

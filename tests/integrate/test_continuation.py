@@ -104,7 +104,7 @@ def test_drive_phase_of_a_batch_is_exact_after_many_periods():
     batch, scaled = Batch(chain, Stop()), scale_chain(chain)
     batch.put(0, scaled, scaled.from_si(rest(chain)), 1, return_at=10_000, earliest=NEVER)
     assert batch.run() == (0, True)
-    assert batch.state.phase[:, 0].tolist() == [0.0, 1.0]
+    assert batch.state.motion.phase[:, 0].tolist() == [0.0, 1.0]
     before, last = batch.strobes(0)[-2:]
     np.testing.assert_allclose(last, before, atol=1e-9)  # as above
 

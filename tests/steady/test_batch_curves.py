@@ -134,8 +134,8 @@ def test_a_peak_right_after_a_closing_is_not_missed(f: float, knobs: dict[str, f
     assert abs(point.max_output_force / exact.max_output_force - 1.0) <= point.force_errors.output
 
 
-def test_what_a_finer_run_leaves_is_not_called_periodic() -> None:
-    """The orbit that coarse steps find has a largest |μ| of 4.6. The finer run left it, at a relative distance of 0.07.
+def test_what_a_fine_run_leaves_is_not_called_periodic() -> None:
+    """The orbit that coarse steps find has a largest |μ| of 4.6. The fine run left it, at a relative distance of 0.07.
 
     Another orbit near by, at a grazing, may be found, as with vectors of four scenes.
     """

@@ -52,7 +52,7 @@ def test_members_that_are_due_together_are_all_returned_before_one_goes_on() -> 
     for member in range(BATCH_SIZE):
         batch.put(member, scaled, np.zeros(2 * scaled.bodies), 1, return_at=3, earliest=NEVER)
     assert sorted(batch.run()[0] for _ in range(BATCH_SIZE)) == list(range(BATCH_SIZE))
-    assert list(batch.state.periods) == [3] * BATCH_SIZE
+    assert list(batch.state.record.periods) == [3] * BATCH_SIZE
 
 
 @pytest.mark.parametrize("lost", ["chain", "neighbour"])
@@ -83,7 +83,7 @@ def test_a_pair_runs_for_as_many_periods_as_there_are_places_for() -> None:
     rest = np.zeros(2 * scaled.bodies)
     with pytest.raises(ValueError, match=f"at most {STROBES_KEPT} periods, not for {STROBES_KEPT + 1}"):
         batch.put_pair(0, 1, scaled, rest, scaled.embed(np.full(2 * scaled.beads, 1e-9)), 1e-9, STROBES_KEPT + 1)
-    assert batch.state.return_at[0] == NEVER  # the lane is still empty
+    assert batch.state.schedule.return_at[0] == NEVER  # the lane is still empty
     batch.put_pair(0, 1, scaled, rest, scaled.embed(np.full(2 * scaled.beads, 1e-9)), 1e-9, STROBES_KEPT)
 
 

@@ -11,9 +11,9 @@ _SECTION, _REGIME, _RECORDING = "kernels/strobes/periodicity.py", "steady/regime
 _RUN, _STATED, _METHODS = "run/to_accuracy.py", "integrate/stated.py", "integrate/methods.py"
 
 STEADY = (
-    Mutant("change-taken-for-distance", _SECTION, "distance = recent * decay / (1.0 - decay)", "distance = recent",
+    Mutant("change-taken-for-distance", _SECTION, "distance = recent * contraction / (1.0 - contraction)", "distance = recent",
            "a slow approach is called settled", k.REGIMES),
-    Mutant("faster-half-counts", _SECTION, "decay = max(early, late)", "decay = min(early, late)",
+    Mutant("faster-half-counts", _SECTION, "contraction = max(early, late)", "contraction = min(early, late)",
            "the decay is taken from the half of the record in which it is faster", k.PERIODICITY),
     Mutant("lost-in-rounding-is-there", _REGIME, "distance = max(distance, rounding * decay / (1.0 - decay))", "distance = 0.0",
            "a change lost in rounding is no distance at all", k.CRITERIA),

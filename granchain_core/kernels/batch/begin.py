@@ -1,4 +1,4 @@
-"""A batch member's beginning: at a state that the caller set, or, with finer steps, on the orbit of its coarse run."""
+"""A batch member's beginning: at a state that the caller set, or, with fine steps, on the orbit of its coarse run."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from math import ceil, cos, log, pi, sin
 from ..compiling.jit import inline_numba, internal
 from ..equations.motion import copy
 from ..strobes.extrapolation import ORBITS
-from ..strobes.periodicity import assumed_decay
+from ..strobes.periodicity import assumed_contraction
 from .record import append_strobe, forget_last_step, largest_force
 
 #: [no threshold] A period that no member reaches.
@@ -16,73 +16,78 @@ NEVER = 2**63 - 1
 #: further one. The record of strobes and the count of periods then go on from the state before the attempt
 #: (`undo_extrapolation` in kernels/batch/record.py).
 _FIRST_PAUSE = 16
-#: [period n] A batch: fewest orbits between two checks of the finer run.
+#: [period n] A batch: fewest orbits between two checks of the fine run.
 _FEWEST_ORBITS = 2
-#: [period n] A batch: largest part of the coarse orbit's error that may be left in the finer run.
+#: [period n] A batch: largest part of the coarse orbit's error that may be left in the fine run.
 COARSE_ERROR_LEFT = 0.02
 #: [period n] A batch: lower bound of the factor by which the coarse orbit's error is assumed to shrink per orbit.
 _LEAST_CONTRACTION = 1e-3
-#: Columns of `last_check`: period in drive periods, decay per orbit, distance left to the orbit; and their number.
-CHECK_PERIOD, CHECK_DECAY, CHECK_DISTANCE, CHECK_COLUMNS = range(4)
-#: Columns of `fine_record`: the orbit's period and contraction, the coarse run's three largest forces (from FINE_FORCES
-#: on), orbits between two extrapolations, extrapolations so far, 1 if changes grew before one.
+#: Columns of `last_check`: period in drive periods, contraction factor per orbit, distance left to the orbit; and their
+#: number.
+CHECK_PERIOD, CHECK_CONTRACTION, CHECK_DISTANCE, CHECK_COLUMNS = range(4)
+#: Columns of `fine_record`: the orbit's period and contraction factor, the coarse run's three largest forces (from
+#: FINE_FORCES on), orbits between two extrapolations, extrapolations so far, 1 if changes grew before one.
 FINE_PERIOD, FINE_CONTRACTION, FINE_FORCES, FINE_ORBITS_BETWEEN, FINE_EXTRAPOLATIONS, FINE_GREW = 0, 1, 2, 5, 6, 7
 #: [no threshold] Their number.
 FINE_COLUMNS = 8
-#: Columns of `coarse_orbit`: those of `last_check`, slowest decay before an extrapolation (0 without one), drive
+#: Columns of `coarse_orbit`: those of `last_check`, slowest contraction before an extrapolation (0 without one), drive
 #: periods run; and their number.
-ORBIT_SLOWEST_DECAY, ORBIT_PERIODS, ORBIT_COLUMNS = CHECK_COLUMNS, CHECK_COLUMNS + 1, CHECK_COLUMNS + 2
+ORBIT_SLOWEST_CONTRACTION, ORBIT_PERIODS, ORBIT_COLUMNS = CHECK_COLUMNS, CHECK_COLUMNS + 1, CHECK_COLUMNS + 2
 
 
 @internal
 def begin_member(state, member):
     """Begin at the member's `y`, at phase 0, with `steps` steps a period and an empty record."""
-    half = pi / state.steps[member]
-    state.turn[0, member], state.turn[1, member] = cos(half), sin(half)
-    state.h[0, member] = state.drive_period[member] / state.steps[member]
-    state.phase[0, member], state.phase[1, member] = 0.0, 1.0
-    for row in range(state.peaks.shape[0]):
-        state.peaks[row, member] = 0.0
-    forget_last_step(state, member)
-    state.steps_left[member], state.periods[member], state.due[member] = state.steps[member], 0, 0
-    state.strobe_count[member], state.first_strobe[0, member], state.first_strobe[1, member] = 0, 0, 0
-    append_strobe(state.strobes, state.strobe_count, state.first_strobe, state.y, member)
-    state.extrapolate_from[member], state.wait_after_undo[member] = 0, _FIRST_PAUSE
-    state.slowest_decay[member], state.slowest_decay_before[member] = 0.0, 0.0
-    state.change_before_extrapolation[member], state.tested_period[member] = 0.0, 0
+    motion, schedule, record, search = state.motion, state.schedule, state.record, state.search
+    half = pi / schedule.steps[member]
+    motion.half_step[0, member], motion.half_step[1, member] = sin(half), cos(half)
+    motion.h[0, member] = schedule.drive_period[member] / schedule.steps[member]
+    motion.phase[0, member], motion.phase[1, member] = 0.0, 1.0
+    for row in range(motion.peaks.shape[0]):
+        motion.peaks[row, member] = 0.0
+    forget_last_step(motion, member)
+    schedule.steps_left[member], schedule.due[member] = schedule.steps[member], 0
+    record.periods[member], record.strobe_count[member] = 0, 0
+    record.first_strobe[0, member], record.first_strobe[1, member] = 0, 0
+    append_strobe(record, motion.y, member)
+    search.extrapolate_from[member], search.wait_after_undo[member] = 0, _FIRST_PAUSE
+    search.slowest_contraction[member], search.contraction_before[member] = 0.0, 0.0
+    search.change_before[member], search.tested_period[member] = 0.0, 0
     for column in range(CHECK_COLUMNS):
-        state.last_check[member, column] = 0.0
+        search.last_check[member, column] = 0.0
 
 
 @inline_numba
-def begin_finer_run(state, member):
-    """Go on from the orbit that the coarse run found, with finer steps; `coarse_orbit` keeps what it found.
+def begin_fine_run(state, member):
+    """Go on from the orbit that the coarse run found, with fine steps; `coarse_orbit` keeps what it found.
 
-    The finer run is checked once the difference from the coarse orbit has decayed.
+    The fine run is checked once the difference from the coarse orbit has decayed.
     """
-    found, fine = state.coarse_orbit[member], state.fine_record[member]
-    copy(state.last_check[member], found)
-    found[ORBIT_SLOWEST_DECAY], found[ORBIT_PERIODS] = state.slowest_decay[member], state.periods[member]
+    schedule, search = state.schedule, state.search
+    found, fine = search.coarse_orbit[member], search.fine_record[member]
+    copy(search.last_check[member], found)
+    found[ORBIT_SLOWEST_CONTRACTION] = search.slowest_contraction[member]
+    found[ORBIT_PERIODS] = state.record.periods[member]
     period = int(found[CHECK_PERIOD])
-    if state.slowest_decay[member] == 0.0:  # else they were kept when the orbit was disturbed
+    if search.slowest_contraction[member] == 0.0:  # else they were kept when the orbit was disturbed
         for q in range(3):
-            fine[FINE_FORCES + q] = largest_force(state, member, period, q)
-    contraction = coarse_contraction(found[CHECK_DECAY])
+            fine[FINE_FORCES + q] = largest_force(state.record, member, period, q)
+    contraction = coarse_contraction(found[CHECK_CONTRACTION])
     orbits = orbits_until_checked(contraction)
-    state.steps[member], state.finer_steps[member] = state.finer_steps[member], 0
+    schedule.steps[member], schedule.fine_steps[member] = schedule.fine_steps[member], 0
     begin_member(state, member)
-    state.return_at[member], state.next_check[member] = NEVER, orbits * period
+    schedule.return_at[member], schedule.next_check[member] = NEVER, orbits * period
     fine[FINE_PERIOD], fine[FINE_CONTRACTION], fine[FINE_ORBITS_BETWEEN] = period, contraction, orbits
     fine[FINE_EXTRAPOLATIONS], fine[FINE_GREW] = 0.0, 0.0
 
 
 @internal
-def coarse_contraction(decay):
-    """Factor by which the coarse orbit's error is taken to shrink per orbit, from an observed decay."""
-    return max(_LEAST_CONTRACTION, assumed_decay(decay))
+def coarse_contraction(observed):
+    """Factor by which the coarse orbit's error is taken to shrink per orbit, from the observed one."""
+    return max(_LEAST_CONTRACTION, assumed_contraction(observed))
 
 
 @internal
 def orbits_until_checked(contraction):
-    """Orbits until a finer run is checked: then `COARSE_ERROR_LEFT` of the coarse orbit's error is left, at most."""
+    """Orbits until a fine run is checked: then `COARSE_ERROR_LEFT` of the coarse orbit's error is left, at most."""
     return min(ORBITS, max(_FEWEST_ORBITS, ceil(log(COARSE_ERROR_LEFT) / log(contraction))))

@@ -1,16 +1,16 @@
 """Checks of a batch member's regime, between its periods: is its motion periodic, may its transient be extrapolated?
 
-Coarse run. An extrapolation reaches at most three times the distance that its decay predicts
+Coarse run. An extrapolation reaches at most three times the distance that the contraction factor predicts
 (`FARTHEST_EXTRAPOLATION`). If the change per orbit is not smaller after it than before, the extrapolation is undone,
 and the record goes on from where it was. A chain may approach an unstable orbit before it leaves it, and an
 extrapolation could end on that orbit. So an orbit found by extrapolation is disturbed, and accepted only if the
 disturbance decays. If it decays slowly, multipliers decide (steady/batch/job.py).
 
-Finer run. It starts on the orbit of the coarse run and is extrapolated to its own orbit; each extrapolation is checked
+Fine run. It starts on the orbit of the coarse run and is extrapolated to its own orbit; each extrapolation is checked
 in the same way.
 
-`check_member` is the same for every structure. It takes longer to compile than the steps of a batch, so it is a kernel
-of its own, which `run_batch` calls by its address.
+`begin_or_check_member` is the same for every structure. It takes longer to compile than the steps of a batch, so it is
+a kernel of its own, which `run_batch` calls by its address.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from ..strobes.periodicity import (
     write_scale,
 )
 from .begin import (
-    CHECK_DECAY,
+    CHECK_CONTRACTION,
     CHECK_DISTANCE,
     CHECK_PERIOD,
     COARSE_ERROR_LEFT,
@@ -43,7 +43,7 @@ from .begin import (
     FINE_GREW,
     FINE_ORBITS_BETWEEN,
     FINE_PERIOD,
-    begin_finer_run,
+    begin_fine_run,
     begin_member,
 )
 from .record import largest_force, move_member, undo_extrapolation
@@ -54,12 +54,12 @@ MOST_STROBES_SEARCHED = 4 * LONGEST_PERIOD + 1
 _FEWEST_ORBITS_LEFT = 4.0
 #: [period n] A batch: fewest drive periods from an extrapolation that was out of reach to the next one.
 _PERIODS_AFTER_FAILURE = 8
-#: [period n] A batch: an extrapolation reaches at most this many times as far as change/(1 − decay), the distance
-#: before the last change.
+#: [period n] A batch: an extrapolation reaches at most this many times as far as change/(1 − contraction factor), the
+#: distance before the last change.
 FARTHEST_EXTRAPOLATION = 3.0
-#: [period n] A batch: fewest orbits of the finer run in which changes must shrink, else multipliers are computed.
+#: [period n] A batch: fewest orbits of the fine run in which changes must shrink, else multipliers are computed.
 _ORBITS_TO_GROW = 4
-#: [period n] A batch: most extrapolations of the finer run.
+#: [period n] A batch: most extrapolations of the fine run.
 _MOST_EXTRAPOLATIONS = 6
 #: [period n] A batch: an orbit found by extrapolation is disturbed by this part of the motion.
 _DISTURBANCE = 1e-4
@@ -72,31 +72,31 @@ _ORBITS_BETWEEN_QUARTERS = _TEST_ORBITS // 2
 _PART_LEFT = 0.97
 #: [period n] A batch: drive periods without extrapolation after a disturbance that did not decay.
 _PAUSE_AFTER_FAILED_TEST = 400
-#: [period n] A batch: slowest decay per orbit that is reported for a disturbance that shrank. Up to 100 beads,
-#: multipliers are then computed.
-_SLOWEST_REPORTED_DECAY = 0.9999
-#: [period n] A batch: slowest decay per drive period that is assumed after an extrapolation. Slower ones are not
-#: measured well enough.
-_SLOWEST_ASSUMED_DECAY = 0.98
+#: [period n] A batch: largest contraction factor per orbit that is reported for a disturbance that shrank. Up to 100
+#: beads, multipliers are then computed.
+_LARGEST_REPORTED_CONTRACTION = 0.9999
+#: [period n] A batch: largest contraction factor per drive period that is assumed after an extrapolation. Larger ones
+#: are not measured well enough.
+_LARGEST_ASSUMED_CONTRACTION = 0.98
 
 
 @internal
-def extrapolate_member(state, member, n, decay, change):
+def extrapolate_member(state, member, n, contraction, change):
     """Move a member to the limit of its last strobes, n periods apart; returns whether that was within reach.
 
-    `change` is the last change over n periods, `decay` its factor per n periods, as `detect_period` returns them.
+    `change` is the last change over n periods, `contraction` its factor per n periods, as `detect_period` returns them.
     """
-    record = state.strobes[member, state.first_strobe[0, member] : state.strobe_count[member]]
-    count = record.shape[0]
-    if count < ORBITS * n + 1 or not 0.0 < decay < 1.0:
+    record, work, limit = state.record, state.work, state.work.limit
+    last = record.strobe_count[member] - 1
+    if last - record.first_strobe[0, member] < ORBITS * n or not 0.0 < contraction < 1.0:
         return False
-    limit, record = state.limit, record[count - 1 - ORBITS * n :]
-    reduced_rank(record[::n], state.basis, state.triangle, limit)
-    write_scale(record, state.scale)
-    reach = FARTHEST_EXTRAPOLATION * change / (1.0 - decay)
+    strobes = record.strobes[member, last - ORBITS * n : last + 1]
+    reduced_rank(strobes[::n], work.basis, work.triangle, limit)
+    write_scale(strobes, work.scale)
+    reach = FARTHEST_EXTRAPOLATION * change / (1.0 - contraction)
     for q in range(2):
         for i in range(limit.shape[1]):
-            if not abs(limit[q, i] - record[ORBITS * n, q, i]) <= reach * state.scale[q]:
+            if not abs(limit[q, i] - strobes[ORBITS * n, q, i]) <= reach * work.scale[q]:
                 return False
     move_member(state, member, limit)
     return True
@@ -105,95 +105,111 @@ def extrapolate_member(state, member, n, decay, change):
 @internal
 def check_coarse(state, member):
     """Whether a member's last strobes are periodic; if they only approach an orbit, the transient is extrapolated."""
-    record = state.strobes[member, state.first_strobe[0, member] : state.strobe_count[member]]
-    periods = state.periods[member]
-    count = record.shape[0]
-    period, decay, distance, n, approach_decay, change = detect_period(  # an int64, as from Python: one version serves
-        record[max(0, count - MOST_STROBES_SEARCHED) :], np.int64(LONGEST_PERIOD), ROUNDING, SETTLED_DISTANCE,
-        state.slowest_decay[member], state.scale, state.change)
-    last_check = state.last_check[member]
-    last_check[CHECK_PERIOD], last_check[CHECK_DECAY], last_check[CHECK_DISTANCE] = period, decay, distance
-    if period > 0 and state.slowest_decay[member] > 0.0:
-        disturb(state, member, period)
+    search, schedule, record = state.search, state.schedule, state.record
+    strobes = record.strobes[member, record.first_strobe[0, member] : record.strobe_count[member]]
+    periods, count = record.periods[member], strobes.shape[0]
+    detected = detect_period(  # an int64, as from Python: one version serves
+        strobes[max(0, count - MOST_STROBES_SEARCHED) :], np.int64(LONGEST_PERIOD), ROUNDING, SETTLED_DISTANCE,
+        search.slowest_contraction[member], state.work.scale, state.work.change)
+    n, contraction, change = detected.approached, detected.approach_contraction, detected.approach_change
+    last_check = search.last_check[member]
+    last_check[CHECK_PERIOD], last_check[CHECK_CONTRACTION] = detected.period, detected.contraction
+    last_check[CHECK_DISTANCE] = detected.distance
+    if detected.period > 0 and search.slowest_contraction[member] > 0.0:
+        disturb(state, member, detected.period)
         return False
-    if period > 0:
+    if detected.period > 0:
         return True
-    if state.change_before_extrapolation[member] > 0.0:
-        proved = n > 0 and change < state.change_before_extrapolation[member]
-        state.change_before_extrapolation[member] = 0.0
-        if not proved:
-            undo_extrapolation(state, member)
-            state.slowest_decay[member] = state.slowest_decay_before[member]
-            periods = state.periods[member]
-            state.wait_after_undo[member] *= 2
-            state.extrapolate_from[member] = periods + state.wait_after_undo[member]
-            state.next_check[member] = periods + periods_to_next_check(state, member)
+    if search.change_before[member] > 0.0:
+        confirmed = n > 0 and change < search.change_before[member]
+        search.change_before[member] = 0.0
+        if not confirmed:
+            go_back_and_wait(state, member)
             return False
-    left = change * approach_decay / (1.0 - approach_decay) if n > 0 else 0.0
-    if periods < state.extrapolate_from[member] or left <= SETTLED_DISTANCE:
+    left = change * contraction / (1.0 - contraction) if n > 0 else 0.0
+    if periods < search.extrapolate_from[member] or left <= SETTLED_DISTANCE:
         return False
-    if log(SETTLED_DISTANCE / left) > _FEWEST_ORBITS_LEFT * log(approach_decay):
+    if log(SETTLED_DISTANCE / left) > _FEWEST_ORBITS_LEFT * log(contraction):
         return False  # it settles sooner without extrapolation
-    copy(record[count - 1, 0], state.state_before[member, 0])
-    copy(record[count - 1, 1], state.state_before[member, 1])
-    if extrapolate_member(state, member, n, approach_decay, change):
-        state.change_before_extrapolation[member] = change
-        state.slowest_decay_before[member] = state.slowest_decay[member]
-        slowest = max(state.slowest_decay[member], approach_decay ** (1.0 / n))
-        state.slowest_decay[member] = min(_SLOWEST_ASSUMED_DECAY, slowest)
-        state.next_check[member] = periods + window_of(n) + n + 1
-        state.extrapolate_from[member] = periods + ORBITS * n
+    keep_state_before(search, strobes[count - 1], member)
+    if extrapolate_member(state, member, n, contraction, change):
+        search.change_before[member] = change
+        search.contraction_before[member] = search.slowest_contraction[member]
+        slowest = max(search.slowest_contraction[member], contraction ** (1.0 / n))
+        search.slowest_contraction[member] = min(_LARGEST_ASSUMED_CONTRACTION, slowest)
+        schedule.next_check[member] = periods + window_of(n) + n + 1
+        search.extrapolate_from[member] = periods + ORBITS * n
     else:
-        state.extrapolate_from[member] = periods + max(_PERIODS_AFTER_FAILURE, count // 4)
+        search.extrapolate_from[member] = periods + max(_PERIODS_AFTER_FAILURE, count // 4)
     return False
+
+
+@inline_numba
+def go_back_and_wait(state, member):
+    """Undo a coarse member's extrapolation, and wait twice as long as after the one before until the next."""
+    search, periods = state.search, state.record.periods
+    undo_extrapolation(state, member)
+    search.slowest_contraction[member] = search.contraction_before[member]
+    search.wait_after_undo[member] *= 2
+    search.extrapolate_from[member] = periods[member] + search.wait_after_undo[member]
+    state.schedule.next_check[member] = periods[member] + periods_to_next_check(state.record, member)
+
+
+@inline_numba
+def keep_state_before(search, strobe, member):
+    """Keep a member's state, to which it returns if an extrapolation is undone or a disturbance has decayed."""
+    copy(strobe[0], search.state_before[member, 0])
+    copy(strobe[1], search.state_before[member, 1])
 
 
 @inline_numba
 def disturb(state, member, period):
     """Disturb a member that seems to be on an orbit, keeping the orbit's state and forces."""
-    bodies, last = state.limit.shape[1], state.strobe_count[member] - 1
+    record, search, work = state.record, state.search, state.work
+    keep_state_before(search, record.strobes[member, record.strobe_count[member] - 1], member)
     for q in range(2):
-        copy(state.strobes[member, last, q], state.state_before[member, q])
-        for i in range(bodies):
-            state.limit[q, i] = state.state_before[member, q, i] + (1 - 2 * (i % 2)) * _DISTURBANCE * state.scale[q]
+        for i in range(work.limit.shape[1]):
+            offset = (1 - 2 * (i % 2)) * _DISTURBANCE * work.scale[q]
+            work.limit[q, i] = search.state_before[member, q, i] + offset
     for q in range(3):
-        state.fine_record[member, FINE_FORCES + q] = largest_force(state, member, period, q)
-    move_member(state, member, state.limit)
-    state.tested_period[member] = period
-    state.next_check[member] = state.periods[member] + _TEST_ORBITS * period
+        search.fine_record[member, FINE_FORCES + q] = largest_force(record, member, period, q)
+    move_member(state, member, work.limit)
+    search.tested_period[member] = period
+    state.schedule.next_check[member] = record.periods[member] + _TEST_ORBITS * period
 
 
 @inline_numba
 def judge_disturbance(state, member):
     """Whether a member's disturbance has decayed, at the end of the test.
 
-    The member then goes back to its orbit, and the decay is recorded; else extrapolation pauses.
+    The member then goes back to its orbit, and the contraction factor is recorded; else extrapolation pauses.
     """
-    n, bodies = state.tested_period[member], state.limit.shape[1]
-    record = state.strobes[member, state.first_strobe[0, member] : state.strobe_count[member]]
-    state.tested_period[member] = 0
-    write_scale(record[: _TEST_ORBITS * n + 1], state.scale)  # other members have used it since
+    search, record, scale = state.search, state.record, state.work.scale
+    n, bodies = search.tested_period[member], state.work.limit.shape[1]
+    strobes = record.strobes[member, record.first_strobe[0, member] : record.strobe_count[member]]
+    search.tested_period[member] = 0
+    write_scale(strobes[: _TEST_ORBITS * n + 1], scale)  # other members have used it since
     first, middle, late, last = 0.0, 0.0, 0.0, 0.0
     for k in range(_TEST_ORBITS + 1):
-        there, whole = 0.0, 0.0
+        largest, squares = 0.0, 0.0
         for q in range(2):
             for i in range(bodies):
-                offset = (record[k * n, q, i] - state.state_before[member, q, i]) / state.scale[q]
-                there, whole = max(there, abs(offset)), whole + offset**2
+                offset = (strobes[k * n, q, i] - search.state_before[member, q, i]) / scale[q]
+                largest, squares = max(largest, abs(offset)), squares + offset**2
         quarter = 4 * k // (_TEST_ORBITS + 1)
-        first = max(first, there) if quarter == 0 else first
-        middle += whole if quarter == 1 else 0.0
-        late += whole if quarter == 3 else 0.0
-        last = there
+        first = max(first, largest) if quarter == 0 else first
+        middle += squares if quarter == 1 else 0.0
+        late += squares if quarter == 3 else 0.0
+        last = largest
     if last <= _PART_LEFT * first:
-        move_member(state, member, state.state_before[member])
-        decay = (late / middle) ** (0.5 / _ORBITS_BETWEEN_QUARTERS) if middle > 0.0 else 0.0  # of squares
-        decay = min(decay, _SLOWEST_REPORTED_DECAY)
-        state.last_check[member, CHECK_DECAY] = max(state.last_check[member, CHECK_DECAY], decay)
+        move_member(state, member, search.state_before[member])
+        contraction = (late / middle) ** (0.5 / _ORBITS_BETWEEN_QUARTERS) if middle > 0.0 else 0.0  # of squares
+        contraction = min(contraction, _LARGEST_REPORTED_CONTRACTION)
+        search.last_check[member, CHECK_CONTRACTION] = max(search.last_check[member, CHECK_CONTRACTION], contraction)
         return True
-    state.slowest_decay[member], state.change_before_extrapolation[member] = 0.0, 0.0
-    state.last_check[member, CHECK_PERIOD] = 0.0  # this member does not stay on the orbit that was found
-    state.extrapolate_from[member] = state.periods[member] + _PAUSE_AFTER_FAILED_TEST
+    search.slowest_contraction[member], search.change_before[member] = 0.0, 0.0
+    search.last_check[member, CHECK_PERIOD] = 0.0  # this member does not stay on the orbit that was found
+    search.extrapolate_from[member] = record.periods[member] + _PAUSE_AFTER_FAILED_TEST
     return False
 
 
@@ -203,75 +219,78 @@ def check_fine(state, member):
 
     If changes are not smaller after an extrapolation, it is undone, and the member is not extrapolated again.
     """
-    fine, count, last_check = state.fine_record[member], state.strobe_count[member], state.last_check[member]
+    record, search, schedule, scale = state.record, state.search, state.schedule, state.work.scale
+    fine, last_check, count = search.fine_record[member], search.last_check[member], record.strobe_count[member]
     n, contraction = int(fine[FINE_PERIOD]), fine[FINE_CONTRACTION]
-    record = state.strobes[member, count - 1 - n : count]
-    write_scale(record, state.scale)
-    change = change_between(record, state.scale, n, 0)
-    last_check[CHECK_PERIOD], last_check[CHECK_DECAY] = n, contraction
+    last_orbit = record.strobes[member, count - 1 - n : count]
+    write_scale(last_orbit, scale)
+    change = change_between(last_orbit, scale, n, 0)
+    last_check[CHECK_PERIOD], last_check[CHECK_CONTRACTION] = n, contraction
     last_check[CHECK_DISTANCE] = change * contraction / (1.0 - contraction)
-    proved = change < state.change_before_extrapolation[member] or state.change_before_extrapolation[member] == 0.0
-    state.change_before_extrapolation[member] = 0.0
-    if not proved:
+    confirmed = change < search.change_before[member] or search.change_before[member] == 0.0
+    search.change_before[member] = 0.0
+    if not confirmed:
         undo_extrapolation(state, member)
-        state.next_check[member] = state.periods[member] + n * int(fine[FINE_ORBITS_BETWEEN])
+        schedule.next_check[member] = record.periods[member] + n * int(fine[FINE_ORBITS_BETWEEN])
         fine[FINE_EXTRAPOLATIONS] = _MOST_EXTRAPOLATIONS
         return False
     moved = 0.0
     for q in range(1, 3):  # the forces on the wall, the last to come to rest
-        largest = largest_force(state, member, n, q)
+        largest = largest_force(record, member, n, q)
         moved = max(moved, abs(largest - fine[FINE_FORCES + q]) / largest if largest > 0.0 else 0.0)
     close = last_check[CHECK_DISTANCE] <= max(SETTLED_DISTANCE, COARSE_ERROR_LEFT * moved)
     if close or fine[FINE_EXTRAPOLATIONS] >= _MOST_EXTRAPOLATIONS:
-        last_check[CHECK_PERIOD] = period_of_finer_run(state, member, n)
+        last_check[CHECK_PERIOD] = period_of_fine_run(state, member, n)
         return True
-    first = state.first_strobe[0, member]
+    first = record.first_strobe[0, member]
     if count - first > _ORBITS_TO_GROW * n:
-        earliest = state.strobes[member, first : first + n + 1]
-        fine[FINE_GREW] = max(fine[FINE_GREW], 1.0 if change > change_between(earliest, state.scale, n, 0) else 0.0)
+        grew = change > change_between(record.strobes[member, first : first + n + 1], scale, n, 0)
+        fine[FINE_GREW] = max(fine[FINE_GREW], 1.0 if grew else 0.0)
     fine[FINE_EXTRAPOLATIONS] += 1.0
-    copy(state.strobes[member, count - 1, 0], state.state_before[member, 0])
-    copy(state.strobes[member, count - 1, 1], state.state_before[member, 1])
+    keep_state_before(search, last_orbit[n], member)
     if extrapolate_member(state, member, n, contraction, change):
-        state.change_before_extrapolation[member] = change
-    state.next_check[member] = state.periods[member] + n * int(fine[FINE_ORBITS_BETWEEN])
+        search.change_before[member] = change
+    schedule.next_check[member] = record.periods[member] + n * int(fine[FINE_ORBITS_BETWEEN])
     return False
 
 
 @inline_numba
-def period_of_finer_run(state, member, n):
-    """Period of the finer run's orbit: n or a divisor of n, since an orbit may double with coarse steps alone.
+def period_of_fine_run(state, member, n):
+    """Period of the fine run's orbit: n or a divisor of n, since an orbit may double with coarse steps alone.
 
     It is n where the record has fewer than two orbits.
     """
-    record = state.strobes[member, state.first_strobe[0, member] : state.strobe_count[member]]
-    if record.shape[0] < 2 * n:
+    record = state.record
+    strobes = record.strobes[member, record.first_strobe[0, member] : record.strobe_count[member]]
+    if strobes.shape[0] < 2 * n:
         return n
-    return shortest(record, state.scale, n, state.last_check[member, CHECK_DISTANCE], SETTLED_DISTANCE)
+    return shortest(strobes, state.work.scale, n, state.search.last_check[member, CHECK_DISTANCE], SETTLED_DISTANCE)
 
 
 @internal
-def periods_to_next_check(state, member):
+def periods_to_next_check(record, member):
     """Periods until a member's record is checked again: about a sixth of its length."""
-    return max(3, (state.strobe_count[member] - state.first_strobe[0, member]) // 6)
+    return max(3, (record.strobe_count[member] - record.first_strobe[0, member]) // 6)
 
 
 @kernel
-def check_member(state, member):
-    """Begin a member that is new, or check its regime, or what is left of its disturbance.
+def begin_or_check_member(state, member):
+    """Begin a member that is new; else check its regime, or what is left of its disturbance.
 
-    Returns whether the member is due. A coarse member whose orbit is found begins its finer run instead, if one is
-    wanted. If nothing is decided, the next check is set.
+    Returns whether the member is due. A coarse member whose orbit is found begins its fine run instead, if one is
+    wanted. If nothing is decided, the next check is set. A beginning goes through here to be compiled once for all
+    structures.
     """
-    if state.begins[member] != 0:
-        state.begins[member] = 0
+    search, schedule, record = state.search, state.schedule, state.record
+    if schedule.begins[member] != 0:
+        schedule.begins[member] = 0
         begin_member(state, member)
         return False
-    state.next_check[member] = state.periods[member] + periods_to_next_check(state, member)
-    if state.fine_record[member, FINE_PERIOD] > 0.0:
+    schedule.next_check[member] = record.periods[member] + periods_to_next_check(record, member)
+    if search.fine_record[member, FINE_PERIOD] > 0.0:
         return check_fine(state, member)
-    found = judge_disturbance(state, member) if state.tested_period[member] > 0 else check_coarse(state, member)
-    if found and state.finer_steps[member] > 0:
-        begin_finer_run(state, member)
+    found = judge_disturbance(state, member) if search.tested_period[member] > 0 else check_coarse(state, member)
+    if found and schedule.fine_steps[member] > 0:
+        begin_fine_run(state, member)
         return False
     return found

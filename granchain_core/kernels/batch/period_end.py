@@ -14,24 +14,29 @@ def end_period(state, member, check):
 
     `check` is the address of `check_member` (checks.py).
     """
-    state.periods[member] += 1
-    periods = state.periods[member]
-    append_strobe(state.strobes, state.strobe_count, state.first_strobe, state.y, member)
-    maxima = state.maxima[member, periods % STROBES_KEPT]
+    motion, schedule, record, search = state.motion, state.schedule, state.record, state.search
+    record.periods[member] += 1
+    append_strobe(record, motion.y, member)
+    write_maxima(motion.peaks, record.maxima[member, record.periods[member] % STROBES_KEPT], member)
+    motion.phase[0, member], motion.phase[1, member] = 0.0, 1.0
+    schedule.steps_left[member] = schedule.steps[member]
+    if not is_finite_member(motion.y, member):
+        return True
+    if record.periods[member] >= schedule.next_check[member] and call_at(check, (state, member)):
+        return True
+    pending = search.tested_period[member] > 0 or search.change_before[member] > 0.0
+    return record.periods[member] >= schedule.return_at[member] and not pending
+
+
+@inline_llvm
+def write_maxima(peaks, maxima, member):
+    """Write a period's largest forces, jumps and unresolved peaks to `maxima` (MAXIMA,); they begin anew."""
     for q in range(3):
-        maxima[q] = state.peaks[row_of(q), member]
-        state.peaks[row_of(q), member] = 0.0
+        maxima[q] = peaks[row_of(q), member]
+        peaks[row_of(q), member] = 0.0
     for q in range(2):
-        maxima[3 + q] = state.peaks[row_of_jump(q), member]
+        maxima[3 + q] = peaks[row_of_jump(q), member]
         maxima[q] = max(maxima[q], maxima[3 + q])
-        state.peaks[row_of_jump(q), member] = 0.0
-        maxima[5 + q] = state.peaks[row_of_unresolved(q), member]
-        state.peaks[row_of_unresolved(q), member] = 0.0
-    state.phase[0, member], state.phase[1, member] = 0.0, 1.0
-    state.steps_left[member] = state.steps[member]
-    if not is_finite_member(state.y, member):
-        return True
-    if periods >= state.next_check[member] and call_at(check, (state, member)):
-        return True
-    pending = state.tested_period[member] > 0 or state.change_before_extrapolation[member] > 0.0
-    return state.periods[member] >= state.return_at[member] and not pending
+        peaks[row_of_jump(q), member] = 0.0
+        maxima[5 + q] = peaks[row_of_unresolved(q), member]
+        peaks[row_of_unresolved(q), member] = 0.0

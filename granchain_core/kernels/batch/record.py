@@ -23,64 +23,66 @@ def is_finite_member(y, member):
 
 
 @internal
-def append_strobe(strobes, strobe_count, first_strobe, y, member):
+def append_strobe(record, y, member):
     """Append the state to the strobes, dropping their older half if they are full."""
-    bodies = y.shape[0] // 2
-    if strobe_count[member] == strobes.shape[1]:
+    strobes, bodies = record.strobes, y.shape[0] // 2
+    if record.strobe_count[member] == strobes.shape[1]:
         half = strobes.shape[1] // 2
         for p in range(half):
             copy(strobes[member, half + p, 0], strobes[member, p, 0])
             copy(strobes[member, half + p, 1], strobes[member, p, 1])
-        strobe_count[member] = half
+        record.strobe_count[member] = half
         for q in range(2):
-            first_strobe[q, member] = max(0, first_strobe[q, member] - half)
-    row = strobe_count[member]
+            record.first_strobe[q, member] = max(0, record.first_strobe[q, member] - half)
+    row = record.strobe_count[member]
     for i in range(bodies):
         strobes[member, row, 0, i], strobes[member, row, 1, i] = y[i, member], y[bodies + i, member]
-    strobe_count[member] += 1
+    record.strobe_count[member] += 1
 
 
 @internal
-def set_state(state, member, there):
+def set_state(motion, member, there):
     """Set the state of a member at phase 0 to `there` (2, bodies)."""
-    bodies = there.shape[1]
+    y, bodies = motion.y, there.shape[1]
     for i in range(1, bodies - 1):
-        state.y[i, member], state.y[bodies + i, member] = there[0, i], there[1, i]
-    forget_last_step(state, member)
+        y[i, member], y[bodies + i, member] = there[0, i], there[1, i]
+    forget_last_step(motion, member)
 
 
 @internal
-def forget_last_step(state, member):
+def forget_last_step(motion, member):
     """Forget the step before: a member goes on from another state, at phase 0, where the driver is at 0."""
-    for c in range(state.overlaps.shape[0]):
-        left = 0.0 if c == 0 else state.y[c, member]
-        state.overlaps[c, member] = left - state.y[c + 1, member] + state.static_overlap[c, member]
+    for c in range(motion.overlaps.shape[0]):
+        left = 0.0 if c == 0 else motion.y[c, member]
+        motion.overlaps[c, member] = left - motion.y[c + 1, member] + motion.static_overlap[c, member]
     for row in range(4):
-        state.end_contacts[row, member] = 1.0  # counts as closed, so that no closing is recorded here
+        motion.end_contacts[row, member] = 1.0  # counts as closed, so that no closing is recorded here
 
 
 @internal
-def largest_force(state, member, n, q):
+def largest_force(record, member, n, q):
     """The largest force of kind q in a member's last n periods."""
     largest = 0.0
     for p in range(n):
-        largest = max(largest, state.maxima[member, (state.periods[member] - p) % STROBES_KEPT, q])
+        largest = max(largest, record.maxima[member, (record.periods[member] - p) % STROBES_KEPT, q])
     return largest
 
 
 @internal
 def move_member(state, member, there):
     """Move a member to the state `there` (2, bodies), where its record begins anew."""
-    set_state(state, member, there)
-    state.first_strobe[1, member] = state.first_strobe[0, member]
-    state.first_strobe[0, member] = state.strobe_count[member]
-    append_strobe(state.strobes, state.strobe_count, state.first_strobe, state.y, member)
+    record = state.record
+    set_state(state.motion, member, there)
+    record.first_strobe[1, member] = record.first_strobe[0, member]
+    record.first_strobe[0, member] = record.strobe_count[member]
+    append_strobe(record, state.motion.y, member)
 
 
 @internal
 def undo_extrapolation(state, member):
     """Move a member back to its state before the last extrapolation; its record and its periods go on from there."""
-    set_state(state, member, state.state_before[member])
-    state.periods[member] -= state.strobe_count[member] - state.first_strobe[0, member] - 1
-    state.strobe_count[member] = state.first_strobe[0, member]
-    state.first_strobe[0, member] = state.first_strobe[1, member]
+    record = state.record
+    set_state(state.motion, member, state.search.state_before[member])
+    record.periods[member] -= record.strobe_count[member] - record.first_strobe[0, member] - 1
+    record.strobe_count[member] = record.first_strobe[0, member]
+    record.first_strobe[0, member] = record.first_strobe[1, member]

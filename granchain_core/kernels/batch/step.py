@@ -44,7 +44,7 @@ class Values(NamedTuple):
     last: Any
 
 
-class LeftNeighbour(NamedTuple):
+class LeftBead(NamedTuple):
     """What a sweep knows of a bead when it arrives there, in all members: its displacement, and elastic force and G/λ
     of the contact on its left.
     """
@@ -129,7 +129,7 @@ def _(stage, row, slope):
 
 @inline_llvm
 def bead(values, root_of, stage, source, i, left, is_last):
-    """Bead i of a stage whose state is `source`; returns its velocity and the next bead's `LeftNeighbour`."""
+    """Bead i of a stage whose state is `source`; returns its velocity and the next bead's `LeftBead`."""
     bodies = values.last + 2
     right = load_batch(source, i + 1)
     e, right_primitive = contact(values, root_of, left.u, right, i, is_last)
@@ -138,7 +138,7 @@ def bead(values, root_of, stage, source, i, left, is_last):
     use_slope(stage, i, velocity)
     force = force_on_bead(values.slots, i, left.e - e, left.u, velocity)
     use_slope(stage, bodies + i, over_mass(values.unequal, i, force))
-    return velocity, LeftNeighbour(right, e, right_primitive)
+    return velocity, LeftBead(right, e, right_primitive)
 
 
 class ChainEnds(NamedTuple):
@@ -155,7 +155,7 @@ def run_stage(values, stage, source, driver):
     """One stage at the state `source` with the driver at `driver`; returns its `ChainEnds`."""
     last, u = values.last, load_batch(source, 1)
     e_first, first_primitive = contact(values, by_multipliers, driver, u, 0, False)
-    left, v_first = LeftNeighbour(u, e_first, first_primitive), u
+    left, v_first = LeftBead(u, e_first, first_primitive), u
     if last > 1:
         v_first, left = bead(values, by_multipliers, stage, source, 1, left, False)
     for i in range(2, last - 2, 3):
@@ -184,7 +184,7 @@ def batch_step(values, y, stages, h, u0, middle, end):
 
 @inline_llvm
 def update_batch_peaks(values, h, first_overlap, last_overlap, v0, chain_ends, before, peaks):
-    """Follow input force, output force and its elastic part in all members, where a step began."""
+    """Update the peaks of input force, output force and its elastic part in all members, where a step began."""
     law = values.slots.dissipation
     first, last = Approach(first_overlap, v0 - chain_ends.v_first), Approach(last_overlap, chain_ends.v_last)
     first_force = chain_ends.first_elastic + dashpot_force(law, first.overlap, first.rate)
@@ -197,7 +197,7 @@ def update_batch_peaks(values, h, first_overlap, last_overlap, v0, chain_ends, b
 
 @by_slot
 def update_jumps(law, values, h, first, last, before, peaks):
-    """Follow the jumps of both end contacts over the last step. Absent, and where g(0) = 0: forces have none."""
+    """Update the largest jumps of both end contacts with those of the last step. Absent, and if g(0) = 0: no jumps."""
 
 
 @update_jumps.of(*JUMP_LAWS)
@@ -211,7 +211,10 @@ update_jumps.absent_for(*SMOOTH_LAWS)
 
 @inline_llvm
 def update_jump(law, own_damping, h, approach, before, row, peaks, peak):
-    """Follow the jump of one contact; overlap and rate a step ago are rows of `before`, and become those of now."""
+    """Update the largest jump of one contact.
+
+    Its overlap and rate a step ago are rows of `before`, which become those of now.
+    """
     overlap, rate = approach
     overlap_before, rate_before = load_batch(before, row), load_batch(before, row + 1)
     store(before, row, overlap)

@@ -177,7 +177,7 @@ def store(typingctx, array, row, value):
     return types.void(array, types.intp, value), codegen
 
 
-def _neighbour(left: bool):
+def _shifted(left: bool):
     """An intrinsic that shifts two vectors, laid side by side, by one lane to the left or right."""
 
     @intrinsic
@@ -195,7 +195,7 @@ def _neighbour(left: bool):
 
 
 #: from_left(before, here): every lane's left neighbour; from_right(here, ahead): every lane's right neighbour.
-from_left, from_right = _neighbour(True), _neighbour(False)
+from_left, from_right = _shifted(True), _shifted(False)
 
 
 @intrinsic

@@ -1,4 +1,4 @@
-"""Periodicity of stroboscopic states: changes, their decay, the shortest period.
+"""Periodicity of stroboscopic states: changes, the factor by which they shrink, the shortest period.
 
 A curve calls these functions thousands of times.
 
@@ -18,7 +18,7 @@ from ..compiling.jit import brief_kernel, inline_llvm, internal, kernel
 #: [period n, followed, quasi-periodic] Longest period that a batch tests, in drive periods, and longest period of an
 #: orbit that is looked for beside a motion, in a batch or alone. A longer one is settled alone.
 LONGEST_PERIOD = 16
-#: [period n] Fewest changes from which a decay is read.
+#: [period n] Fewest changes from which a contraction factor is taken.
 LEAST_WINDOW = 8
 #: [period n] A state is on its orbit if the bound on its distance, relative to the largest displacement and velocity,
 #: is at most this.
@@ -28,12 +28,13 @@ ROUNDING = 1e-12
 #: [period n] A state whose last change over n periods is larger is not settled. Nothing decays a thousandfold in one
 #: period.
 _LARGEST_SETTLED_CHANGE = 1e-3
-#: [period n] A bound on the distance below this part of the required one needs no steady decay. A slow mode hidden in
-#: it would have to decay a hundred times more slowly than what is observed.
+#: [period n] A bound on the distance below this part of the required one needs no steady contraction. A slow mode
+#: hidden in it would have to decay a hundred times more slowly than what is observed.
 _UNEVEN_PART = 1e-2
-#: [period n] A decay is steady if both halves of its window agree to this part of the slower one.
+#: [period n] A contraction factor is steady if those of both halves of its window agree to this part of the larger one.
 _STEADY_PART = 0.2
-#: [period n] Where the last changes are rounding, the decay is read from changes above rounding times this.
+#: [period n] Where the last changes are rounding, the contraction factor is taken from changes above rounding times
+#: this.
 _ABOVE_ROUNDING = 1e3
 #: [period n] A divisor q of n is the period if changes over q are at most this factor times the bound on the distance …
 _DISTANCES_OVER_DIVISOR = 10.0
@@ -45,32 +46,33 @@ _SLOWEST_APPROACH = 0.97
 #: [period n] A period is looked for, and in a batch extrapolated to, once its change is below this.
 _LARGEST_EXTRAPOLATED_CHANGE = 1e-2
 
-#: [all] Without |μ| a distance is taken to shrink by the observed decay, at most this: the slowest decay that a batch
-#: reports. A slower one would make stated errors larger still.
-SLOWEST_TRUSTED_DECAY = 0.9999
-#: [all] Where no decay was observed, it is taken to shrink by this.
-DECAY_NOT_SEEN = 0.5
+#: [all] Without |μ| a distance is taken to shrink by the observed contraction factor, at most this: the largest factor
+#: that a batch reports. A larger one would make stated errors larger still.
+LARGEST_TRUSTED_CONTRACTION = 0.9999
+#: [all] Where no contraction was observed, a distance is taken to shrink by this factor.
+CONTRACTION_NOT_SEEN = 0.5
 
 
 @internal
-def assumed_decay(decay):
-    """Factor by which a distance is taken to shrink per orbit, from an observed decay; that is ≤ 0 if none was seen."""
-    return min(SLOWEST_TRUSTED_DECAY, decay) if decay > 0.0 else DECAY_NOT_SEEN
+def assumed_contraction(observed):
+    """Factor by which a distance is taken to shrink per orbit, from the observed one, which is ≤ 0 if none was seen."""
+    return min(LARGEST_TRUSTED_CONTRACTION, observed) if observed > 0.0 else CONTRACTION_NOT_SEEN
 
 
 class Detected(NamedTuple):
     """What a record of strobes shows: an orbit, or the approach to one.
 
-    If `period` > 0 the motion has that period: `decay` is its decay per orbit, −1 where none was seen, and `distance`
-    bounds the distance left to the orbit. Else `period` is 0, `approached` is the first period over which changes decay
-    (0 for none), `approach_decay` their factor per `approached` drive periods, `approach_change` the latest of them.
+    If `period` > 0 the motion has that period: `contraction` is the factor by which changes shrink per orbit, −1 where
+    none was seen, and `distance` bounds the distance left to the orbit. Else `period` is 0, `approached` is the first
+    period over which changes shrink (0 for none), `approach_contraction` their factor per `approached` drive periods,
+    `approach_change` the latest of them.
     """
 
     period: int
-    decay: float
+    contraction: float
     distance: float
     approached: int
-    approach_decay: float
+    approach_contraction: float
     approach_change: float
 
 
@@ -133,8 +135,8 @@ def largest_change(change, first, count):
 
 
 @internal
-def decay_in(change, count, n):
-    """The decay per n drive periods in `count` changes, a factor, and whether both halves of them show the same.
+def contraction_in(change, count, n):
+    """Factor per n drive periods by which `count` changes shrink, and whether both halves of them show the same.
 
     Largest changes over one orbit at the window's start, middle and end are compared, so that turning complex
     multipliers do not look like decay or growth; the slower half counts.
@@ -146,13 +148,13 @@ def decay_in(change, count, n):
         return 0.0, True
     power = 2.0 * n / (count - n)
     early, late = (middle / first) ** power, (last / middle) ** power
-    decay = max(early, late)
-    return decay, abs(early - late) < _STEADY_PART * decay
+    contraction = max(early, late)
+    return contraction, abs(early - late) < _STEADY_PART * contraction
 
 
 @internal
 def window_of(n):
-    """Number of changes from which a decay over n periods is read."""
+    """Number of changes from which a contraction factor over n periods is taken."""
     return max(LEAST_WINDOW, 3 * n)
 
 
@@ -174,30 +176,30 @@ def shortest(strobes, scale, n, distance, settled):
 
 
 @internal
-def earlier_decay(strobes, scale, n, rounding, change):
-    """The decay over n periods from the last part of the record that is well above rounding; −1 if none is."""
+def earlier_contraction(strobes, scale, n, rounding, change):
+    """The contraction factor over n periods from the last part of the record well above rounding; −1 if none is."""
     end, count = strobes.shape[0] - 1, window_of(n)
     while end >= n and change_between(strobes, scale, end, end - n) <= _ABOVE_ROUNDING * rounding:
         end -= 1
     if end < count + n - 1:
         return -1.0
     changes_before(strobes, scale, n, end, change[:count])
-    decay, _ = decay_in(change, count, n)
-    return decay if 0.0 < decay < 1.0 else -1.0
+    contraction, _ = contraction_in(change, count, n)
+    return contraction if 0.0 < contraction < 1.0 else -1.0
 
 
 @brief_kernel
 def detect_period(strobes, longest, rounding, settled, slowest, scale, change):
-    """The shortest period of a record of strobes and the decay towards it, as `Detected`.
+    """The shortest period of a record of strobes and the contraction towards it, as `Detected`.
 
-    That period is the smallest whose distance bound change·decay/(1 − decay) is at most `settled`; changes below
-    `rounding` count as none. `slowest` is a decay per drive period that is known to occur, whether these states show it
-    or not.
+    That period is the smallest whose distance bound change·c/(1 − c), c the contraction factor, is at most `settled`;
+    changes below `rounding` count as none. `slowest` is a contraction factor per drive period that is known to occur,
+    whether these states show it or not.
     `scale` (2,) and `change` (`window_of(longest)` or more,) are workspaces.
     """
     run = strobes.shape[0] - 1
     write_scale(strobes, scale)
-    approaching, approached, approach_decay, approach_change = 0, 0, 0.0, 0.0
+    approaching, approached, approach_contraction, approach_change = 0, 0, 0.0, 0.0
     for n in range(1, longest + 1):
         count = window_of(n)
         if run < count + n:
@@ -209,27 +211,27 @@ def detect_period(strobes, longest, rounding, settled, slowest, scale, change):
         if nearer:
             continue  # a shorter period is being approached, which is why the change over this one is small
         if now > _LARGEST_EXTRAPOLATED_CHANGE:
-            continue  # still far from an orbit of n periods: how its changes decay says nothing
+            continue  # still far from an orbit of n periods: how its changes shrink says nothing
         changes_before(strobes, scale, n, run, change[:count])
         if largest_change(change, 0, count) <= rounding:
             q = shortest(strobes, scale, n, rounding, settled)
-            return Detected(q, earlier_decay(strobes, scale, q, rounding, change), rounding, 0, 0.0, 0.0)
-        decay, even = decay_in(change, count, n)
+            return Detected(q, earlier_contraction(strobes, scale, q, rounding, change), rounding, 0, 0.0, 0.0)
+        contraction, even = contraction_in(change, count, n)
         recent = largest_change(change, count - n, n)
-        if decay >= 1.0:
+        if contraction >= 1.0:
             continue
         if approached == 0:
-            approached, approach_decay, approach_change = n, decay, recent
+            approached, approach_contraction, approach_change = n, contraction, recent
         if now > _LARGEST_SETTLED_CHANGE:
             continue
-        if decay < _SLOWEST_APPROACH:
+        if contraction < _SLOWEST_APPROACH:
             approaching |= 1 << n
-        decay = max(decay, slowest**n)
-        distance = recent * decay / (1.0 - decay)
+        contraction = max(contraction, slowest**n)
+        distance = recent * contraction / (1.0 - contraction)
         if distance <= settled and (even or recent <= _UNEVEN_PART * settled):
             q = shortest(strobes, scale, n, distance, settled)
-            return Detected(q, decay ** (q / n), distance, 0, 0.0, 0.0)
-    return Detected(0, 0.0, 0.0, approached, approach_decay, approach_change)
+            return Detected(q, contraction ** (q / n), distance, 0, 0.0, 0.0)
+    return Detected(0, 0.0, 0.0, approached, approach_contraction, approach_change)
 
 
 @internal

@@ -20,7 +20,7 @@ from ...kernels.batch.begin import (
     CHECK_DISTANCE,
     CHECK_PERIOD,
     ORBIT_PERIODS,
-    ORBIT_SLOWEST_DECAY,
+    ORBIT_SLOWEST_CONTRACTION,
 )
 from ...kernels.forces.peaks import HIGHEST
 from ...results.regime import Regime
@@ -35,17 +35,17 @@ from ..settling.refine_orbit import FARTHEST_FROM_ORBIT
 from ..settling.regime_decisions import EXAMINED_AFTER, MOST_PERIODS
 from ..steady_state import IRREGULAR_PERIODS, SteadyState
 
-#: [no threshold] Steps of the finer run of a batch for one of the coarse run.
+#: [no threshold] Steps of the fine run of a batch for one of the coarse run.
 FINE_STEPS_PER_COARSE = 3
 #: [no threshold] Setting for the largest forces of an orbit where they jump: finer than the batch that found the orbit.
 _LOCATED_SETTING = fixed_step_setting(8)
 #: [period n] A batch: an orbit found by extrapolation needs multipliers if its decay per orbit is above this.
 _SLOW_DECAY = 0.998
-#: [period n] A batch: such an orbit, or one near which changes grew in the finer run, is accepted if its largest |μ|,
+#: [period n] A batch: such an orbit, or one near which changes grew in the fine run, is accepted if its largest |μ|,
 #: by one-sided differences, is below this, else settled alone.
 _LARGEST_SURE_MULTIPLIER = 0.995
-#: [no threshold] Typical relative error of the finer run.
-_FINER_ERROR = typical_error(fixed_step_setting(FINE_STEPS_PER_COARSE))
+#: [no threshold] Typical relative error of the fine run.
+_FINE_ERROR = typical_error(fixed_step_setting(FINE_STEPS_PER_COARSE))
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,21 +118,21 @@ class BatchJob:
         return self.periods_run + EXAMINED_AFTER < self.affordable_periods
 
     def fine_result(self, batch: Batch, member: int, orbits: LocatedOrbits) -> SteadyState:
-        """The result of the finer run. Raises `Cancelled`."""
+        """The result of the fine run. Raises `Cancelled`."""
         assert self.coarse is not None
         regime, before = self.coarse
         assert regime.period is not None and regime.distance is not None
-        y, distance = batch.state.y[:, member], float(batch.state.last_check[member, CHECK_DISTANCE])
+        y, distance = batch.state.motion.y[:, member], float(batch.state.search.last_check[member, CHECK_DISTANCE])
         maxima, jumps, unresolved = batch.maxima(member, regime.period)
         farther = max(distance, regime.distance)
-        regime = _with_period(regime, int(batch.state.last_check[member, CHECK_PERIOD]))
+        regime = _with_period(regime, int(batch.state.search.last_check[member, CHECK_PERIOD]))
         if not distance <= FARTHEST_FROM_ORBIT:  # settled alone; a NaN is not near
             return SteadyState(self.scene, maxima * self.scaled.scales.force, replace(regime, distance=distance), None,
                                self.scaled.to_si(y), number=self.number, undecided=True)
         multiplier = self._multiplier(regime, y, batch.grew(member), batch.stop)
         regime = replace(regime, distance=distance, multiplier=multiplier)
         left = force_distances(farther, self.scaled, maxima, y)
-        errors = errors_of_two_orbits(relative_changes(maxima, before), _FINER_ERROR, regime.assumed_contraction) + left
+        errors = errors_of_two_orbits(relative_changes(maxima, before), _FINE_ERROR, regime.assumed_contraction) + left
         rough = (jumps > AT_A_JUMP * maxima[:2]) | (HIGHEST * unresolved > maxima[:2])
         if rough.any():
             rough = np.append(rough, rough[1])
@@ -191,13 +191,14 @@ class LocatedOrbits:
 
 def draft_result(job: BatchJob, batch: Batch, member: int) -> SteadyState:
     """The result of the coarse run alone."""
-    periods_run = int(batch.state.periods[member])
-    period = batch.state.last_check[member, CHECK_PERIOD]
+    periods_run = int(batch.state.record.periods[member])
+    period = batch.state.search.last_check[member, CHECK_PERIOD]
     if period <= 0:
         return unsettled(job, batch, member, periods_run)
-    regime = _periodic(batch.state.last_check[member], batch.state.slowest_decay[member], periods_run)
+    search = batch.state.search
+    regime = _periodic(search.last_check[member], search.slowest_contraction[member], periods_run)
     maxima = batch.settled_maxima(member, int(period)) * job.scaled.scales.force
-    state = job.scaled.to_si(batch.state.y[:, member])
+    state = job.scaled.to_si(batch.state.motion.y[:, member])
     return SteadyState(job.scene, maxima, regime, None, state, number=job.number)
 
 
@@ -206,23 +207,23 @@ def outcome_of_coarse_run(job: BatchJob, batch: Batch, member: int) -> SteadySta
 
     None means that the member goes on.
     """
-    here = int(batch.state.periods[member])
+    here = int(batch.state.record.periods[member])
     periods_run = job.periods_run + here
     if periods_run >= job.affordable_periods:
         return unsettled(job, batch, member, periods_run)
     record = batch.strobes(member)
     if periods_run >= MOST_PERIODS or (len(record) >= SLOW_RECORD and not converging(record)):
         return _to_measure(job, batch, member, periods_run, record.copy())
-    batch.state.return_at[member] = min(here + max(EXAMINED_AFTER // 4, SLOW_RECORD - len(record)),
+    batch.state.schedule.return_at[member] = min(here + max(EXAMINED_AFTER // 4, SLOW_RECORD - len(record)),
                                         job.affordable_periods - job.periods_run)
     return None
 
 
 def take_coarse_orbit(job: BatchJob, batch: Batch, member: int) -> None:
-    """Store what the coarse run found; the member has since run with finer steps."""
-    found = batch.state.coarse_orbit[member]
+    """Store what the coarse run found; the member has since run with fine steps."""
+    found = batch.state.search.coarse_orbit[member]
     job.periods_run += int(found[ORBIT_PERIODS])
-    regime = _periodic(found[:CHECK_COLUMNS], found[ORBIT_SLOWEST_DECAY], job.periods_run)
+    regime = _periodic(found[:CHECK_COLUMNS], found[ORBIT_SLOWEST_CONTRACTION], job.periods_run)
     job.stage, job.coarse = Stage.FINE, (regime, batch.coarse_maxima(member))
 
 
@@ -245,7 +246,7 @@ def _periodic(check: np.ndarray, slowest_decay: float, periods_run: int) -> Regi
 def _to_measure(job: BatchJob, batch: Batch, member: int, periods_run: int, record: np.ndarray) -> BatchJob:
     """A job whose exponent is measured next."""
     maxima = batch.maxima(member, IRREGULAR_PERIODS)[0] * job.scaled.scales.force
-    y = batch.state.y[:, member].copy()
+    y = batch.state.motion.y[:, member].copy()
     return BatchJob(job.scene, job.scaled, y, periods_run, Stage.EXPONENT, record=record, maxima=maxima,
                     number=job.number)
 
@@ -253,7 +254,7 @@ def _to_measure(job: BatchJob, batch: Batch, member: int, periods_run: int, reco
 def unsettled(job: BatchJob, batch: Batch, member: int, periods_run: int) -> SteadyState:
     """The result of a member whose budget of steps is spent."""
     maxima = batch.maxima(member, IRREGULAR_PERIODS)[0] * job.scaled.scales.force
-    state = job.scaled.to_si(batch.state.y[:, member])
+    state = job.scaled.to_si(batch.state.motion.y[:, member])
     return SteadyState(job.scene, maxima, Regime.unsettled(periods_run), None, state,
                       number=job.number)
 

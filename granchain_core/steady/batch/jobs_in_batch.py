@@ -1,6 +1,6 @@
 """Many steady states in batches: settle with coarse steps, then with fine ones; the difference is the error.
 
-Every scene becomes a member of a batch, with coarse steps. Once its orbit is found, the member goes on with finer
+Every scene becomes a member of a batch, with coarse steps. Once its orbit is found, the member goes on with fine
 steps, without a return from the kernel. Once its regime is decided, the next scene takes its place.
 
 Coarse run: `check_coarse` (kernels/batch/checks.py) bounds the distance to the orbit; an orbit that was reached by
@@ -131,7 +131,7 @@ class _JobsInBatch:
     def _start(self, member: int, job: BatchJob) -> None:
         """Make a job a member.
 
-        A coarse run is due after `EXAMINED_AFTER` periods at the latest, a finer run once the difference has decayed. A
+        A coarse run is due after `EXAMINED_AFTER` periods at the latest, a fine run once the difference has decayed. A
         job whose exponent is measured gets a neighbour.
         """
         if job.stage is Stage.EXPONENT:
@@ -141,7 +141,7 @@ class _JobsInBatch:
             return
         if job.stage is Stage.COARSE:
             return_at = min(_DRAFT_PERIODS if self.draft else EXAMINED_AFTER, job.affordable_periods - job.periods_run)
-            self.batch.put(member, job.scaled, job.y, 1, return_at, finer=0 if self.draft else FINE_STEPS_PER_COARSE)
+            self.batch.put(member, job.scaled, job.y, 1, return_at, fine=0 if self.draft else FINE_STEPS_PER_COARSE)
             return
         assert job.coarse is not None
         regime, maxima = job.coarse
@@ -154,7 +154,7 @@ class _JobsInBatch:
         member, finite = self.batch.run()
         job = self.jobs[member]
         measured = job.stage is Stage.EXPONENT
-        if job.stage is Stage.COARSE and self.batch.runs_finer(member):
+        if job.stage is Stage.COARSE and self.batch.is_fine(member):
             take_coarse_orbit(job, self.batch, member)
         if not finite or (measured and np.isnan(self.batch.growth(member)).any()):
             self._free(member)

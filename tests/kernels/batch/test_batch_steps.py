@@ -53,7 +53,7 @@ def run_batch(scenes, refine: float) -> tuple[np.ndarray, np.ndarray]:
         member, finite = batch.run()
         assert finite
         strobes[member], maxima[member] = batch.strobes(member)[: PERIODS + 1, 0].copy(), batch.maxima(member, PERIODS)[0]
-        batch.state.return_at[member] = NEVER
+        batch.state.schedule.return_at[member] = NEVER
     return np.array([strobes[i] for i in range(len(scenes))]), np.array([maxima[i] for i in range(len(scenes))])
 
 

@@ -20,16 +20,17 @@ MEMBER, ROW = BATCH_SIZE - 2, 4
 def seen(record: np.ndarray, before: float | None = None, **numbers: float) -> Batch:
     """A batch of two-bead chains in one member of which all numbers of the beads were `record`, strobe by strobe.
 
-    `before` is what they were before an extrapolation, `numbers` are the member's own in fields of `BatchState`.
+    `before` is what they were before an extrapolation, `numbers` are the member's own, fields of `Search` or `Record`.
     """
     batch = Batch(scene("sec2").evolve(N=2), Stop())
-    batch.state.strobes[MEMBER, : len(record), :, 1:-1] = record[:, None, None]
-    batch.state.strobe_count[MEMBER] = batch.state.periods[MEMBER] = len(record)
-    batch.state.y[[1, 2, ROW + 1, ROW + 2], MEMBER] = record[-1]
+    batch.state.record.strobes[MEMBER, : len(record), :, 1:-1] = record[:, None, None]
+    batch.state.record.strobe_count[MEMBER] = batch.state.record.periods[MEMBER] = len(record)
+    batch.state.motion.y[[1, 2, ROW + 1, ROW + 2], MEMBER] = record[-1]
     if before is not None:
-        batch.state.state_before[MEMBER, :, 1:-1] = before
+        batch.state.search.state_before[MEMBER, :, 1:-1] = before
     for name, value in numbers.items():
-        getattr(batch.state, name)[MEMBER] = value
+        group = batch.state.record if name in batch.state.record._fields else batch.state.search
+        getattr(group, name)[MEMBER] = value
     return batch
 
 
@@ -37,10 +38,10 @@ def test_an_orbit_found_by_extrapolation_is_disturbed_before_it_is_believed() ->
     """States that repeat are periodic where the chain came there by itself; where it was put there they are tried."""
     batch = seen(np.ones(60))
     assert checks.check_coarse.py_func(batch.state, MEMBER)
-    batch = seen(np.ones(60), slowest_decay=0.9)
+    batch = seen(np.ones(60), slowest_contraction=0.9)
     assert not checks.check_coarse.py_func(batch.state, MEMBER)
-    assert batch.state.tested_period[MEMBER] == 1
-    moved = np.abs(batch.state.y[[1, 2, ROW + 1, ROW + 2], MEMBER] - 1.0)
+    assert batch.state.search.tested_period[MEMBER] == 1
+    moved = np.abs(batch.state.motion.y[[1, 2, ROW + 1, ROW + 2], MEMBER] - 1.0)
     assert moved == pytest.approx(checks._DISTURBANCE, rel=1e-9)
 
 
@@ -53,33 +54,34 @@ def test_an_orbit_is_believed_where_its_disturbance_decays(rate: float, stable: 
 
     The scale of displacements and velocities is the member's own: others have used the workspace meanwhile.
     """
-    state = seen(1.0 + 1e-4 * rate ** np.arange(checks._TEST_ORBITS + 1), before=1.0, tested_period=1, slowest_decay=0.9).state
-    state.last_check[MEMBER, checks.CHECK_PERIOD] = 1.0
-    state.scale[:] = 1e-12, 1e12
+    offsets = 1e-4 * rate ** np.arange(checks._TEST_ORBITS + 1)
+    state = seen(1.0 + offsets, before=1.0, tested_period=1, slowest_contraction=0.9).state
+    state.search.last_check[MEMBER, checks.CHECK_PERIOD] = 1.0
+    state.work.scale[:] = 1e-12, 1e12
     assert checks.judge_disturbance.py_func(state, MEMBER) == stable
-    assert state.tested_period[MEMBER] == 0 and (state.slowest_decay[MEMBER] > 0.0) == stable
-    assert (state.y[1, MEMBER] == 1.0) == stable
-    assert (state.last_check[MEMBER, checks.CHECK_PERIOD] == 1.0) == stable, "what was not an orbit has no period"
-    assert state.scale == pytest.approx(1.0, rel=1e-2)
+    assert state.search.tested_period[MEMBER] == 0 and (state.search.slowest_contraction[MEMBER] > 0.0) == stable
+    assert (state.motion.y[1, MEMBER] == 1.0) == stable
+    assert (state.search.last_check[MEMBER, checks.CHECK_PERIOD] == 1.0) == stable, "what was not an orbit has no period"
+    assert state.work.scale == pytest.approx(1.0, rel=1e-2)
 
 
 @pytest.mark.parametrize(("before", "kept"), [(1e-3, True), (1e-9, False)])
 def test_an_extrapolation_is_kept_only_if_the_change_after_it_is_smaller(before: float, kept: bool) -> None:
     """If it is not smaller, the chain returns to the state before the extrapolation and waits twice as long."""
-    state = seen(1.0 + 1e-3 * 0.9 ** np.arange(60), before=0.25, change_before_extrapolation=before,
+    state = seen(1.0 + 1e-3 * 0.9 ** np.arange(60), before=0.25, change_before=before,
                  extrapolate_from=10_000, wait_after_undo=16).state
     assert not checks.check_coarse.py_func(state, MEMBER)
-    assert state.change_before_extrapolation[MEMBER] == 0.0
-    assert (state.y[1, MEMBER] != 0.25) == kept and (state.wait_after_undo[MEMBER] == 16) == kept
+    assert state.search.change_before[MEMBER] == 0.0
+    assert (state.motion.y[1, MEMBER] != 0.25) == kept and (state.search.wait_after_undo[MEMBER] == 16) == kept
 
 
 @pytest.mark.parametrize(("before", "slowest"), [(1e-3, 0.9), (1e-9, 0.0)])
 def test_after_an_undone_extrapolation_an_orbit_is_not_one_that_was_extrapolated_to(before: float, slowest: float) -> None:
-    """Such an orbit is neither disturbed nor called followed: the decay is the one known before the extrapolation."""
-    state = seen(1.0 + 1e-3 * 0.9 ** np.arange(60), change_before_extrapolation=before, extrapolate_from=10_000,
-                 slowest_decay=0.9, slowest_decay_before=0.0).state
+    """Such an orbit is neither disturbed nor called followed: the contraction is that from before the extrapolation."""
+    state = seen(1.0 + 1e-3 * 0.9 ** np.arange(60), change_before=before, extrapolate_from=10_000,
+                 slowest_contraction=0.9, contraction_before=0.0).state
     checks.check_coarse.py_func(state, MEMBER)
-    assert state.slowest_decay[MEMBER] == slowest
+    assert state.search.slowest_contraction[MEMBER] == slowest
 
 
 def test_an_extrapolation_that_is_undone_leaves_no_trace_in_the_record() -> None:
@@ -91,12 +93,12 @@ def test_an_extrapolation_that_is_undone_leaves_no_trace_in_the_record() -> None
     record.move_member.py_func(state, MEMBER, limit)
     assert len(batch.strobes(MEMBER)) == 1 and batch.strobes(MEMBER)[0] == pytest.approx(2.0)
     for _ in range(12):
-        state.periods[MEMBER] += 1
-        record.append_strobe.py_func(state.strobes, state.strobe_count, state.first_strobe, state.y, MEMBER)
+        state.record.periods[MEMBER] += 1
+        record.append_strobe.py_func(state.record, state.motion.y, MEMBER)
     assert len(batch.strobes(MEMBER)) == 13
     record.undo_extrapolation.py_func(state, MEMBER)
     assert batch.strobes(MEMBER)[:, 0, 0] == pytest.approx(before, abs=0.0)
-    assert state.periods[MEMBER] == 59 and state.y[1, MEMBER] == before[-1]
+    assert state.record.periods[MEMBER] == 59 and state.motion.y[1, MEMBER] == before[-1]
 
 
 def test_a_full_record_drops_its_older_half_and_keeps_its_beginning_right() -> None:
@@ -105,8 +107,8 @@ def test_a_full_record_drops_its_older_half_and_keeps_its_beginning_right() -> N
     state = batch.state
     record.move_member.py_func(state, MEMBER, np.full((2, 4), -1.0))
     for k in range(3):
-        state.y[1, MEMBER] = -2.0 - k
-        record.append_strobe.py_func(state.strobes, state.strobe_count, state.first_strobe, state.y, MEMBER)
+        state.motion.y[1, MEMBER] = -2.0 - k
+        record.append_strobe.py_func(state.record, state.motion.y, MEMBER)
     assert batch.strobes(MEMBER)[:, 0, 0].tolist() == [-1.0, -2.0, -3.0, -4.0]
 
 

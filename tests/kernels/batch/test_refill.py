@@ -49,7 +49,7 @@ def seen(scenes: list[Scene], numbers: Sequence[int]) -> Found:
     def fill(member: int) -> None:
         if (number := next(waiting, None)) is None:
             held.pop(member, None)
-            batch.state.return_at[member] = NEVER
+            batch.state.schedule.return_at[member] = NEVER
             return
         held[member], scaled = number, scale_chain(scenes[number])
         start = 1e-3 * (1 + number % 3) * np.sin(np.arange(2.0 * scaled.bodies)).reshape(2, -1)
@@ -88,7 +88,7 @@ def fingerprint(found: SteadyState) -> tuple[object, ...]:
 
 @pytest.mark.parametrize("draft", [False, True])
 def test_steady_states_of_more_scenes_than_places_are_those_of_each_alone(draft: bool) -> None:
-    """A place is filled by the next scene once the finer run of the one before has ended: to the last bit."""
+    """A place is filled by the next scene once the fine run of the one before has ended: to the last bit."""
     scenes = [scene_of(number, "founded") for number in range(COUNT)]
     together = {found.scene.f: found for found in batch_results(iter(scenes), Stop(), draft)}
     assert sorted(together) == [one.f for one in scenes]
@@ -107,36 +107,38 @@ def test_a_bead_far_from_the_driver_that_is_not_finite_is_reported(rows: str) ->
     start[200 if rows == "displacement" else scaled.bodies + 200] = np.nan
     batch.put(2, scaled, start, 1.0, return_at=1, earliest=NEVER)
     member, finite = batch.run()
-    assert member == 2 and np.isfinite(batch.state.y[1, 2]) and not finite
+    assert member == 2 and np.isfinite(batch.state.motion.y[1, 2]) and not finite
 
 
 def test_a_lane_keeps_no_check_of_its_last_member() -> None:
     chosen = scene("sec2").evolve(N=3)
     batch = Batch(chosen, Stop())
-    batch.state.last_check[:] = 7.0
+    batch.state.search.last_check[:] = 7.0
     batch.put(1, scale_chain(chosen), np.zeros(10), 1.0, return_at=1, earliest=NEVER)
     batch.run()
-    assert not batch.state.last_check[1].any()
+    assert not batch.state.search.last_check[1].any()
 
 
 @pytest.mark.parametrize("extrapolated", [False, True])
-def test_a_coarse_run_goes_on_finer_as_if_put_on_its_orbit(extrapolated: bool) -> None:
-    """To the last bit: the same state, largest forces and check as from a finer run that the caller begins."""
+def test_a_coarse_run_goes_on_fine_as_if_put_on_its_orbit(extrapolated: bool) -> None:
+    """To the last bit: the same state, largest forces and check as from a fine run that the caller begins."""
     chosen = scene("sec2").evolve(N=3, f=1100.0 if extrapolated else 400.0)
     scaled = scale_chain(chosen)
-    start, finer = scaled.from_si(rest(chosen)), 3
+    start, fine = scaled.from_si(rest(chosen)), 3
     itself, by_hand = Batch(chosen, Stop()), Batch(chosen, Stop())
-    itself.put(0, scaled, start, 1.0, return_at=NEVER, finer=finer)
+    itself.put(0, scaled, start, 1.0, return_at=NEVER, fine=fine)
     by_hand.put(0, scaled, start, 1.0, return_at=NEVER)
     by_hand.run()
-    assert (by_hand.state.slowest_decay[0] > 0.0) == extrapolated, "the scene no longer shows what it was chosen for"
-    period, decay, _ = by_hand.state.last_check[0]
-    coarse, orbit = by_hand.settled_maxima(0, int(period)), by_hand.state.y[:, 0].copy()
-    by_hand.put_fine(0, scaled, orbit, finer, int(period), decay, coarse)
+    slowest = by_hand.state.search.slowest_contraction[0]
+    assert (slowest > 0.0) == extrapolated, "the scene no longer shows what it was chosen for"
+    period, contraction, _ = by_hand.state.search.last_check[0]
+    coarse, orbit = by_hand.settled_maxima(0, int(period)), by_hand.state.motion.y[:, 0].copy()
+    by_hand.put_fine(0, scaled, orbit, fine, int(period), contraction, coarse)
     for batch in (itself, by_hand):
         assert batch.run() == (0, True)
-    assert itself.runs_finer(0) and itself.state.steps[0] == by_hand.state.steps[0] == finer * scaled.steps_per_period()
+    assert itself.is_fine(0)
+    assert itself.state.schedule.steps[0] == by_hand.state.schedule.steps[0] == fine * scaled.steps_per_period()
     assert (itself.coarse_maxima(0) == coarse).all()
-    assert (itself.state.y[:, 0] == by_hand.state.y[:, 0]).all()
-    assert (itself.state.last_check[0] == by_hand.state.last_check[0]).all()
+    assert (itself.state.motion.y[:, 0] == by_hand.state.motion.y[:, 0]).all()
+    assert (itself.state.search.last_check[0] == by_hand.state.search.last_check[0]).all()
     assert (itself.maxima(0, int(period))[0] == by_hand.maxima(0, int(period))[0]).all()

@@ -37,4 +37,4 @@ def test_unlike_beads_in_a_batch() -> None:
         true = Engine(scenes[member], MethodSetting("dop853", tolerance=1e-11), 1).periods(PERIODS, watch=False)[0][:, 0]
         found = batch.strobes(member)[: PERIODS + 1, 0]
         assert np.abs(found - true).max() < 1e-6 * np.abs(true).max()
-        batch.state.return_at[member] = NEVER
+        batch.state.schedule.return_at[member] = NEVER

@@ -11,7 +11,7 @@ import pytest
 from granchain_core import scene
 from granchain_core.execution.stop import Stop
 from granchain_core.integrate.batch import Batch
-from granchain_core.kernels.batch.checks import check_member
+from granchain_core.kernels.batch.checks import begin_or_check_member
 from granchain_core.kernels.batch.run import run_batch
 from granchain_core.kernels.compiling.by_address import address_of, call_at
 from granchain_core.kernels.strobes.periodicity import detect_period
@@ -55,7 +55,7 @@ def test_all_structures_share_the_checks_of_a_batch() -> None:
         batch = Batch(shown, Stop())
         batch.put(0, batch.example, np.zeros(2 * (shown.N + 2)), 1, return_at=1)
         assert batch.run() == (0, True)
-    assert len(check_member.overloads) == 1 < len(run_batch.overloads)
+    assert len(begin_or_check_member.overloads) == 1 < len(run_batch.overloads)
     find_period(np.zeros((2, 2, 3)))
     assert len(detect_period.overloads) == 1, "a batch and a single chain use one version"
 

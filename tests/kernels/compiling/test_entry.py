@@ -79,8 +79,9 @@ def test_a_batch_compares_the_types_of_the_kernel_that_it_calls_by_address() -> 
     batch.put(0, batch.example, np.zeros(2 * (shown.N + 2)), 1, return_at=1)
     assert batch.run() == (0, True)
     batch._run = lambda *arguments: (0, 0)  # alone it would notice the type as well
-    batch.state = batch.state._replace(limit=batch.state.limit.astype(np.float32))
-    with pytest.raises(TypeError, match="check_member is called with"):
+    work = batch.state.work
+    batch.state = batch.state._replace(work=work._replace(limit=work.limit.astype(np.float32)))
+    with pytest.raises(TypeError, match="begin_or_check_member is called with"):
         batch.run()
 
 

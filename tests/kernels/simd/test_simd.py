@@ -95,10 +95,10 @@ def test_a_member_that_is_not_finite_does_not_lose_the_others() -> None:
     block = Batch(scenes[0], Stop())
     for member, one in enumerate(scenes):
         block.put(member, scale_chain(one), scale_chain(one).from_si(rest(one)), 1, return_at=5, earliest=5)
-    block.state.y[1, 0] = np.nan
+    block.state.motion.y[1, 0] = np.nan
     member, finite = block.run()
     assert member == 0 and not finite
-    assert np.isfinite(block.state.y[:, 1]).all()
+    assert np.isfinite(block.state.motion.y[:, 1]).all()
 
 
 def test_a_scene_with_a_tension_cut_is_not_given_to_batches() -> None:

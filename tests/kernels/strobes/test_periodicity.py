@@ -84,7 +84,7 @@ def test_the_limit_of_a_linear_map_with_few_modes_is_found_at_once(modes: int) -
 def test_of_two_halves_the_slower_one_tells_the_rate() -> None:
     """Nine changes that fall by 0.8 and then by 0.95 fall by 0.95: what is slow stays."""
     changes = np.cumprod([1.0, *[0.8] * 4, *[0.95] * 4])
-    assert periodicity.decay_in(changes, 9, 1) == (pytest.approx(0.95, rel=1e-12), True)
+    assert periodicity.contraction_in(changes, 9, 1) == (pytest.approx(0.95, rel=1e-12), True)
 
 
 @pytest.mark.quick
