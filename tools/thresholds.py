@@ -2,9 +2,9 @@
 
 A threshold is a constant in `granchain_core` whose `#:` comment begins with a mark: `[period n]` names the regimes that
 it decides, `[rotation]` puts it into the table of rotation numbers on the same page, `[response]` into that of
-docs/orbits.md, `[branch]` into that of docs/branches.md and `[safety factor]` into that of docs/accuracy.md. The
-comment's first sentence is its row; what follows, the reason, stays in the code. A number beside thresholds that is
-none itself is marked `[no threshold]`.
+docs/orbits.md, `[branch]` into that of docs/branches.md, `[safety factor]` into that of docs/accuracy.md and
+`[step size]` into that of docs/method.md. The comment's first sentence is its row; what follows, the reason, stays in
+the code. A number beside thresholds that is none itself is marked `[no threshold]`.
 """
 
 from __future__ import annotations
@@ -125,6 +125,25 @@ def table_of_safety_factors() -> str:
 def table_of_branches() -> str:
     """The table of docs/branches.md."""
     return _table("branch")
+
+
+def table_of_step_sizes() -> str:
+    """The table of docs/method.md: what sets the steps of each method, method by method."""
+    rows = sorted((one for one in marked_constants() if one.mark == "step size"), key=lambda one: _METHODS.index(_method(one)))
+    table = ["| method | what | value | constant and file |", "|---|---|---|---|"]
+    for one in rows:
+        what = one.cells.removeprefix(f"{_method(one)}: ")
+        table.append(f"| {_method(one)} | {what}")
+    return "\n".join(table)
+
+
+#: What the steps in the table of docs/method.md belong to, in its order: how the comment of such a constant begins.
+_METHODS = ("Fixed steps", "Error control", "dop853", "dop853, tension cut", "dop853-root", "flow")
+
+
+def _method(one: Marked) -> str:
+    """Whose steps a constant sets."""
+    return one.what.partition(":")[0]
 
 
 def _table(mark: str, reverse: bool = False) -> str:

@@ -3,9 +3,9 @@
     python -m tools.update
 
 - tables in the docs: thresholds (docs/regimes.md, rotation-number.md, orbits.md, branches.md, accuracy.md), methods
-  (docs/method.md), knobs (docs/model.md), equations and scenes (README.md), commands (README.md, docs/command-line.md),
-  drives by a formula (docs/scenes.md), marks of the figures (docs/marks.md), special points and their names
-  in AUTO and MatCont (docs/branches.md, glossary.md), what is used of libraries (docs/libraries.md), metrics
+  and step sizes (docs/method.md), knobs (docs/model.md), equations and scenes (README.md), commands (README.md,
+  docs/command-line.md), drives by a formula (docs/scenes.md), marks of the figures (docs/marks.md), special points and
+  their names in AUTO and MatCont (docs/branches.md, glossary.md), uses of libraries (docs/libraries.md), metrics
   (docs/deployment.md), the dashboard's pages in the map of the code (docs/design.md) and its messages and worker pools
   (docs/dashboard.md);
 - a row for every new scene in the test of share links (tools/links.py);
@@ -51,6 +51,7 @@ from tools.thresholds import (
     table_of_responses,
     table_of_rotation_numbers,
     table_of_safety_factors,
+    table_of_step_sizes,
     tables_of_regimes,
 )
 
@@ -68,6 +69,7 @@ _TABLES = (
     ("docs/accuracy.md", "safety factors", table_of_safety_factors),
     ("docs/method.md", "methods", list_of_methods),
     ("docs/method.md", "orders", table_of_orders),
+    ("docs/method.md", "step sizes", table_of_step_sizes),
     ("docs/model.md", "knobs", table_of_knobs),
     ("README.md", "equations", equations),
     ("README.md", "scenes", table_of_scenes),

@@ -19,11 +19,11 @@ from ..kernels.status import DONE
 from .scaling import ScaledChain
 from .stepper import CallStart, empty_samples
 
-#: At least this many steps are made in a period, so that the driver is never stepped over.
+#: [step size] Error control: fewest steps in a drive period, so that the driver is never stepped over.
 LEAST_STEPS_PER_PERIOD = 16
-#: First step to try, in scaled time, in a period that is long enough.
+#: [step size] Error control: first step to try, in scaled time, in a period that is long enough.
 _INITIAL_STEP = 0.01
-#: Least scale of displacements and of w, in which tolerances are measured.
+#: [step size] Error control: least scale of displacements and of w to which a tolerance is relative.
 _LEAST_SCALE = 1e-3
 # Kernels that are called once a period.
 _EVALUATE_AT_PHASE = Entries(evaluate_at_phase)

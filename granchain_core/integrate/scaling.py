@@ -31,21 +31,25 @@ from ..scene.hertz import EXPONENT, RATE_POWER
 from ..scene.laws import LAWS, require_complete
 from ..scene.state import State
 
-#: Step of the fixed-step method in scaled time where overlaps are about one drive amplitude. Its usual error is
+#: [step size] Fixed steps: longest step in scaled time where overlaps are about one drive amplitude. A third of it, the
+#: fine run of a curve, is to err by less than 1e-6 of the motion, and half of it must not be needed for a picture.
+#: Displacements of section 2 after four periods from rest err by 1.2e-5 (median of 40 frequencies from 100 to 2500 Hz;
+#: at most 1.9e-4); with 0.4 by 1.7e-4, with 0.1 by 9e-7, with a third of 0.2 by 2e-7. Overlaps elsewhere:
 #: `_FIXED_STEP_ERROR` in integrate/methods.py.
 _STEP = 0.2
-#: The same for the oscillation of a bead on its foundation, in radians of phase.
+#: [step size] Fixed steps: longest step of the oscillation of a bead on its foundation, in radians of phase.
 _FOUNDATION_STEP = 0.1
-#: Half of RK4's stability limit on the negative real axis, 2.78, for the fastest damped mode: 4λ/m of the dashpots plus
-#: −∂P/∂v/m of forces from outside the chain.
+#: [step size] Fixed steps: half of RK4's stability limit on the negative real axis, 2.78, for the fastest damped mode:
+#: 4λ/m of the dashpots plus −∂P/∂v/m of forces from outside the chain.
 _DAMPING_LIMIT = 1.39
-#: The largest speed of a bead over that of what pushes it: a light bead leaves a heavy one twice as fast.
+#: [step size] Fixed steps: largest speed of a bead over that of what pushes it: a light bead leaves a heavy one twice
+#: as fast.
 _FASTEST = 2.0
 #: Called for every point of a curve.
 _EVALUATE_AT_PHASE = Entries(evaluate_at_phase)
-#: Fewest steps in one drive period, however slowly the chain moves.
+#: [step size] Fixed steps: fewest in one drive period, however slowly the chain moves.
 _FEWEST_STEPS_PER_PERIOD = 16
-#: More steps than this in one drive period are refused: one period would take a good part of a minute.
+#: [step size] Fixed steps: more in one drive period are refused. One period would take a good part of a minute.
 MOST_STEPS_PER_PERIOD = 50_000_000
 
 

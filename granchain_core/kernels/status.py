@@ -13,7 +13,7 @@ NOT_FINITE = 2
 STEP_TOO_SMALL = 3
 #: A period has more contact events than `EVENTS_PER_CONTACT` times the number of contacts.
 CHATTER = 4
-#: A period took more steps than the limit of the flow (kernels/flow/run.py).
+#: A period took more steps than the flow allows (`_MOST_STEPS` in kernels/flow/run.py).
 TOO_MANY_STEPS = 5
 #: The array that records the run is too small for it: it is computed again with a larger one.
 FULL = 6

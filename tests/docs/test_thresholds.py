@@ -33,7 +33,7 @@ OBSERVERS, GLOSSARY = (" ".join((ROOT / "docs" / f"{name}.md").read_text(encodin
 
 def test_every_mark_has_a_table() -> None:
     """A mark that no table knows would leave its constant out of all pages."""
-    known = {*_REGIMES, "rotation", "response", "branch", "safety factor", "no threshold"}
+    known = {*_REGIMES, "rotation", "response", "branch", "safety factor", "step size", "no threshold"}
     assert {mark for one in marked_constants() for mark in one.mark.split(", ")} <= known
 
 
@@ -111,7 +111,7 @@ NUMBERS = {2: "two", 3: "three", 4: "four"}
     ("docs/parameter-map.md", {r"sends blocks of (\d+) cells": scheduled.CELLS_IN_TASK}),
     ("docs/hard-cases.md", {r"irregular run \((\d+) periods of two": exponent_measurements.MEASURED_PERIODS}),
     ("docs/glossary.md", {r"up to (\d+) beads in one vector": SHORT_CHAIN}),
-    ("granchain_core/kernels/batch/checks.py", {r"at most (\w+) times the distance that its decay": NUMBERS[int(checks.FARTHEST_EXTRAPOLATION)]}),
+    ("granchain_core/kernels/batch/checks.py", {r"at most (\w+) times the distance that the contraction factor": NUMBERS[int(checks.FARTHEST_EXTRAPOLATION)]}),
 ], ids=lambda given: given if isinstance(given, str) else "")
 def test_prose_has_the_values_of_the_constants(file: str, said: dict[str, float | str]) -> None:
     """Numbers in sentences of the docs and of docstrings, where a name in their place would not be read."""

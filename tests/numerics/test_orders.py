@@ -29,15 +29,8 @@ SMOOTHNESS: dict[str, dict[str, Any]] = {
     "closed": {"F0": 5.0}, "none": {"dissipation": "none"}, **{law: {"dissipation": law} for law in LAWS},
     "cut": {"tension": "cut"},
 }
-#: Orders that theory gives, method by method; each is a lower bound, since over the coarser steps a smoother part of
-#: the error may still be the larger one. Where all is smooth a method has the order of its tableau: 4 for RK4, 8 for
-#: dop853; Verlet in (u, v) has 2 only where no force depends on velocities. A fixed step across a contact event
-#: integrates a term [t − t_e]_+^b: the local error is O(h^{1+b}), and there are finitely many events, so the order is
-#: 1 + b. With G =
-#: λδ^{1+a}/(1+a) of a damping law this is 2 + a, hence 2 for the linear dashpot, 2.25 for Tsuji's law, 2.5 for Kuwabara
-#: and Kono's; the elastic force alone has 2.5, and (u, v) has 1, where the dashpot jumps. rk4-split subtracts the
-#: errors of order 2 and 2.5, which leaves those of the closing speed's own change, 3.5. dop853 ends its steps at
-#: events, found on its dense output of order 7, and at the kink of a cut; dop853-root goes on from that dense output.
+#: Orders that theory gives, method by method (docs/method.md, below the table of orders). Each is a lower bound: over
+#: the coarser steps a smoother part of the error may still be the larger one.
 THEORY = {
     ("rk4-split", "closed"): 4.0, ("rk4-split", "none"): 3.5, **{("rk4-split", law): 3.5 for law in LAWS},
     ("rk4", "closed"): 4.0, ("rk4", "none"): 2.5,

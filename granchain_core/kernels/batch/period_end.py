@@ -12,7 +12,7 @@ from .record import STROBES_KEPT, append_strobe, is_finite_member
 def end_period(state, member, check):
     """Record a member's strobe and largest forces, set its phase to 0 exactly; returns whether the member is due.
 
-    `check` is the address of `check_member` (checks.py).
+    `check` is the address of `begin_or_check_member` (checks.py).
     """
     motion, schedule, record, search = state.motion, state.schedule, state.record, state.search
     record.periods[member] += 1

@@ -17,13 +17,13 @@ from .changes import StepInXi, changes_in, first_event, may_change, size_in_xi
 from .forces import end_forces, in_xi, may_exceed
 from .step import Units, attempt, prepare_dense_rows
 
-#: Least factor between two steps.
-_SHRINK = 0.1
-#: Safety factor of a step that is repeated.
-_SAFETY_AGAIN = 0.9
-#: Numbers that overflow in a shorter step than this will do so in any.
+#: [step size] dop853-root: smallest factor from one attempt to the next.
+_MIN_FACTOR = 0.1
+#: [step size] dop853-root: safety factor of a step that is repeated, as in Hairer's dop853.f (SAFE).
+_SAFETY_OF_REPEATED = 0.9
+#: [step size] dop853-root: numbers that overflow in a shorter step than this will do so in any.
 _OVERFLOW_STEP = 1e-9
-#: Most attempts to begin a step, and most steps in a row in which no time passes.
+#: [step size] dop853-root: most attempts to begin a step, and most steps in a row in which no time passes.
 ATTEMPTS = 60
 
 
@@ -109,12 +109,12 @@ def accepted_attempt(context, begin, chosen, dt, units):
         counts[REJECTED] += 1
         limited = True
         if isfinite(square):
-            factor = max(_SHRINK, _SAFETY_AGAIN * inverse_sixteenth_root(square))
+            factor = max(_MIN_FACTOR, _SAFETY_OF_REPEATED * inverse_sixteenth_root(square))
         elif dt < _OVERFLOW_STEP:
             status = NOT_FINITE
             break
         else:
-            factor = _SHRINK  # an overflow: ξ covers far more time than it should
+            factor = _MIN_FACTOR  # an overflow: ξ covers far more time than it should
         h, dt = h * factor, dt * factor
         if is_too_small(dt, begin.t, context.beta):
             status = STEP_TOO_SMALL

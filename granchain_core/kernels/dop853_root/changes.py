@@ -12,23 +12,27 @@ from ..simd.sums import largest_of, lowest_bit
 from ..simd.vector import at, positive_mask
 from .inside import change_before, take_distance, turn_of
 
-#: Time is transformed if the contact's nearest event, at its present speed, is at most this many steps away.
+#: [step size] dop853-root: time is transformed if the contact's nearest event, at its present speed, is at most this
+#: many steps away.
 _MOST_STEPS_AWAY = 1.5
-#: Added to speeds, so that none is divided by zero.
+#: [no threshold] Added to speeds, so that none is divided by zero.
 _LEAST_SPEED = 1e-300
-#: Added to the time to the event of an open contact, which is then never the nearest.
+#: [no threshold] Added to the time to the event of an open contact, which is then never the nearest.
 _OPEN_AWAY = 1e30
-#: A contact that moves less than this part of the largest displacement in a step is at rest: it transforms no time.
-_REST_PART = 1e-9
-#: Length of the first step after a closing, and of the last before an opening, as a part of the step in t. By
-#: measurement, as are the numbers above and below: over seven motions of section 2 and of the rig, 0.06 to 0.2 here and
-#: 0.7 to 2.5 steps away above change the evaluations for an error of 1e-8 by 7 % at most, in either sense.
+#: [step size] dop853-root: a contact that moves less than this part of the largest displacement in a step is at rest.
+#: It transforms no time.
+_REST_DISPLACEMENT = 1e-9
+#: [step size] dop853-root: length of the first step after a closing, and of the last before an opening, as a part of
+#: the step in t. By measurement, as are the numbers above and below: over seven motions of section 2 and of the rig,
+#: 0.06 to 0.2 here and 0.7 to 2.5 steps away above change the evaluations for an error of 1e-8 by 7 % at most, in
+#: either sense.
 _STEP_PART_NEXT_TO_EVENT = 0.12
-#: A step that would reach this part of the way to an opening goes beyond it.
+#: [step size] dop853-root: a step that would reach this part of the way to an opening goes beyond it.
 _OPENING_PART = 0.8
-#: Length of such a step, as a factor of the way to the opening.
+#: [step size] dop853-root: length of such a step, as a factor of the way to the opening.
 _OPENING_FACTOR = 1.3
-#: A distance between two values of a step is searched if the cubic's rise above both, enlarged by this part, reaches 0.
+#: [step size] dop853-root: a distance between two values of a step is searched if the cubic's rise above both, enlarged
+#: by this part, reaches 0.
 _MISSED_PART = 0.25
 
 
@@ -72,7 +76,7 @@ def nearest_event(rates, closed, scale, dt):
     """The closed contact whose closing or opening is nearest in time, before or after; −1 if none is within
     `_MOST_STEPS_AWAY` steps of dt.
     """
-    speed, still = abs(rates.rate), _REST_PART * scale
+    speed, still = abs(rates.rate), _REST_DISPLACEMENT * scale
     away = (abs(rates.overlap) + still) / (speed + _LEAST_SPEED) + _OPEN_AWAY * (1.0 - closed)
     least = -largest_of(-away)
     contact = lowest_bit(~positive_mask(away - least))

@@ -13,7 +13,7 @@ from ..error_control.bracket import maximum_inside, value_at
 from ..error_control.step import TURN_SECTIONS
 
 #: A fraction of the step is checked when it changes by less than this; the next change would be far smaller.
-_ROOT_CHANGE = 1e-9
+_CHECKED_CHANGE = 1e-9
 
 
 class Polynomial(NamedTuple):
@@ -74,7 +74,7 @@ def zero_between(p, low, high, f_low, f_high):
             high = x
         else:
             low = x
-        if f == f_last or abs(x - last) < _ROOT_CHANGE:
+        if f == f_last or abs(x - last) < _CHECKED_CHANGE:
             break
     return x
 

@@ -46,12 +46,15 @@ from .forces import end_forces, in_xi, may_exceed, search_forces
 from .inside import fraction_at, time_inside
 from .step import point_inside
 
-#: Largest factor between two steps.
-_GROW = 1.3
-#: The same where the error is below `_SMALL_ERROR` tolerances.
-_GROW_FAST = 2.0
+#: [step size] dop853-root: largest factor between two steps. By measurement it hardly matters: with 2 for this and the
+#: next, 24 motions of section 2 and the rig take 0.3 % more evaluations for errors of 1e-8 and 1e-10.
+_MAX_FACTOR = 1.3
+#: [step size] dop853-root: largest factor between two steps after an error below `_SMALL_ERROR` tolerances.
+_MAX_FACTOR_OF_SMALL_ERROR = 2.0
+#: [step size] dop853-root: error in tolerances below which a step may grow faster.
 _SMALL_ERROR = 1e-3
-#: Safety factor of the step after an accepted one.
+#: [step size] dop853-root: safety factor of the step after an accepted one. By measurement: with 0.9 seven
+#: motions take 5 % more evaluations for an error of 1e-8, with 0.7 1 % fewer.
 _SAFETY = 0.8
 
 
@@ -165,7 +168,7 @@ def growth(step, end):
     """Factor from the nominal size of a step in time (`accepted_attempt`) to that of the next one."""
     if end.cut and end.x < 0.5:
         return 1.0
-    most = _GROW if step.error_squared > _SMALL_ERROR**2 else _GROW_FAST
+    most = _MAX_FACTOR if step.error_squared > _SMALL_ERROR**2 else _MAX_FACTOR_OF_SMALL_ERROR
     return min(1.0 if step.limited else most, _SAFETY * inverse_sixteenth_root(max(step.error_squared, 1e-24)))
 
 

@@ -27,7 +27,7 @@ NO_KINK, KINK, WRONG_SIDE = range(3)
 #: A kink nearer to an end of the step than this changes the motion by less than rounding: by its square.
 _LEAST_DISTANCE = 1e-8
 #: A contact whose F/g is less than this part of the largest velocity is at rest ahead of a wave: its sign is rounding.
-_REST_PART = 1e-15
+_REST_VELOCITY = 1e-15
 
 
 class ScaledForce(NamedTuple):
@@ -71,7 +71,7 @@ def _(tension, trajectory, t):
     found = False
     for c in range(tension.force_free.size):
         d, rate = overlap(slots.preload, y, c), workspace.k[0, c] - workspace.k[0, c + 1]
-        stiffness, still = slots.chain.stiffness[c], _REST_PART * workspace.scale[1]
+        stiffness, still = slots.chain.stiffness[c], _REST_VELOCITY * workspace.scale[1]
         if d > 0.0 and scaled_force(slots.dissipation, stiffness, d, rate) < -still:
             hold_force_free(tension, slots, y, c)
             found = True
@@ -121,7 +121,7 @@ def first_kink(tension, step, until, counts, skip_wrong_side):
 @first_kink.of(TensionCut)
 def _(tension, step, until, counts, skip_wrong_side):
     slots, drive, y, workspace = step.trajectory
-    first, ready, turned, k, still = 1.0, False, False, workspace.k, _REST_PART * workspace.scale[1]
+    first, ready, turned, k, still = 1.0, False, False, workspace.k, _REST_VELOCITY * workspace.scale[1]
     end = k[stages(workspace)]
     for c in range(slots.chain.stiffness.size):
         d0 = overlap(slots.preload, y, c)

@@ -16,22 +16,26 @@ from .bracket import may_turn, value_at
 from .force_kinks import KINK, WRONG_SIDE, enter_force_free, first_kink
 from .step import Overlap, Step, accepted_step, attempt, crossing, is_too_small, prepare_dense, stages, turning_point
 
-#: Overlap aimed at just past an event, in units of the largest displacement: a few roundings.
+#: [step size] dop853: overlap aimed at just past an event, in units of the largest displacement. It is a few roundings.
 _OVERLAP_AIM = 1e-15
-#: The overlap reached may be this many times larger. The event's time is then as exact as the approach speed allows.
+#: [step size] dop853: an overlap past the event that is at most this many times larger is accepted. The event's time is
+#: then as exact as the approach speed allows.
 _ACCEPTED_FACTOR = 4.0
-#: The same two where tension is cut: a force-free contact may linger at δ = 0 and would chatter with smaller ones.
+#: [step size] dop853, tension cut: overlap aimed at just past an event. A force-free contact may linger at δ = 0 and
+#: would chatter with a smaller one.
 _OVERLAP_AIM_CUT = 1e-14
+#: [step size] dop853, tension cut: an overlap past the event that is at most this many times larger is accepted.
 _ACCEPTED_FACTOR_CUT = 100.0
-#: Most corrections of a step that is to end at an event: Newton's method for one root, which doubles the digits.
+#: [step size] dop853: most corrections of a step that is to end at an event. Newton's method for one root, which
+#: doubles the digits.
 _MOST_CORRECTIONS = 6
-#: A step that is to end at an event may become longer by this factor.
+#: [step size] dop853: a step that is to end at an event may become longer by this factor.
 _EVENT_STRETCH = 1.01
-#: An event within this part of a step of its end needs no shorter step before it is located.
+#: [step size] dop853: an event within this part of a step of its end needs no shorter step before it is located.
 _NEAR_END = 1e-9
-#: After an event is a term (t − t_e)^{5/2}: the first step is this times tolerance^{2/5}, and errs by about the
-#: tolerance.
-_STEP_AFTER_EVENT = 2.0
+#: [step size] dop853: first step after an event over tolerance^{2/5}. A term (t − t_e)^{5/2} follows the event, so that
+#: this step errs by about the tolerance.
+_FIRST_STEP_FACTOR = 2.0
 
 
 @inline_numba
@@ -143,7 +147,7 @@ def located_step(method, trajectory, t, limit, counts):
         h *= x
     if aimed >= 0:
         h = locate_event(method, step, limit, aimed, counts)
-        next_step[0] = min(next_step[0], _STEP_AFTER_EVENT * method.tolerance**0.4)
+        next_step[0] = min(next_step[0], _FIRST_STEP_FACTOR * method.tolerance**0.4)
     elif not kinked and (h < limit - t or factor < 1.0 or next_step[0] <= h):
         next_step[0] = h * factor  # after a kink the motion is smooth on both sides: the next step need not start small
     counts[EVENTS] += aimed >= 0 or kinked

@@ -25,20 +25,21 @@ from ..equations.motion import motion
 from ..status import DONE, EVALUATIONS, NOT_FINITE, REJECTED, STEP_TOO_SMALL
 from .bracket import Bracket, maximum_inside, root_inside, value_at
 
-#: Golden sections around a turning point of an overlap.
+#: [no threshold] Golden sections around a turning point of an overlap.
 TURN_SECTIONS = 40
-#: An overlap's root is found when its fraction of the step changes by less than this.
-_ROOT_CHANGE = 1e-15
-#: Largest factor from one step to the next, as in Hairer's dop853.f (FAC2).
+#: [no threshold] An overlap's root is found when its fraction of the step changes by less than this.
+_LAST_ROOT_CHANGE = 1e-15
+#: [step size] dop853: largest factor from one step to the next, as in Hairer's dop853.f (FAC2).
 _MAX_FACTOR = 6.0
-#: Smallest factor from one attempt to the next (FAC1). Hairer has 1/3; over ten scenes both take as many evaluations.
+#: [step size] dop853: smallest factor from one attempt to the next (FAC1). Hairer has 1/3; over ten scenes both take as
+#: many evaluations.
 _MIN_FACTOR = 0.1
-#: Safety factor of the step-size controller, as in Hairer's dop853.f (SAFE).
+#: [step size] dop853: safety factor of the step-size controller, as in Hairer's dop853.f (SAFE).
 _SAFETY = 0.9
-#: ε in the resolution of t, ε·(t + 1/β): the spacing of floating-point numbers at 1.
+#: [no threshold] ε in the resolution of t, ε·(t + 1/β): the spacing of floating-point numbers at 1.
 _RESOLUTION = 2.2e-16
-#: A step that ends closer to a goal (the period's end, a sample) than this, in periods, ends there: the difference is
-#: the rounding of a sum of steps.
+#: [step size] Error control: a step that ends closer to a goal (the period's end, a sample) than this, in periods, ends
+#: there. The difference is the rounding of a sum of steps.
 GOAL_TOLERANCE = 1e-13
 
 
@@ -182,7 +183,7 @@ def turning_point(signed_overlap, step):
 def crossing(signed_overlap, step, low, high):
     """Fraction between `low` and `high` at which an overlap changes sign."""
     f_low, f_high = value_at(signed_overlap, step, low), value_at(signed_overlap, step, high)
-    return root_inside(signed_overlap, step, Bracket(low, high, f_low, f_high, 0), _ROOT_CHANGE)
+    return root_inside(signed_overlap, step, Bracket(low, high, f_low, f_high, 0), _LAST_ROOT_CHANGE)
 
 
 @internal

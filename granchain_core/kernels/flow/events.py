@@ -15,17 +15,18 @@ from ..status import DONE, EVALUATIONS, LOST, NOT_FINITE, REJECTED, STEP_TOO_SMA
 from .attempt import accepted_in_time, attempt_in_time, first_event
 from .event_time import AFTER, BEFORE, PLAIN, rate_at, size_of, smooth_power, time_at, time_from
 
-#: Largest overlap at a located event, in units of the largest displacement: a few roundings.
+#: [step size] flow: largest overlap at a located event, in units of the largest displacement. It is a few roundings.
 _LARGEST_EVENT_OVERLAP = 1e-14
-#: A step aims at the next opening if that is at most this many step sizes away.
+#: [step size] flow: a step aims at the next opening if that is at most this many step sizes away.
 _OPENING_STEPS = 1.5
-#: Most attempts to locate one event.
+#: [step size] flow: most attempts to locate one event.
 _LOCATION_ATTEMPTS = 8
-#: Most attempts to take one step.
+#: [step size] flow: most attempts to take one step.
 _STEP_ATTEMPTS = 60
-#: Shortest next step to try, in t. Two events that rounding puts at nearly the same time do not make it smaller.
+#: [step size] flow: shortest next step to try, in t. Two events that rounding puts at nearly the same time do not make
+#: it smaller.
 _SHORTEST_STEP = 1e-9
-#: A first step after a closing covers at most this part of the time to the next opening.
+#: [step size] flow: a first step after a closing covers at most this part of the time to the next opening.
 _FIRST_STEP_PART = 0.5
 
 

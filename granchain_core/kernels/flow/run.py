@@ -19,11 +19,11 @@ from .event_time import time_at
 from .events import flow_step
 from .tangent import Tangent, propagate
 
-#: Most steps in one drive period.
+#: [step size] flow: most steps in one drive period.
 _MOST_STEPS = 5_000_000
-#: A step that ends closer to the period's end than this, in periods, ends there. It covers the rounding of a time and
-#: of its map to x. `GOAL_TOLERANCE` (error_control/step.py) is larger, because it also meets the times of samples,
-#: products that are rounded themselves; here it would only add to the error of the map.
+#: [step size] flow: a step that ends closer to the period's end than this, in periods, ends there. It covers the
+#: rounding of a time and of its map to x. `GOAL_TOLERANCE` (error_control/step.py) is larger, because it also meets the
+#: times of samples, products that are rounded themselves; here it would only add to the error of the map.
 _PERIOD_END = 1e-14
 
 

@@ -5,4 +5,22 @@
 * SIMD along a short or a long chain: quartics through equal steps (peaks.py), events as in scalar code.
 * Batches: peaks.py and crossings.py, called from batch/step.py.
 * Methods with error control: their dense output (error_control/force_search.py).
+
+What updates the largest forces, and from what:
+
+=========================== ====================================================
+function                    from
+=========================== ====================================================
+update_largest              one value
+update_maximum              a cubic over a step
+update_forces               a state of which no contact changes
+update_forces_at_event      a state and one side of an event
+update_forces_across_event  both sides of an event
+update_end_forces_at_event  overlaps and rates of the end contacts at an event
+record_closing(s)           the jumps of contacts that close
+update_peak                 the last five values after equal steps
+update_batch_peak           the same in all lanes of a batch
+update_block_peak(s)        the steps of a block of a short chain
+update_jump(s)              overlap and rate before and after a step of a batch
+=========================== ====================================================
 """

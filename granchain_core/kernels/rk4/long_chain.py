@@ -151,7 +151,7 @@ def comes_nearer(simd, slots, v0):
 
 @internal
 def update_long_chain_peaks(slots, simd, v0, peaks):
-    """Follow input force, output force and its elastic part at the last step's start."""
+    """Update the peaks of input force, output force and its elastic part at the last step's start."""
     last = slots.chain.stiffness.size - 1
     block, lane = last // BLOCK_WIDTH, last % BLOCK_WIDTH
     damped = dashpot_force(slots.dissipation, simd.overlap[0, 0], v0 - simd.velocity[0, 1])

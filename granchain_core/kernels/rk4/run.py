@@ -64,7 +64,7 @@ def _(simd, method, trajectory, j, count, out):
 
 @internal
 def update_peaks_at_step_end(slots, y, dy, e, peaks):
-    """Follow the three forces at the end of one of the equal steps (forces/peaks.py)."""
+    """Update the peaks of the three forces at the end of one of the equal steps (forces/peaks.py)."""
     last = e.size - 1
     update_peak(peaks, INPUT, contact_force(slots, y, dy, e, 0))
     update_peak(peaks, OUTPUT, contact_force(slots, y, dy, e, last))

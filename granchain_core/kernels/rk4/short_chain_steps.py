@@ -94,7 +94,7 @@ def keep_forces(short, values, last, k, x):
 
 @internal
 def update_block_peak(values, count, largest, peaks, first):
-    """Follow one force through the steps of a block; step by step only where a largest value may be among them."""
+    """Update the peak of one force with the steps of a block: one by one only if a largest value may be among them."""
     skipped = 0 if HIGHEST * largest > peaks[first] else max(0, count - 4)
     for k in range(skipped, count):
         update_peak(peaks, first, values[k])
@@ -102,7 +102,7 @@ def update_block_peak(values, count, largest, peaks, first):
 
 @inline_numba
 def update_block_peaks(short, count, maxima, peaks):
-    """Follow the three forces through the last `count` steps, whose largest values are `maxima`."""
+    """Update the peaks of the three forces with the last `count` steps, whose largest values are `maxima`."""
     update_block_peak(short.forces[0], count, maxima[0], peaks, INPUT)
     update_block_peak(short.forces[1], count, maxima[1], peaks, OUTPUT)
     update_block_peak(short.forces[2], count, maxima[2], peaks, OUTPUT_ELASTIC)
