@@ -10,7 +10,7 @@ from granchain_core import BadInput, CurvePoint, Run, Scene, Settled, settle
 
 from ..curve.sweep import Progress, Sweep
 from ..frames import samples_for
-from ..parts.stage.pinned_trains import SIGNS
+from ..parts.time_figures.pinned_trains import SIGNS
 from ..serve.compiling.compiler import PICTURE_PIECES
 from ..serve.computing.cpu_time import CpuTime
 from ..serve.computing.worker_pools import ANALYSES, CURVES

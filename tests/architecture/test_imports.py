@@ -113,8 +113,8 @@ def test_the_order_of_the_map_is_read() -> None:
     """A family's own folders, and those that other folders use with it."""
     assert {"serve", "parts", "pages"} == FAMILIES
     assert allowed("serve.compiling") == {"serve.compiling", "serve.computing", "serve.monitoring"}
-    assert {"parts.toolkit", "serve.document", "plots"} <= allowed("parts.stage")
-    assert not {"parts.chain", "curve", "pages"} & allowed("parts.stage")
+    assert {"parts.toolkit", "serve.document", "plots"} <= allowed("parts.time_figures")
+    assert not {"parts.chain", "curve", "pages"} & allowed("parts.time_figures")
     assert {"parts.chain", "serve.computing"} <= allowed("pages.map") and "pages.probe" not in allowed("pages.map")
 
 

@@ -15,7 +15,7 @@ from ...format import prefixed, short_error
 from ...parts.figures.figure_part import FigurePart, page_and_small
 from ...parts.toolkit.component import text
 from ...plots.accuracy import Annotations, accuracy, marks, points
-from ...plots.item import figure_item
+from ...plots.json_item import figure_item
 from ...plots.naive_forces import naive_forces
 from ...plots.theme import Theme
 from ...scripts import module

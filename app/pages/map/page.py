@@ -17,7 +17,7 @@ from granchain_core.parameter_map.cells import cell_of, empty_cells
 from granchain_core.precompile.pieces import ORBIT_KERNELS
 
 from ...parts.toolkit.component import Component
-from ...plots.diagram import now_row
+from ...plots.parameter_map import now_row
 from ...plots.theme import THEMES, Theme
 from ...serve.compiling.compiler import PICTURE_PIECES
 from ...serve.computing.worker_pools import LONG

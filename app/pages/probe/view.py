@@ -11,7 +11,7 @@ from granchain_core import Run
 from ...format import in_words
 from ...parts.figures.figure_part import FigurePart
 from ...parts.toolkit.component import text
-from ...plots.item import figure_item
+from ...plots.json_item import figure_item
 from ...plots.probe import FIGURES, closed_spells, probe_state, without_points
 from ...plots.theme import Theme
 from ...scripts import module

@@ -21,7 +21,7 @@ from ...format import UNSURE_FIGURES, duration, figures_of, prefixed, short_erro
 from ...parts.chain.chain import drawn_chain
 from ...parts.figures.figure_part import FigurePart
 from ...parts.toolkit.component import text
-from ...plots.item import figure_item
+from ...plots.json_item import figure_item
 from ...plots.multipliers import multiplier_words, plane, plane_state
 from ...plots.section import SectionPoints, close_up, section, section_state
 from ...plots.theme import Theme

@@ -8,7 +8,7 @@ from typing import Any
 
 from bokeh.models import LayoutDOM
 
-from ...plots.item import figure_item
+from ...plots.json_item import figure_item
 from ...plots.theme import THEMES, Theme
 from ..toolkit.component import Component
 
