@@ -50,7 +50,7 @@ class CurveController:
         self._compared: list[Callable[[Difference | None], None]] = []
         self._task = Task(host, CURVES, self._ended, "The resonance curve", report_to_host=True)
         self._drafts = LatestWins(partial(host.next_tick, self._draw_draft),
-                                  partial(host.next_tick, host.report_failure), host.session.cpu_time)
+                                  partial(host.next_tick, host.show_failure), host.session.cpu_time)
         self._quiet = Debounce(host, CURVE_QUIET)
         self._reports = Reports(host, self._draw)
         self._visible = True

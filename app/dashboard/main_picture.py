@@ -295,7 +295,7 @@ class MainPicture:
     def _failed(self, error: Exception) -> None:
         """Report a failure; later live steps answer no request."""
         self._asked = None
-        self._host.report_failure(error)
+        self._host.show_failure(error)
 
     def _count_answer(self, asked: _Asked | None) -> None:
         """Count how long the first picture of a request took, and say so if the server is busy with many sessions."""

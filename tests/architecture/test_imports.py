@@ -16,8 +16,8 @@ from source import ROOT, by_folder, imports_in, nodes
 
 import app.server  # noqa: F401  (makes every component and table known)
 from app import library_internals
-from app.parts.figures.figure_part import FigurePart
 from app.parts.figures.result_figure import ResultFigure
+from app.parts.figures.streamed_figure import StreamedFigure
 from app.parts.toolkit.component import Component
 from app.scripts import FILES
 from granchain_core.kernels.compiling import cache, link_only
@@ -279,7 +279,7 @@ def test_the_documentation_names_what_is_used_of_numba() -> None:
 
 def test_parts_override_of_panel_only_what_is_documented() -> None:
     """In their own classes and in those they are mixed from; what takes a shortcut is in one module."""
-    parts = [Component, *Component.__subclasses__(), *FigurePart.__subclasses__(),
+    parts = [Component, *Component.__subclasses__(), *StreamedFigure.__subclasses__(),
              *ResultFigure.__subclasses__()]
     assert len(parts) > 10
     for part in parts:

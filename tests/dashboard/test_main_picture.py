@@ -41,12 +41,12 @@ def test_a_refusal_belongs_to_the_scene_that_was_refused(dashboard: Dashboard) -
     """A knob may have moved before the refusal arrives: what is computed anyway is then not what the sentence is about.
     """
     refused = dashboard.session.scene.evolve(N=10_000)
-    dashboard.report_failure(RefusedPicture(refused, "It would take long."))
+    dashboard.show_failure(RefusedPicture(refused, "It would take long."))
     assert dashboard.session.sentence == "" and not dashboard.views.status_line.state.get("insist")
     dashboard.session.scene = refused
-    dashboard.report_failure(RefusedPicture(refused, "It would take long."))
+    dashboard.show_failure(RefusedPicture(refused, "It would take long."))
     assert dashboard.views.status_line.state["insist"]
-    dashboard.report_failure(BadInput("Something else."))
+    dashboard.show_failure(BadInput("Something else."))
     assert not dashboard.views.status_line.state["insist"]
 
 

@@ -222,7 +222,8 @@ def _bifurcation_plan(chain: Scene, chosen: Mapping[str, str]) -> Plan:
         return bifurcation_diagram(chain, knob, np.linspace(low, high, count), start, keep, stop, progress)
 
     words = f"--over {_axis(knob, (low, high), count)} --start {start} --keep {keep} --bead {bead}"
-    return Plan(f"Bifurcation diagram of bead {bead} over {knob}, {chain.name}", _command("bifurcation-diagram", chain, words),
+    return Plan(f"Bifurcation diagram of bead {bead} over {knob}, {chain.name}",
+                _command("bifurcation-diagram", chain, words),
                 tuple((one, MOTION_KERNELS) for one in ends), compute,
                 lambda found, theme: draw_bifurcation_diagram(found, bead, theme))
 

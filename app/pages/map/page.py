@@ -23,7 +23,7 @@ from ...serve.compiling.compiler import PICTURE_PIECES
 from ...serve.computing.worker_pools import LONG
 from ...session.debounce import Debounce
 from ...session.host import PageHost
-from ...session.message_checks import listed
+from ...session.message_checks import check_index
 from ...session.page import Actions, Page
 from ...session.progress import Status, StatusWords
 from ...session.scene_facts import slider_range
@@ -223,7 +223,7 @@ class MapPage(Page):
 
     def _load(self, message: dict[str, Any]) -> None:
         """Put the chain on an attractor; from then on settled pictures start from the previous state."""
-        found = listed("attractor", self._found, message.get("number"))
+        found = check_index("attractor", self._found, message.get("number"))
         self._host.session.set_start("previous")
         self._host.show(found.scene, found.state)
 

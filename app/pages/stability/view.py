@@ -19,7 +19,7 @@ from granchain_core.steady.regime_criteria import LONGEST_LOCKED_PERIOD
 
 from ...format import UNSURE_FIGURES, duration, figures_of, prefixed, short_error, with_figures
 from ...parts.chain.chain import drawn_chain
-from ...parts.figures.figure_part import FigurePart
+from ...parts.figures.streamed_figure import StreamedFigure
 from ...parts.toolkit.component import text
 from ...plots.json_item import figure_item
 from ...plots.multipliers import multiplier_words, plane, plane_state
@@ -41,7 +41,7 @@ def empty_figures(theme: Theme) -> dict[str, Any]:
             "small": figure_item(plane(empty, theme, compact=True))}
 
 
-class Stability(FigurePart):
+class Stability(StreamedFigure):
     """The overlay and, through what it shares in the browser, the small version in its tab."""
 
     _esm = module("stability.js")

@@ -18,7 +18,7 @@ def page_and_small(draw: Callable[[bool], LayoutDOM]) -> dict[str, Any]:
     return {"page": figure_item(draw(False)), "small": figure_item(draw(True))}
 
 
-class FigurePart(Component):
+class StreamedFigure(Component):
     """A component with figures. They are sent without data when first needed, and again when the theme changes.
 
     `figures` are Bokeh's JSON by name, kept out of `state` because each change sends all of that. Data come as
