@@ -17,7 +17,7 @@ from bokeh.settings import settings
 
 from .curve.sweep import CURVES_SHARED
 from .dashboard.entry import page
-from .dashboard.main_picture import PICTURES_SHARED
+from .dashboard.picture_work import PICTURES_SHARED
 from .library_internals import check_releases
 from .serve.compiling.compiler import COMPILER
 from .serve.computing.shared import Shared
