@@ -1,4 +1,5 @@
-"""The command line of granchain; each command is a module of its name, and commands.py has the list.
+"""The command line: a module for each command (`commands.py` lists them), and what commands share: options, figures,
+waiting, endings.
 
 Names, JSON keys and exit statuses are what others script against: 0 done, 2 bad input, 3 the numbers failed,
 130 cancelled by Ctrl-C, 143 by SIGTERM.

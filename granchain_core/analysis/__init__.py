@@ -1,1 +1,3 @@
-"""Analyses, a module each: spectrum, Lyapunov spectrum, rotation number, bifurcation diagram, basins, pulses, bands."""
+"""Analyses (docs/analysis.md): spectrum, Lyapunov spectrum, rotation number, bifurcation diagram, basins; the pulse
+of an impact and pass bands (docs/scenes.md).
+"""

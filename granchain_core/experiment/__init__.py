@@ -1,4 +1,6 @@
-"""Measured data: a user's tables and series, and the peaks and valleys that the paper's text states."""
+"""Measured data: a user's tables and series, with questions about what a table leaves open (docs/data.md), and the
+peaks and valleys that the paper's text states.
+"""
 
 from .columns import Convention
 from .compare import Difference, compared

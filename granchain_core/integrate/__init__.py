@@ -1,4 +1,6 @@
-"""Time integration: from a scene to scaled numbers, the table of methods, the engine that advances a state."""
+"""Time integration: from a scene to scaled numbers, the table of methods, the engine that carries a state, the
+batch.
+"""
 
 from .counts import Counts
 from .engine import Engine

@@ -1,4 +1,6 @@
-"""Scenes: frozen descriptions in SI, presets, the tables of knobs and damping laws; a chain's state at one instant."""
+"""Scenes: frozen descriptions in SI, the tables of knobs and damping laws, presets, the equation on screen; a
+chain's state at one instant.
+"""
 
 from .amplitude import Amplitude
 from .description import Bead, hertz_stiffness

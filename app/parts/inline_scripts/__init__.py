@@ -1,1 +1,3 @@
-"""The scripts that are written into the page and run before any module."""
+"""Scripts that are written into the page and run before any module: what all scripts share, the address, the
+connection.
+"""

@@ -1,1 +1,3 @@
-"""What every part and page is made of: the base class of components, elements and controls."""
+"""What parts and pages are made of: the base class of components; elements, controls and small drawings in the
+browser.
+"""
