@@ -209,7 +209,7 @@ class Controller:
             account_activity(self.session, self.busy), *(page.activity for page in self.pages if page.activity),
         ]
 
-    # What happens here
+    # Events of the parts
 
     def picture_ready(self, settled: Settled) -> None:
         """A settled picture is ready: notify header and pins now, and the pages once the picture is offered."""
