@@ -35,8 +35,8 @@ CURVE_QUIET = 0.35
 class CurveController:
     """Computes the selected curves while they are on the screen, each once for the same knobs.
 
-    `placed` is called when a curve from rest is complete, and when one that was expected is not computed: it shows
-    where on the curve the present motion lies.
+    `placed` shows where on the curve from rest the present motion lies. It is called when such a curve is complete, and
+    when an expected curve will not be computed.
     """
 
     def __init__(self, host: PageHost, figure: CurveFigure, bar: CurveBar, placed: Callable[[], None]) -> None:
@@ -132,7 +132,7 @@ class CurveController:
                                              f"({type(failure).__name__}).")
 
     def _give_up(self) -> None:
-        """Show no curve: this chain has none, or it would take too long, and another chain's belongs to no picture."""
+        """Show no curve: the chain has none, or its curve would take too long. That of another chain would mislead."""
         self.stop()
         self._complete_for.clear()
         self._figure.clear()
@@ -205,12 +205,12 @@ class CurveController:
         return found
 
     def measured(self, measured: Measured | None) -> Difference | None:
-        """Show the visitor's own data, or none; returns them beside the curve from rest, once that is there."""
+        """Draw the visitor's own data, or none; return their difference from a complete curve from rest."""
         self._figure.measured(measured)
         return self._figure.difference
 
     def on_compared(self, action: Callable[[Difference | None], None]) -> None:
-        """Call `action` with the visitor's data beside each complete curve from rest; with None when one is begun."""
+        """Call `action` with each complete curve's difference from the data; with None when a curve is begun."""
         self._compared.append(action)
 
     def _notify_compared(self, difference: Difference | None) -> None:

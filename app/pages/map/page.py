@@ -152,7 +152,7 @@ class MapPage(Page):
             job.next_tick(self._show, rows)
 
     def _in_front(self) -> bool:
-        """Whether the picture or the curve, which come first, is being computed."""
+        """Whether a picture or the curve is being computed, for which the map waits."""
         return self._host.awaiting_picture or self._host.curve_computing
 
     # To the browser

@@ -92,7 +92,8 @@ class StabilityPage(Page):
         """A picture has arrived: if it is the final one for these knobs, analyse it if it stays."""
         if not settled.final:
             return
-        again = self._settled is not None and settled.state is self._settled.state  # with its energy account
+        # the same picture, with its energy account
+        again = self._settled is not None and settled.state is self._settled.state
         self._settled = settled
         if not again:
             self._start, self._rank = self._host.session.initial_state, 0
@@ -116,7 +117,7 @@ class StabilityPage(Page):
         self.status = "none"
 
     def _begin(self) -> None:
-        """Analyse the picture, unless there is none, that was done, or nobody looks."""
+        """Analyse the picture, unless there is none, it has been analysed, or nobody looks."""
         settled = self._settled
         if not self._visible or settled is None or self._analysed is settled.state:
             return
