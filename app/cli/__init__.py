@@ -1,7 +1,7 @@
 """The command line: a module for each command (`commands.py` lists them), and what commands share: options, figures,
 waiting, endings.
 
-Names, JSON keys and exit statuses are what others script against: 0 done, 2 bad input, 3 the numbers failed,
+Names, JSON keys and exit statuses are what others script against: 0 done, 2 bad input, 3 the computation failed,
 130 cancelled by Ctrl-C, 143 by SIGTERM.
 
 Nothing is imported here: the commands take a second to load, and Ctrl-C in that second must end as it does later.

@@ -260,8 +260,9 @@ QUESTIONS = {one.name: one for one in (
         "spectrum", "Which frequencies?", "The lines of a force of the settled motion: where it has energy, and "
         "whether they are multiples of f or of f / n.", _spectrum_fields, _spectrum_plan),
     AnalysisQuestion(
-        "strobes", "What over a knob?", "The position of a bead once per drive period, at each value of a knob: one "
-        "point means period 1, n points period n, many points a quasi-periodic or chaotic motion.",
+        "strobes", "What changes over a knob?", "The bifurcation diagram: the position of a bead once per drive "
+        "period, at each value of a knob. One point means period 1, n points period n, many points a quasi-periodic or "
+        "chaotic motion.",
         _bifurcation_fields, _bifurcation_plan),
     AnalysisQuestion(
         "basins", "Which start leads where?", "Starts in a plane of two coordinates, with all others zero, coloured by "

@@ -133,7 +133,8 @@ def evidence(settled: Settled, analysis: OrbitAnalysis | None, section: Section 
     if regime.distance is not None:
         row("distance to the orbit", f"≤ {short_error(regime.distance)}, same method",
             "Bound on the relative distance of the settled picture from the orbit of the method that settled it: its "
-            "change over one orbit times r/(1 − r), where r is |μ| if it was computed, else the decay, else ½.")
+            "change over one orbit times r/(1 − r), where r is |μ|, or the decay if |μ| was not computed, or ½ if "
+            "neither is known.")
     if regime.lyapunov is not None:
         row("Lyapunov exponent", f"{exponent_words(*regime.lyapunov)} per drive period",
             "Mean rate at which neighbouring motions separate, with its standard error over blocks of periods"

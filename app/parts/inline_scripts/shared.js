@@ -52,7 +52,7 @@ window.granchain = (() => {
     }
   }
 
-  /** The theme: what the visitor has chosen, now or at an earlier visit, else that of the system. */
+  /** The theme: the visitor's choice, of now or an earlier visit, or without one that of the system. */
   class Theme {
     names = THEMES;
     #events;
