@@ -1,5 +1,4 @@
-"""The command line: a module for each command (`commands.py` lists them), and what commands share: options, figures,
-waiting, endings.
+"""The command line: a module for each command (`commands.py` lists them), and what commands share.
 
 Names, JSON keys and exit statuses are what others script against: 0 done, 2 bad input, 3 the computation failed,
 130 cancelled by Ctrl-C, 143 by SIGTERM.

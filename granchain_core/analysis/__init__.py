@@ -1,3 +1,1 @@
-"""Analyses (docs/analysis.md): spectrum, Lyapunov spectrum, rotation number, bifurcation diagram, basins; the pulse
-of an impact and pass bands (docs/scenes.md).
-"""
+"""Analyses (docs/analysis.md): spectra, rotation number, bifurcation diagram, basins; pulses and pass bands."""

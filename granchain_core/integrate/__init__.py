@@ -1,6 +1,4 @@
-"""Time integration: from a scene to scaled numbers, the table of methods, the engine that carries a state, the
-batch.
-"""
+"""Time integration: from a scene to scaled numbers, the table of methods, the engine that carries a state, batches."""
 
 from .counts import Counts
 from .engine import Engine

@@ -1,3 +1,1 @@
-"""Scripts that are written into the page and run before any module: what all scripts share, the address, the
-connection.
-"""
+"""Scripts that the page runs before any module: what all scripts share, the address, the connection."""

@@ -1,3 +1,1 @@
-"""What comes from outside: guards, sessions and their number, the rules of messages, the rate of frames, limits,
-compressed files; health and metrics for operators.
-"""
+"""What comes from outside: guards, sessions, rules of messages, limits, files; health and metrics for operators."""
