@@ -129,7 +129,8 @@ def server_at(port: int, address: str, access: Access | None = None) -> Server:
         websocket_ping_interval=PING_INTERVAL, websocket_ping_timeout=PING_INTERVAL,
         unused_session_lifetime_milliseconds=UNCONNECTED_MS, check_unused_sessions_milliseconds=SESSION_CHECK_MS,
         session_token_expiration=TOKEN_LIFETIME,
-        sign_sessions=True, secret_key=secret, **install_guards(rules), **dict(access.sign_in))
+        sign_sessions=True, secret_key=secret, log_function=logs.log_request, **install_guards(rules),
+        **dict(access.sign_in))
     add_shared_metrics()
     return server
 
