@@ -1,1 +1,1 @@
-"""The granchain command line and dashboard; nothing in `granchain_core` imports them."""
+"""The command line and the dashboard; nothing in `granchain_core` imports them."""

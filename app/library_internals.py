@@ -87,7 +87,7 @@ def _missing(row: Internal) -> Iterator[str]:
 
 
 def _find(path: str) -> Any:
-    """What a dotted name means: a module, or something in one; None where there is nothing."""
+    """The module or the object in a module that a dotted name means; None if there is none."""
     parts = path.split(".")
     for length in range(len(parts), 0, -1):
         try:

@@ -17,7 +17,7 @@ from bokeh.settings import settings
 
 from .curve.sweep import CURVES_SHARED
 from .dashboard.entry import page
-from .dashboard.main_picture import PICTURES_SHARED
+from .dashboard.picture_work import PICTURES_SHARED
 from .library_internals import check_releases
 from .serve.compiling.compiler import COMPILER
 from .serve.computing.shared import Shared
@@ -129,7 +129,8 @@ def server_at(port: int, address: str, access: Access | None = None) -> Server:
         websocket_ping_interval=PING_INTERVAL, websocket_ping_timeout=PING_INTERVAL,
         unused_session_lifetime_milliseconds=UNCONNECTED_MS, check_unused_sessions_milliseconds=SESSION_CHECK_MS,
         session_token_expiration=TOKEN_LIFETIME,
-        sign_sessions=True, secret_key=secret, **install_guards(rules), **dict(access.sign_in))
+        sign_sessions=True, secret_key=secret, log_function=logs.log_request, **install_guards(rules),
+        **dict(access.sign_in))
     add_shared_metrics()
     return server
 

@@ -1,4 +1,4 @@
-"""The public names of `granchain_core`, and `figure` and `dashboard`.
+"""The public names of `granchain_core` under the project's name, and `figure` and `dashboard`.
 
     import granchain
     result = granchain.run(granchain.scene("sec2").evolve(f=340.0))

@@ -26,11 +26,11 @@ if TYPE_CHECKING:
     from .accuracy import WorkPrecision, work_precision
     from .analysis.bands import bands
     from .analysis.basins import Basins, basins
+    from .analysis.bifurcation_diagram import BifurcationDiagram, StrobeDiagram, bifurcation_diagram, strobe_diagram
     from .analysis.lyapunov_spectrum import LyapunovSpectrum, lyapunov_spectrum
     from .analysis.pulse import Pulse, pulse
     from .analysis.rotation_number import RotationNumber, rotation_number
     from .analysis.spectrum import Spectrum, Transfer, spectrum, transfer
-    from .analysis.strobe_diagram import StrobeDiagram, strobe_diagram
     from .attractors import Attractor, Attractors, attractors
     from .bifurcation_curves import BifurcationCurve, bifurcation_curves
     from .execution.stop import Stop
@@ -73,8 +73,8 @@ _MODULES = {
     "analysis.basins": ("Basins", "basins"), "analysis.spectrum": ("Spectrum", "Transfer", "spectrum", "transfer"),
     "analysis.lyapunov_spectrum": ("LyapunovSpectrum", "lyapunov_spectrum"),
     "analysis.rotation_number": ("RotationNumber", "rotation_number"),
-    "analysis.strobe_diagram": ("StrobeDiagram", "strobe_diagram"), "analysis.pulse": ("Pulse", "pulse"),
-    "analysis.bands": ("bands",),
+    "analysis.bifurcation_diagram": ("BifurcationDiagram", "StrobeDiagram", "bifurcation_diagram", "strobe_diagram"),
+    "analysis.pulse": ("Pulse", "pulse"), "analysis.bands": ("bands",),
 }
 _MODULE_OF = {name: module for module, names in _MODULES.items() for name in names}
 #: Public names of functions that the modules call by their older names: there `orbit` and `branch` are variables.
@@ -82,17 +82,18 @@ _SHORT = {"orbit": "periodic_orbit", "branch": "continue_branch"}
 
 #: Older names, which still work (docs/python.md).
 OLDER_NAMES = {"settled": "settle", "periodic_orbit": "orbit", "continue_branch": "branch",
-               "diagram": "parameter_map", "Diagram": "ParameterMap", "NumbersFailed": "ComputationError"}
+               "diagram": "parameter_map", "Diagram": "ParameterMap", "NumbersFailed": "ComputationError",
+               "strobe_diagram": "bifurcation_diagram", "StrobeDiagram": "BifurcationDiagram"}
 
 __all__ = [
-    "Amplitude", "Attractor", "Attractors", "BadInput", "Basins", "Bead", "BifurcationCurve", "Branch", "Cancelled",
-    "ComputationError", "Cost", "Curve", "CurvePoint", "Diagram", "Driven", "Fit", "LiveChain", "LyapunovSpectrum",
-    "Observation", "Orbit", "OverBudget", "ParameterMap", "Pulse", "Regime", "RotationNumber", "Run", "Runs",
-    "Scene", "Settled", "Signal", "Spectrum", "State", "Stop", "StrobeDiagram", "Transfer", "WorkPrecision",
-    "__version__", "attractors", "bands", "basins", "bifurcation_curves", "branch", "diagram", "drive", "fit",
-    "iter_curve", "load", "lyapunov_spectrum", "observe", "orbit", "parameter_map", "pulse", "resonance_curve",
-    "rotation_number", "run", "run_many", "save", "scene", "scene_names", "settle", "settling", "spectrum",
-    "strobe_diagram", "transfer", "work_precision",
+    "Amplitude", "Attractor", "Attractors", "BadInput", "Basins", "Bead", "BifurcationCurve", "BifurcationDiagram",
+    "Branch", "Cancelled", "ComputationError", "Cost", "Curve", "CurvePoint", "Diagram", "Driven", "Fit", "LiveChain",
+    "LyapunovSpectrum", "Observation", "Orbit", "OverBudget", "ParameterMap", "Pulse", "Regime", "RotationNumber",
+    "Run", "Runs", "Scene", "Settled", "Signal", "Spectrum", "State", "Stop", "StrobeDiagram", "Transfer",
+    "WorkPrecision", "__version__", "attractors", "bands", "basins", "bifurcation_curves", "bifurcation_diagram",
+    "branch", "diagram", "drive", "fit", "iter_curve", "load", "lyapunov_spectrum", "observe", "orbit", "parameter_map",
+    "pulse", "resonance_curve", "rotation_number", "run", "run_many", "save", "scene", "scene_names", "settle",
+    "settling", "spectrum", "strobe_diagram", "transfer", "work_precision",
 ]
 
 

@@ -65,7 +65,7 @@ class FakeHost(Pending):
         for action in self.closing:
             action()
 
-    def report_failure(self, error: Exception) -> None:
+    def show_failure(self, error: Exception) -> None:
         """What has no place on a page."""
         self.failures.append(error)
 

@@ -5,9 +5,8 @@ from __future__ import annotations
 import argparse
 import re
 import textwrap
-from importlib import import_module
 
-from app.cli.commands import COMMANDS
+from app.cli.commands import COMMANDS, module_of
 
 
 def table_of_commands() -> str:
@@ -40,5 +39,5 @@ def commands_with_pictures() -> str:
 def _help(command: str) -> str:
     """What `granchain COMMAND --help` says of its options."""
     parser = argparse.ArgumentParser()
-    import_module(f"app.cli.{command}").add_options(parser)
+    module_of(command).add_options(parser)
     return parser.format_help()

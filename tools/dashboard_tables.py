@@ -1,10 +1,8 @@
-"""Tables that follow from the dashboard's code: its pages (docs/design.md) and messages (docs/dashboard.md)."""
+"""Tables of docs/dashboard.md that follow from the dashboard's code: its messages."""
 
 from __future__ import annotations
 
-import ast
 import re
-from pathlib import Path
 
 from bokeh.document import Document
 
@@ -12,20 +10,10 @@ from app.dashboard.controller import Controller
 from app.scripts import FILES
 from app.session.session import Session
 
-_PAGES = Path(__file__).resolve().parents[1] / "app" / "pages"
 #: In the scripts: a comparison of the message's type with a name.
 _READS = re.compile(r'(?:\bmessage\.|(?<![.\w]))type [!=]==\s+"([\w-]+)"')
 #: A message whose type no script compares: any message of the chain shows that the server answers.
 _READ_OTHERWISE = {"chain.js": ["pong"]}
-
-
-def table_of_pages() -> str:
-    """The rows of the map for the folders of `app/pages`: what the docstring of each says."""
-    rows = []
-    for folder in sorted(path.parent for path in _PAGES.glob("*/__init__.py")):
-        words = (ast.get_docstring(ast.parse((folder / "__init__.py").read_text(encoding="utf-8"))) or "").removesuffix(".")
-        rows.append(f"| `app/pages/{folder.name}` | {words[:1].lower()}{words[1:]} | – |")
-    return "\n".join(["| page | what is in it | uses |", "|---|---|---|", *rows])
 
 
 def messages_of_the_browser() -> dict[str, list[str]]:

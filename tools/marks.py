@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.parts.stage.pinned_trains import SIGNS
+from app.parts.time_figures.pinned_trains import SIGNS
 from app.plots.branches import LINES, SPECIAL, SPECIAL_STYLES
 from app.plots.curve import SWEEPS
 from app.plots.force_lines import DRIVE, ELASTIC, INPUT, MEASURED, OUTPUT

@@ -6,7 +6,7 @@
   and step sizes (docs/method.md), knobs (docs/model.md), equations and scenes (README.md), commands (README.md,
   docs/command-line.md), drives by a formula (docs/scenes.md), marks of the figures (docs/marks.md), special points and
   their names in AUTO and MatCont (docs/branches.md, glossary.md), uses of libraries (docs/libraries.md), metrics
-  (docs/deployment.md), the dashboard's pages in the map of the code (docs/design.md) and its messages and worker pools
+  (docs/deployment.md), the map of the code (docs/design.md), the dashboard's messages and worker pools
   (docs/dashboard.md);
 - a row for every new scene in the test of share links (tools/links.py);
 - for every new or changed scene the largest values that its pictures are drawn to (tools/scales.py) and its picture in
@@ -21,11 +21,7 @@ from pathlib import Path
 
 from tools import gallery, links, scales
 from tools.command_tables import commands_with_pictures, table_of_commands, table_of_json
-from tools.dashboard_tables import (
-    table_of_messages_of_the_browser,
-    table_of_messages_of_the_server,
-    table_of_pages,
-)
+from tools.dashboard_tables import table_of_messages_of_the_browser, table_of_messages_of_the_server
 from tools.generated import with_part
 from tools.lists import (
     equations,
@@ -38,6 +34,7 @@ from tools.lists import (
     table_of_scenes,
     table_of_worker_pools,
 )
+from tools.map_of_code import table_of_folders, table_of_pages
 from tools.marks import (
     table_of_lines_over_a_knob,
     table_of_lines_over_time,
@@ -83,6 +80,7 @@ _TABLES = (
     ("docs/marks.md", "lines over time", table_of_lines_over_time),
     ("docs/libraries.md", "libraries", table_of_libraries),
     ("docs/deployment.md", "metrics", table_of_metrics),
+    ("docs/design.md", "folders", table_of_folders),
     ("docs/design.md", "pages of the dashboard", table_of_pages),
     ("docs/dashboard.md", "messages of the browser", table_of_messages_of_the_browser),
     ("docs/dashboard.md", "messages of the server", table_of_messages_of_the_server),

@@ -1,6 +1,6 @@
-"""The command line of granchain; each command is a module of its name, and commands.py has the list.
+"""The command line: a module for each command (`commands.py` lists them), and what commands share.
 
-Names, JSON keys and exit statuses are what others script against: 0 done, 2 bad input, 3 the numbers failed,
+Names, JSON keys and exit statuses are what others script against: 0 done, 2 bad input, 3 the computation failed,
 130 cancelled by Ctrl-C, 143 by SIGTERM.
 
 Nothing is imported here: the commands take a second to load, and Ctrl-C in that second must end as it does later.

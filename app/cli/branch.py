@@ -168,7 +168,7 @@ def _begun(arguments: argparse.Namespace, stop: Any) -> _Begun:
 
 
 def _interrupted(arguments: argparse.Namespace, kept: OrbitCheckpoints) -> Branch | None:
-    """What there is of the branch that --resume asks for, in its blocks or in --out; None where nothing is."""
+    """The part of the branch that is there already, from its blocks or from --out; None if there is none."""
     from granchain_core.store import load_branch
 
     if arguments.resume is None:
@@ -238,7 +238,7 @@ def _show(found: Branch) -> None:
 
 
 def _grazing_words(found: SpecialPoint, axis: KnobAxis) -> str:
-    """What a contact has once more, and on which side of the knob."""
+    """Which contact event an orbit has once more, and on which side of the grazing."""
     value = axis.text(found.knob).partition(" = ")[2]
     side = "on one side" if found.gained_side is None else f"{found.gained_side} {value}"
     return f"contact {found.contact}: one {found.gained} more {side}"

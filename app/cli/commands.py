@@ -13,7 +13,7 @@ import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib import import_module
-from types import MappingProxyType
+from types import MappingProxyType, ModuleType
 from typing import Any, NoReturn
 
 from granchain_core import BadInput, Cancelled, ComputationError
@@ -74,7 +74,7 @@ class Command:
     page: str = ""
 
 
-#: Every command, in the order of `granchain --help`. The module of its name has its options, `add_options`, and does
+#: Every command, in the order of `granchain --help`. Its module (`module_of`) has its options, `add_options`, and does
 #: it, `do`; only the one that is asked for is imported, because some need what takes a second to load. After a change
 #: run `python -m tools.update`.
 COMMANDS = {
@@ -98,8 +98,9 @@ COMMANDS = {
                         "sec2 --set f=1130 --periods 100", "analysis.md#lyapunov-spectrum-and-dimension"),
     "rotation": Command("SCENE", "rotation number and second frequency of a quasi-periodic motion",
                         "sec2 --set f=1700", "analysis.md#rotation-number"),
-    "strobes": Command("SCENE --over KNOB=a:b:n", "bifurcation diagram: strobes over one knob",
-                       "sec2 --over f=1900:2000:21 --picture strobes.html", "analysis.md#bifurcation-diagram"),
+    "bifurcation-diagram": Command(
+        "SCENE --over KNOB=a:b:n", "bifurcation diagram: strobes over one knob",
+        "sec2 --over f=1900:2000:21 --picture diagram.html", "analysis.md#bifurcation-diagram"),
     "basins": Command("SCENE --x u1=a:b:n --y v1=a:b:n", "to which steady state each start of a plane leads",
                       "sec2 --set N=2 --x u1=0:2e-7:9 --y v1=0:1e-3:9", "analysis.md#basins"),
     "map": Command(
@@ -129,8 +130,16 @@ COMMANDS = {
 }
 
 
+#: Commands by an older name, which still works (docs/python.md) and is on no list.
+OLDER_NAMES = {"strobes": "bifurcation-diagram"}
+
 #: Words that ask for the list of commands.
 _HELP = ("-h", "--help")
+
+
+def module_of(command: str) -> ModuleType:
+    """The module of a command, which has its name with underscores; imported now."""
+    return import_module(f".{command.replace('-', '_')}", __package__)
 
 
 def parser_for(words: Sequence[str]) -> _Parser:
@@ -143,7 +152,7 @@ def parser_for(words: Sequence[str]) -> _Parser:
         command = known.add_parser(name, help=row.about.replace("%", "%%"), description=f"{row.about}.",
                                    epilog=f"Example: granchain {name} {row.example}", allow_abbrev=False)
         if name == asked_for:
-            module = import_module(f".{name}", __package__)
+            module = module_of(name)
             module.add_options(command)
             command.set_defaults(do=module.do)
     parser.commands = known.choices
@@ -155,6 +164,7 @@ def do(words: list[str]) -> int:
     try:
         if not words:
             raise BadInput("granchain needs a command, for example 'granchain serve'; 'granchain --help' lists them.")
+        words = [OLDER_NAMES.get(words[0], words[0]), *words[1:]]
         if words[0] not in COMMANDS and words[0] not in _HELP:
             raise unknown_name(*(("option", words[0], _HELP) if words[0].startswith("-") else
                                  ("command", words[0], COMMANDS)))

@@ -25,7 +25,7 @@ T = TypeVar("T")
 
 #: Time between two checks whether a computation has ended [s].
 _LOOK = 0.05
-#: Time to end that a computation has after its stop flag is set [s].
+#: Time within which a computation has to end after its stop flag is set [s].
 _PATIENCE = 1.2
 
 

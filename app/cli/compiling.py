@@ -14,7 +14,7 @@ from granchain_core.execution.child_processes import end_with_parent, starting
 from granchain_core.execution.cores import usable_cores
 from granchain_core.precompile.pieces import BRANCH_KERNELS, COMPILE_SECONDS, FIXED_STEP_KERNELS, MOTION_KERNELS
 
-#: From the kernels of one method to those of a branch with the motions that it needs.
+#: The times are those of the kernels of one method, and of a branch with the motions that it needs.
 WORDS = (f"Compiling the kernels for this set of effects: {COMPILE_SECONDS[FIXED_STEP_KERNELS]} to "
          f"{sum(COMPILE_SECONDS[piece] for piece in (*MOTION_KERNELS, BRANCH_KERNELS))} s, once per machine. "
          "`granchain warm` does it ahead of time.")
@@ -25,7 +25,7 @@ def announce_compiling() -> None:
     """From now on, tell a person at a terminal when Numba begins to compile; a kernel read from disk is no news."""
     if not sys.stderr.isatty():
         return
-    from numba.core import event  # with the compiler: a second that commands without kernels do not wait
+    from numba.core import event  # it loads the compiler, a second that commands without kernels save
 
     class Listener(event.Listener):
         announced = False
@@ -82,5 +82,5 @@ def _compile(parent: int, chosen: Scene, pieces: tuple[str, ...]) -> None:
     try:
         for piece in pieces:
             compile_piece(chosen, piece)
-    except Exception:  # the command meets it too, and says it in its own sentence
+    except Exception:  # the command has the same error, and reports it
         sys.exit(1)

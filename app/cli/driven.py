@@ -135,7 +135,7 @@ def _last_of(path: str, chosen: Scene) -> Beginning:
 
 
 def _measured(path: str, answers: Answers, gap: str) -> tuple[Signal, Series]:
-    """The signal in a file, its velocity if that was measured, else its displacement; and all that is in the file."""
+    """The signal in a file (the velocity or, if none was measured, the displacement), and all that is in the file."""
     from granchain_core import Signal
     from granchain_core.experiment.reader import read_experiment
     from granchain_core.experiment.series import Series
@@ -171,7 +171,7 @@ def _uses(series: Series) -> str:
 
 
 def _limited_by_samples(found: Driven) -> str:
-    """That the samples of a measured motion are what limits its accuracy; else nothing."""
+    """A sentence if the samples of a measured motion limit its accuracy; otherwise empty."""
     steps = found.displacement_error - found.interpolation_error
     if found.interpolation_error <= steps:
         return ""
@@ -192,7 +192,7 @@ def _json(found: Driven, series: Series | None, differences: dict[str, ForceDiff
 
 
 def _residual_json(found: ForceDifference | None) -> dict[str, Any] | None:
-    """How far a computed force is from the measured one; None where none was measured."""
+    """How far a computed force is from the measured one; None if none was measured."""
     if found is None:
         return None
     return {name: getattr(found, name)

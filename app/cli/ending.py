@@ -31,8 +31,8 @@ _STATUS: dict[int, int] = {signal.SIGINT: 130, signal.SIGTERM: 143}
 _WORDS = {130: "Cancelled", 143: "Terminated"}
 
 
-class _Asked:
-    """What has been asked of this process: the exit status of the first signal, and whom to tell of it.
+class _EndRequest:
+    """A request to end this process: the exit status of the first signal, and what to call when it comes.
 
     `kept` is the folder of what the command has finished so far, if it keeps anything; `written` says in words what is
     in the result's file once that is written.
@@ -46,7 +46,7 @@ class _Asked:
         self.written = ""
 
 
-_ASKED = _Asked()
+_REQUEST = _EndRequest()
 
 
 def begin() -> None:
@@ -80,8 +80,8 @@ def _wait(reading: int) -> None:
         status = _STATUS.get(os.read(reading, 1)[0])
         if status is None:
             continue
-        with _ASKED.lock:
-            _ASKED.status, tell = status, _ASKED.tell
+        with _REQUEST.lock:
+            _REQUEST.status, tell = status, _REQUEST.tell
             if tell is None:
                 _end()
         tell()
@@ -91,18 +91,18 @@ def _wait(reading: int) -> None:
 
 def keeps(folder: str) -> None:
     """Name the folder of finished pieces, for the last sentence of a computation that does not end in time."""
-    _ASKED.kept = folder
+    _REQUEST.kept = folder
 
 
 def wrote(words: str) -> None:
     """Say what the result's file holds now, for a signal that comes while the rest of the command runs."""
-    _ASKED.written = words
+    _REQUEST.written = words
 
 
 def _end() -> NoReturn:
-    there = _ASKED.written
-    if not there and os.path.isdir(_ASKED.kept):
-        there = f"what was finished is kept in {_ASKED.kept}; go on with --resume"
+    there = _REQUEST.written
+    if not there and os.path.isdir(_REQUEST.kept):
+        there = f"what was finished is kept in {_REQUEST.kept}; go on with --resume"
     with suppress(OSError):
         os.write(2, f"{word()}{f': {there}' if there else ''}.\n".encode())
     os._exit(status())
@@ -114,20 +114,20 @@ def asking(tell: Callable[[], None] = lambda: None) -> Iterator[Callable[[], boo
 
     Gives a function that says whether a signal has come. A block inside another one changes nothing.
     """
-    with _ASKED.lock:
-        before = _ASKED.tell
+    with _REQUEST.lock:
+        before = _REQUEST.tell
         if before is None:
-            _ASKED.tell = tell
+            _REQUEST.tell = tell
     try:
-        yield lambda: _ASKED.status is not None
+        yield lambda: _REQUEST.status is not None
     finally:
-        with _ASKED.lock:
-            _ASKED.tell = before
+        with _REQUEST.lock:
+            _REQUEST.tell = before
 
 
 def status() -> int:
     """The exit status of a cancelled command."""
-    return _ASKED.status or _STATUS[signal.SIGINT]
+    return _REQUEST.status or _STATUS[signal.SIGINT]
 
 
 def word() -> str:
@@ -140,11 +140,11 @@ def leave(done: int) -> int:
 
     Threads may still wait for a compiler, and Python would wait for them.
     """
-    if _ASKED.status is None:
+    if _REQUEST.status is None:
         for number in _STATUS:  # one that comes now is too late, and Python would go back to the default
             signal.signal(number, signal.SIG_IGN)
         return done
     for stream in (sys.stdout, sys.stderr):
         with suppress(OSError, ValueError):
             stream.flush()
-    os._exit(_ASKED.status)
+    os._exit(_REQUEST.status)

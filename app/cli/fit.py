@@ -68,7 +68,7 @@ def do(arguments: argparse.Namespace) -> None:
 
     chosen = chosen_scene(arguments)
     check_files(arguments)
-    free = _free(arguments)  # what is wrong with the words is said before a file is read
+    free = _free(arguments)  # errors of the options are reported before a file is read
     target = _target(arguments, chosen)
     if arguments.per_frequency:
         free = per_frequency(free, target.frequencies)

@@ -82,7 +82,7 @@ def warn(result: Run, budget: float) -> None:
 
 
 def _forces_in_words(result: Run) -> str:
-    """That the largest forces are as accurate as asked for although a displacement somewhere is not; else nothing."""
+    """A sentence if the largest forces are as accurate as asked for and a displacement is not; otherwise empty."""
     stated = [one for one in asdict(result.force_errors).values() if one is not None]
     if not stated or max(stated) > result.scene.accuracy:
         return ""

@@ -109,7 +109,7 @@ def _found(arguments: argparse.Namespace, grid: Grid) -> tuple[ParameterMap, int
 
 
 def _refuse_too_many(grid: Grid) -> None:
-    from ..plots.diagram import MOST_DRAWN_CELLS as MOST_DRAWN
+    from ..plots.parameter_map import MOST_DRAWN_CELLS as MOST_DRAWN
 
     if grid.size > MOST_DRAWN:
         raise BadInput(f"--picture draws up to {MOST_DRAWN} cells and this map has {grid.size}; take fewer points on "

@@ -75,7 +75,7 @@ def _pairs(multipliers: Any) -> list[list[float]]:
 
 
 def _numbers(errors: Any) -> list[float | None] | None:
-    """JSON has no infinity."""
+    """Numbers for JSON, which has no infinity."""
     return None if errors is None else [float(one) if np.isfinite(one) else None for one in errors]
 
 

@@ -1,7 +1,7 @@
 """What a browser is shown while `granchain serve` starts: the page's skeleton, then the page, as soon as there is one.
 
-The server needs some seconds to import what it consists of. Until then this one, of the standard library alone, answers
-every request with status 503, so that a health check waits. It listens on this machine only.
+The server needs some seconds for its imports. Until then a thread of the standard library alone answers every request
+with status 503, so that a health check waits. It listens on this machine only.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from ..plots.theme import style_sheet
 _LONGEST_WAIT = 2.0
 #: Most that is read of such a head [bytes].
 _LONGEST_HEAD = 8192
-#: The addresses at which a visitor on this machine reaches it.
+#: The addresses of this machine at which a visitor on it reaches the server.
 _HERE = {"127.0.0.1": socket.AF_INET, "localhost": socket.AF_INET, "::1": socket.AF_INET6}
 
 

@@ -1,1 +1,1 @@
-"""The resonance curve and its sweeps: always on the screen, so no page and no tab."""
+"""The resonance curve and its sweeps: always on the screen, and behind no tab."""

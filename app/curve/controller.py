@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from functools import partial
+from collections.abc import Callable
 from typing import Any
 
 from granchain_core import CurvePoint, Scene
 from granchain_core.experiment import Difference, Measured, stated_features
 from granchain_core.precompile.pieces import CURVE_KERNELS
 from granchain_core.steady.curve.order import CURVE_STARTS
-from granchain_core.steady.curve.resonance_curve import draft_curve
 
 from ..plots.curve import SWEEPS
 from ..serve.compiling.compiler import COMPILER, PICTURE_PIECES, Requests
-from ..serve.computing.latest_wins import LatestWins
-from ..serve.computing.turns import TurnFlag
 from ..serve.computing.worker_pools import CURVES
 from ..session.activities import Activity
 from ..session.budget import curve_affordable
@@ -26,9 +22,10 @@ from ..session.scene_facts import rig_beads, slider_range, without_frequency
 from ..session.share import joined
 from ..session.task import Task
 from .curve_bar import CHOICES, CurveBar
+from .drafts import Drafts
 from .peak_names import PeakNames, stated_name
 from .reports import Reports
-from .sweep import COARSE, Progress, Sweep, grid
+from .sweep import Progress, Sweep
 from .view import CurveFigure
 
 #: Rest of the knobs before a curve is begun [s]: nobody reads a curve while dragging.
@@ -38,8 +35,8 @@ CURVE_QUIET = 0.35
 class CurveController:
     """Computes the selected curves while they are on the screen, each once for the same knobs.
 
-    `placed` is called when a curve from rest is complete, and when one that was expected is not computed: it shows
-    where on the curve the present motion lies.
+    `placed` shows where on the curve from rest the present motion lies. It is called when such a curve is complete, and
+    when an expected curve will not be computed.
     """
 
     def __init__(self, host: PageHost, figure: CurveFigure, bar: CurveBar, placed: Callable[[], None]) -> None:
@@ -49,8 +46,7 @@ class CurveController:
         self._placed = placed
         self._compared: list[Callable[[Difference | None], None]] = []
         self._task = Task(host, CURVES, self._ended, "The resonance curve", report_to_host=True)
-        self._drafts = LatestWins(partial(host.next_tick, self._draw_draft),
-                                  partial(host.next_tick, host.report_failure), host.session.cpu_time)
+        self._drafts = Drafts(host, figure)
         self._quiet = Debounce(host, CURVE_QUIET)
         self._reports = Reports(host, self._draw)
         self._visible = True
@@ -61,8 +57,6 @@ class CurveController:
         self._wanted_for: Scene | None = None
         self._begun_for: Scene | None = None
         self._complete_for: dict[str, Scene] = {}
-        #: How many curves were begun; a draft that was asked for before the last of them is out of date.
-        self._begun = 0
         #: Starts whose curves were missing when the last curve was begun, and the part of these curves that is
         #: computed, from 0 to 1; -1 if nothing is under way.
         self._missing: list[str] = []
@@ -71,7 +65,6 @@ class CurveController:
         self._uncompiled: Exception | None = None
         self._kernels = Requests(COMPILER)
         self._names = PeakNames(host, self._show_names)
-        host.on_close(self._drafts.close)
 
     def selection(self, scene: Scene) -> str:
         """What is drawn, as a link has it; "auto" for what the scene shows by itself."""
@@ -101,18 +94,7 @@ class CurveController:
         self._names.forget()
         self.restart_when_quiet(scene)
         if self._visible and self._wanted["rest"] and curve_affordable(scene) and COMPILER.has(scene, CURVE_KERNELS):
-            self._drafts.submit(partial(self._draft, scene, self._begun))
-
-    @staticmethod
-    def _draft(scene: Scene, begun: int, stop: TurnFlag) -> Iterator[tuple[int, list[CurvePoint]]]:
-        with stop.held():
-            points = draft_curve(scene, grid(scene, COARSE), stop)
-        yield begun, points
-
-    def _draw_draft(self, drafted: tuple[int, list[CurvePoint]]) -> None:
-        begun, points = drafted
-        if points and begun == self._begun:  # otherwise the curve itself is on its way
-            self._figure.redraw("rest", points)
+            self._drafts.submit(scene)
 
     def restart_when_quiet(self, scene: Scene) -> None:
         """The scene or the selection has changed: cancel the curve, and start again when the knobs rest."""
@@ -150,7 +132,7 @@ class CurveController:
                                              f"({type(failure).__name__}).")
 
     def _give_up(self) -> None:
-        """Show no curve: this chain has none, or it would take too long, and another chain's belongs to no picture."""
+        """Show no curve: the chain has none, or its curve would take too long. That of another chain would mislead."""
         self.stop()
         self._complete_for.clear()
         self._figure.clear()
@@ -223,12 +205,12 @@ class CurveController:
         return found
 
     def measured(self, measured: Measured | None) -> Difference | None:
-        """Show the visitor's own data, or none; returns them beside the curve from rest, once that is there."""
+        """Draw the visitor's own data, or none; return their difference from a complete curve from rest."""
         self._figure.measured(measured)
         return self._figure.difference
 
     def on_compared(self, action: Callable[[Difference | None], None]) -> None:
-        """Call `action` with the visitor's data beside each complete curve from rest; with None when one is begun."""
+        """Call `action` with each complete curve's difference from the data; with None when a curve is begun."""
         self._compared.append(action)
 
     def _notify_compared(self, difference: Difference | None) -> None:
@@ -253,11 +235,11 @@ class CurveController:
         self._figure.show_only(shown)
         self._figure.begin(missing)
         self._bar.update_state(**self._wanted, done=0.0 if missing else -1.0)
-        self._begun += bool(missing)
         if "rest" in missing:
             self._notify_compared(None)
         self._missing, self._done = list(missing), 0.0 if missing else -1.0
         if missing:
+            self._drafts.curve_begun()
             self._task.start(Sweep(scene, missing, self._reports.add, lambda: self._host.busy,
                                    self._host.session.cpu_time))
         else:

@@ -9,7 +9,7 @@ from bokeh.models import ColumnDataSource, GlyphRenderer, Line, Plot, Scatter, T
 
 from granchain_core import CurvePoint
 
-from ..parts.stage.pinned_trains import DASHES
+from ..parts.time_figures.pinned_trains import DASHES
 from ..plots.curve import curve_columns
 from ..plots.theme import GREY
 from ..plots.themed import themed

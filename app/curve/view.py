@@ -237,7 +237,7 @@ class CurveFigure:
 
     @property
     def difference(self) -> Difference | None:
-        """The visitor's data beside the curve from rest; None where either is not there."""
+        """How the visitor's data differ from the curve from rest; None if one of the two is missing."""
         if self._measurement is None or not self._whole:
             return None
         points = sorted(self._points["rest"], key=lambda point: point.frequency)

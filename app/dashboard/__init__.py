@@ -1,1 +1,1 @@
-"""The dashboard of one session: controller, main picture, layout and tabs."""
+"""The dashboard of one session: controller, main picture, playback, layout, tabs, the table of pages."""

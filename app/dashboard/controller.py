@@ -53,7 +53,7 @@ class Controller:
         tests pass another class.
         """
         self._document = document
-        self._calls = make_calls(document, self.report_failure)
+        self._calls = make_calls(document, self.show_failure)
         self._initial_state = initial_state
         self._gallery_sent = False
         self.session = session
@@ -142,9 +142,9 @@ class Controller:
         """Show the visitor one sentence until the next valid action; an empty text removes the sentence."""
         self.sentences.show_message(sentence)
 
-    def report_failure(self, error: Exception) -> None:
+    def show_failure(self, error: Exception) -> None:
         """See `PageHost`."""
-        self.sentences.report_failure(error)
+        self.sentences.show_failure(error)
 
     def report_fault(self, error: Exception, sentence: str, fault: str = "") -> None:
         """See `PageHost`."""
@@ -209,7 +209,7 @@ class Controller:
             account_activity(self.session, self.busy), *(page.activity for page in self.pages if page.activity),
         ]
 
-    # What happens here
+    # Events of the parts
 
     def picture_ready(self, settled: Settled) -> None:
         """A settled picture is ready: notify header and pins now, and the pages once the picture is offered."""

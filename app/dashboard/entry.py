@@ -44,7 +44,7 @@ def _handler(controller: Controller) -> Callable[[Exception], None]:
     Panel keeps the handler as long as the document lives, and the controller has the document. With a strong reference
     no page would ever be freed.
     """
-    there = weakref.WeakMethod(controller.report_failure)
+    there = weakref.WeakMethod(controller.show_failure)
 
     def failed(error: Exception) -> None:
         tell = there()

@@ -19,9 +19,9 @@ from ..parts.equation.equation import EquationPart
 from ..parts.figures.figure_style import BOTTOM, GAP, LEFT, TOP
 from ..parts.header.header import Header
 from ..parts.knobs.knobs import Knobs
-from ..parts.stage.energy import EnergyMap
-from ..parts.stage.trains import WIDEST_TITLES, ForceTrains
 from ..parts.status.status_line import StatusLine
+from ..parts.time_figures.energy import EnergyMap
+from ..parts.time_figures.trains import WIDEST_TITLES, ForceTrains
 from ..parts.toolkit.component import text
 from ..plots.curve import KEY
 from ..plots.energies import ENERGY_COLOURS

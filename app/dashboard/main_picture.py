@@ -3,63 +3,28 @@
 from __future__ import annotations
 
 import itertools
-import math
 import threading
 import time
 from collections import deque
 from collections.abc import Callable, Iterator
-from contextlib import closing, contextmanager
-from dataclasses import dataclass
 from functools import partial
 from typing import NamedTuple
 
-import numpy as np
+from granchain_core import Run, Settled, State
 
-from granchain_core import Cancelled, OverBudget, Run, Scene, Settled, State, settling
-from granchain_core.precompile.pieces import FIXED_STEP_KERNELS, MOTION_KERNELS
-
-from ..frames import Frames, prepared_frames, samples_for
-from ..serve.compiling.compiler import COMPILER, PICTURE_PIECES, compiling_words
+from ..frames import Frames, prepared_frames
 from ..serve.computing.latest_wins import LatestWins
-from ..serve.computing.shared import Shared
 from ..serve.computing.turns import TurnFlag
-from ..serve.computing.worker_pools import PICTURES
 from ..serve.connection.pacing import PicturePacer
 from ..serve.monitoring.metrics import METRICS
-from ..session.budget import WHOLE_PICTURE, RefusedPicture, TooLong, check_first_picture
-from ..session.energy_account import with_account
 from ..session.host import PageHost
 from ..session.live import LiveRun, LiveStep
 from .layout import Views
+from .picture_work import PictureWork, SettledRequest
 from .show import show_live, show_regime, show_settled
 
 
-def size_of(settled: Settled) -> int:
-    """Memory of a picture [bytes]: its arrays, and a little more."""
-    arrays = [*vars(settled.run).values(), settled.state.displacement, settled.state.velocity]
-    return 4096 + sum(array.nbytes for array in arrays if isinstance(array, np.ndarray))
-
-
-#: Pictures of all sessions. The last picture of each scene is kept for the next session that asks, in at most 100 MB.
-PICTURES_SHARED: Shared[Settled] = Shared(PICTURES, 100_000_000, size_of, lambda pictures: pictures[-1:])
-
-
-def _computed(scene: Scene, initial_state: State | None, most: float, stop: TurnFlag) -> Iterator[Settled]:
-    """Pictures on the way to the steady state; `TooLong` after `most` seconds of computing."""
-    began = time.thread_time()
-    pictures = settling(scene, start=initial_state, samples=samples_for(scene), stop=stop)
-    yield next(pictures)
-    with stop.released():
-        compiled = all(COMPILER.await_piece(scene, piece, stop) for piece in PICTURE_PIECES)
-    if not compiled:
-        raise Cancelled
-    for settled in pictures:
-        yield settled
-        if time.thread_time() - began > most and not settled.final:
-            raise TooLong
-
-
-class _Asked(NamedTuple):
+class _PictureRequest(NamedTuple):
     """When a picture was requested [s], and the number of the request."""
 
     number: int
@@ -70,29 +35,7 @@ class _Answer(NamedTuple):
     """A picture from a worker, and the request that it answers; None for a live step that nobody waits for."""
 
     picture: Settled | LiveStep
-    asked: _Asked | None
-
-
-@dataclass(frozen=True)
-class _Request:
-    """The values of a request for a settled picture. Workers do not read the session, so they are kept here."""
-
-    scene: Scene
-    #: Where the motion begins; None is rest.
-    initial_state: State | None
-    #: Whether the picture is computed however long it takes.
-    insisted: bool
-    #: Whether the energy residual is computed, too.
-    account: bool
-
-
-@contextmanager
-def _refusing(scene: Scene) -> Iterator[None]:
-    """Turn the failure of a picture that takes too long into a refusal of its scene."""
-    try:
-        yield
-    except (OverBudget, TooLong) as problem:
-        raise RefusedPicture(scene, str(problem)) from None
+    asked: _PictureRequest | None
 
 
 class MainPicture:
@@ -110,6 +53,7 @@ class MainPicture:
         self._show_notice = show_notice
         self._picture_ready = picture_ready
         self._jobs = LatestWins(self._keep_newest, partial(host.next_tick, self._failed), self._session.cpu_time)
+        self._work = PictureWork(host, self._jobs.cpu_time, show_notice, self._begun_from)
         self._pacer: PicturePacer[Settled | LiveStep] = PicturePacer(self._send, self.next_live_step)
         self._live: LiveRun | None = None
         self._lock = threading.Lock()
@@ -118,7 +62,7 @@ class MainPicture:
         #: The settled picture that was sent last; None while a live run is shown.
         self._sent: Settled | None = None
         #: The last request for a picture; None after a failure.
-        self._asked: _Asked | None = None
+        self._asked: _PictureRequest | None = None
         self._numbers = itertools.count(1)
         #: The number of the last request whose picture has come.
         self._answered = 0
@@ -160,7 +104,7 @@ class MainPicture:
 
     def compute(self, initial_state: State | None = None) -> None:
         """Compute a picture for the present knobs, from `initial_state` or from the start that the visitor chose."""
-        self._asked = _Asked(next(self._numbers), time.monotonic())
+        self._asked = _PictureRequest(next(self._numbers), time.monotonic())
         session, scene = self._session, self._session.scene
         if session.mode == "live":
             if self.live is not None:
@@ -170,13 +114,14 @@ class MainPicture:
             else:
                 self.advance(1)  # a paused chain also shows the new knobs
         else:
-            self._submit(partial(self._settled_pictures, _Request(
+            self._submit(partial(self._work.settled_pictures, SettledRequest(
                 scene, initial_state or session.previous_state(scene), scene == session.insisted,
                 session.energy_account)))
 
     def advance(self, samples: int | None = None) -> None:
         """Take the next step of the live run: `samples`, or as many as belong to the viewing time."""
-        self._submit(partial(self._live_step, samples, self._session.speed, self._session.insisted))
+        self._submit(partial(self._work.live_step, lambda: self.live, samples, self._session.speed,
+                             self._session.insisted))
 
     def _submit(self, work: Callable[[TurnFlag], Iterator[Settled | LiveStep]]) -> None:
         """Compute `work` next; its pictures answer the last request."""
@@ -188,74 +133,20 @@ class MainPicture:
             return self.live.window_run()
         return None if self._session.settled is None else self._session.settled.run
 
-    # In a worker thread
-
-    @staticmethod
-    def _answers(work: Callable[[TurnFlag], Iterator[Settled | LiveStep]], asked: _Asked | None,
-                 stop: TurnFlag) -> Iterator[_Answer]:
-        """The pictures of `work`, each with the request that it answers."""
-        for picture in work(stop):
-            yield _Answer(picture, asked)
-
-    def _settled_pictures(self, request: _Request, stop: TurnFlag) -> Iterator[Settled]:
-        """The pictures of a request; one that takes too long is refused."""
-        with _refusing(request.scene):
-            yield from self._pictures_of(request, stop)
-
-    def _pictures_of(self, request: _Request, stop: TurnFlag) -> Iterator[Settled]:
-        """The pictures of a request, each better than the one before. The last may have an energy account.
-
-        Pictures from rest are shared with other sessions, unless the visitor has insisted on them.
-        """
-        scene, initial_state, insisted = request.scene, request.initial_state, request.insisted
-        if not insisted:
-            check_first_picture(scene)
-        self._await_first_kernels(scene, stop)
-        self._host.next_tick(self._begun_from, initial_state)
-        key = None if initial_state is not None or insisted else scene
-        most = math.inf if insisted else WHOLE_PICTURE
-        with closing(PICTURES_SHARED.follow(key, partial(_computed, scene, initial_state, most), stop,
-                                            self._jobs.cpu_time)) as pictures:
-            for settled in pictures:
-                yield settled
-        if request.account:
-            with stop.held():
-                settled = with_account(settled, stop)
-            yield settled
-
     def _begun_from(self, initial_state: State | None) -> None:
         """Note the state in which the motion begins, with the document locked, before the first picture arrives."""
         if initial_state is not self._session.initial_state:
             self._session.initial_state = initial_state
             self._host.address_changed()
 
-    def _await_first_kernels(self, scene: Scene, stop: TurnFlag) -> None:
-        """Wait for the kernels of the first picture. Raises `Cancelled`.
+    # In a worker thread
 
-        Another process compiles these kernels, and the other kernels of the picture and its curve.
-        """
-        needed = MOTION_KERNELS if scene.cuts_tension else (FIXED_STEP_KERNELS,)  # dop853 settles it then
-        if not COMPILER.has(scene, *needed):
-            words = compiling_words("the kernels for this set of effects", FIXED_STEP_KERNELS).capitalize()
-            self._host.next_tick(self._show_notice, f"{words}; the picture then appears by itself.")
-            for piece in PICTURE_PIECES:
-                COMPILER.ask(scene, piece)
-            if not all(COMPILER.await_piece(scene, piece, stop) for piece in needed):
-                raise Cancelled
-
-    def _live_step(self, samples: int | None, speed: float, insisted: Scene | None,
-                   stop: TurnFlag) -> Iterator[LiveStep]:
-        live = self.live  # the newest run: another may have begun while this step waited
-        if live is None:
-            return
-        scene = live.scene
-        with _refusing(scene):
-            if scene != insisted:
-                check_first_picture(scene)
-        self._await_first_kernels(scene, stop)
-        with live.flag.held(is_new=True):
-            result = live.advance(samples) if samples else live.step(speed)
-        yield result
+    @staticmethod
+    def _answers(work: Callable[[TurnFlag], Iterator[Settled | LiveStep]], asked: _PictureRequest | None,
+                 stop: TurnFlag) -> Iterator[_Answer]:
+        """The pictures of `work`, each with the request that it answers."""
+        for picture in work(stop):
+            yield _Answer(picture, asked)
 
     def _keep_newest(self, result: object) -> None:
         """Keep a new picture for the event loop, in place of an older picture that the loop has not fetched."""
@@ -276,7 +167,7 @@ class MainPicture:
         if newest is not None:
             self._accept(*newest)
 
-    def _accept(self, result: Settled | LiveStep, asked: _Asked | None = None) -> None:
+    def _accept(self, result: Settled | LiveStep, asked: _PictureRequest | None = None) -> None:
         """Offer a picture to the browser, if it belongs to the present mode and scene."""
         live = isinstance(result, LiveStep)
         if live != (self._session.mode == "live") or result.run.scene.name != self._session.scene.name:
@@ -295,9 +186,9 @@ class MainPicture:
     def _failed(self, error: Exception) -> None:
         """Report a failure; later live steps answer no request."""
         self._asked = None
-        self._host.report_failure(error)
+        self._host.show_failure(error)
 
-    def _count_answer(self, asked: _Asked | None) -> None:
+    def _count_answer(self, asked: _PictureRequest | None) -> None:
         """Count how long the first picture of a request took, and say so if the server is busy with many sessions."""
         if asked is None or asked.number <= self._answered:
             return

@@ -10,13 +10,13 @@ from granchain_core import BadInput, CurvePoint, Run, Scene, Settled, settle
 
 from ..curve.sweep import Progress, Sweep
 from ..frames import samples_for
-from ..parts.stage.pinned_trains import SIGNS
+from ..parts.time_figures.pinned_trains import SIGNS
 from ..serve.compiling.compiler import PICTURE_PIECES
 from ..serve.computing.cpu_time import CpuTime
 from ..serve.computing.worker_pools import ANALYSES, CURVES
 from ..session.budget import check_first_picture, curve_affordable
 from ..session.host import PageHost
-from ..session.message_checks import listed
+from ..session.message_checks import check_index
 from ..session.page import Actions
 from ..session.pins import NAMES, Pin, compared_rows, setting_words
 from ..session.scene_facts import without_frequency
@@ -90,12 +90,12 @@ class Pinned:
             raise BadInput(sentence)
 
     def _remove(self, message: dict[str, Any]) -> None:
-        gone = listed("pin", self._session.pins, message.get("number"))
+        gone = check_index("pin", self._session.pins, message.get("number"))
         self._session.pins = tuple(pin for pin in self._session.pins if pin is not gone)
         self._changed()
 
     def _open(self, message: dict[str, Any]) -> None:
-        pin = listed("pin", self._session.pins, message.get("number"))
+        pin = check_index("pin", self._session.pins, message.get("number"))
         self._host.open(pin.scene, pin.initial_state, "")
 
     def _changed(self) -> None:

@@ -153,7 +153,7 @@ class SceneChanges:
             self._pictures.begin_live(state)
 
     def _show_turned_knobs(self, initial_state: State | None) -> None:
-        """The knobs were turned, but not by the visitor: bar and knobs have to show the new values."""
+        """The knobs were turned, but not by the visitor: header and knobs have to show the new values."""
         self._views.header.show_session(self._session)
         self._send_knob_values()
         self._follow_knobs(initial_state)

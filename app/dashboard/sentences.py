@@ -39,7 +39,7 @@ class Sentences:
         self._session.notice = notice
         self._show()
 
-    def report_failure(self, error: Exception) -> None:
+    def show_failure(self, error: Exception) -> None:
         """Show a failure as one sentence; the last good picture stays."""
         if isinstance(error, RefusedPicture):
             METRICS.count("refused_pictures")

@@ -1,1 +1,1 @@
-"""The pages behind the tabs, a folder each: Python, JavaScript and style together."""
+"""The pages behind the tabs, a folder each with Python, JavaScript and style; no page knows another."""

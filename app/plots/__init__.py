@@ -2,7 +2,7 @@
 
 One module for each plot, with a function of its name; the figures of the paper are in paper/. `theme.THEMES` has
 the themes; `file.html_of` makes a page that needs no server and no network. What a page adds to a figure as a
-computation goes on comes from functions beside it: `branches.BranchRows`, `diagram.cell_rows`. The dashboard draws two
-plots itself, because they follow every knob and are updated in place: the main one (app/parts/stage; `motion` for
-files) and the resonance curve (app/curve/view.py; `curve` for files).
+computation goes on comes from functions beside it: `branches.BranchRows`, `parameter_map.cell_rows`. The dashboard
+draws two plots itself, because they follow every knob and are updated in place: the main picture
+(app/parts/time_figures; `motion` for files) and the resonance curve (app/curve/view.py; `curve` for files).
 """

@@ -15,6 +15,7 @@ from granchain_core import (
     BadInput,
     Basins,
     BifurcationCurve,
+    BifurcationDiagram,
     Branch,
     Curve,
     Driven,
@@ -28,7 +29,6 @@ from granchain_core import (
     Run,
     Settled,
     Spectrum,
-    StrobeDiagram,
     Transfer,
     WorkPrecision,
 )
@@ -47,19 +47,19 @@ from granchain_core.paper import (
 from .accuracy import Annotations, accuracy
 from .attractors import attractors
 from .basins import basins
+from .bifurcation_diagram import bifurcation_diagram
 from .branches import branches
 from .curve import curve
-from .diagram import diagram
 from .fit import fit
 from .lyapunov import lyapunov
 from .motion import driven, motion
 from .multipliers import multipliers
 from .observation import observation
 from .paper import paper_figure, size_of
+from .parameter_map import parameter_map
 from .probe import FIGURES, probe
 from .rotation import rotation
 from .spectrum import spectrum
-from .strobe_diagram import strobe_diagram
 from .theme import THEMES, Theme
 from .transfer import transfer
 
@@ -92,8 +92,8 @@ def both_maps(found: ParameterMap, theme: Theme, shown: str = "both",
               curves: Sequence[BifurcationCurve] = ()) -> LayoutDOM:
     """The map of forces above the map of regimes; `shown` is "force" or "regime" for one of them."""
     if shown != "both":
-        return diagram(found, theme, shown, curves=curves)
-    both = (diagram(found, theme, one, curves=curves) for one in ("force", "regime"))
+        return parameter_map(found, theme, shown, curves=curves)
+    both = (parameter_map(found, theme, one, curves=curves) for one in ("force", "regime"))
     return column(*both, sizing_mode="stretch_both")
 
 
@@ -106,8 +106,8 @@ def measured_accuracy(found: WorkPrecision, theme: Theme, asked: float | None = 
                     theme)
 
 
-def _strobes(found: StrobeDiagram, theme: Theme, bead: int | None = None) -> LayoutDOM:
-    return strobe_diagram(found, found.scene.N if bead is None else bead, theme)
+def _bifurcation_diagram(found: BifurcationDiagram, theme: Theme, bead: int | None = None) -> LayoutDOM:
+    return bifurcation_diagram(found, found.scene.N if bead is None else bead, theme)
 
 
 def _bead(name: str, found: Run | Settled, theme: Theme, bead: int | None = None) -> LayoutDOM:
@@ -119,7 +119,7 @@ def _bead(name: str, found: Run | Settled, theme: Theme, bead: int | None = None
 DRAWERS: dict[type, Callable[..., LayoutDOM]] = {
     Run: motion, Settled: _settled, Driven: driven, Pulse: _pulse, Curve: _curve, Orbit: multipliers, Branch: _branch,
     ParameterMap: both_maps, Observation: observation, WorkPrecision: measured_accuracy, Fit: fit, Spectrum: spectrum,
-    Transfer: transfer, LyapunovSpectrum: lyapunov, RotationNumber: rotation, StrobeDiagram: _strobes,
+    Transfer: transfer, LyapunovSpectrum: lyapunov, RotationNumber: rotation, BifurcationDiagram: _bifurcation_diagram,
     Basins: basins, Attractors: attractors,
 }
 #: What draws further figures of a class of results, by the class and what `kind` calls the figure.

@@ -16,11 +16,11 @@ from .themed import apply_theme, empty_figure
 
 #: Patterns beside the colours, so that the colours need not be told apart.
 _HATCHES = (" ", "/", "\\", ".", "+", "x", "o", "-")
-_FAILED = "the numbers failed, or it was stopped"
+_FAILED = "the computation failed or was stopped"
 
 
 def basins(found: Basins, theme: Theme) -> figure:
-    """The plane of starts; grey where the numbers failed or the computation was stopped."""
+    """The plane of starts; grey where the computation failed or was stopped."""
     x, y, colours = _axis(*found.x), _axis(*found.y), Colorblind[8]
     columns, rows = np.meshgrid(found.x[1] / x.factor, found.y[1] / y.factor)
     number = found.number.ravel()

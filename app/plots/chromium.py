@@ -15,7 +15,7 @@ _WITH_WINDOWS = ("chromium", "chromium-browser", "google-chrome", "google-chrome
 
 
 def installed_browser(with_window: bool = False) -> str | None:
-    """The path of Chromium or Chrome, one that can show a window if that is asked; None where none is on the PATH."""
+    """The path of Chromium or Chrome, one that can show a window if that is asked; None if none is on the PATH."""
     names = (*(() if with_window else _WITHOUT_WINDOWS), *_WITH_WINDOWS)
     return next((path for name in names if (path := shutil.which(name))), None)
 

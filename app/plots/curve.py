@@ -88,7 +88,7 @@ FORCES = [("largest output force", "@total"), ("its elastic part", "@elastic"), 
 
 
 def curve(found: Sequence[Curve], theme: Theme, elastic: bool = False, measured: Measured | None = None) -> figure:
-    """Curves over one frequency axis, one for each way of sweeping; where the numbers failed there is no point.
+    """Curves over one frequency axis, one for each way of sweeping; a computation that failed has no point.
 
     `elastic` draws the elastic part of the output force, as the paper does; a curve that was `measured` is drawn over
     it.

@@ -10,7 +10,7 @@ from bokeh.embed import file_html
 from bokeh.models import LayoutDOM
 from bokeh.resources import INLINE
 
-from .item import with_own_document
+from .json_item import with_own_document
 from .theme import Theme
 
 #: Fonts of a caption.

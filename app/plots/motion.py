@@ -1,9 +1,9 @@
 """A motion over time, which runs downwards: drive and input force, kinetic energy over the beads, output force.
 
 The arrangement, titles, colours and lines are those of the page's main picture (`force_lines`, `energies`). The page
-draws its own in app/parts/stage, because it follows every knob: its figures are made once and get new data only, all
-its axes can change their range, and the chain stands above the energies, which here have numbers below.
-Here axes are as long as the motion needs, and the energies have a bar and a title.
+draws its main picture in app/parts/time_figures, because that follows every knob: its figures are made once and get new
+data only, all its axes can change their range, and the chain stands above the energies. Here the axes are as long as
+the motion needs, and the energies have numbers below, a bar and a title.
 """
 
 from __future__ import annotations

@@ -222,5 +222,5 @@ def _scaled(values: np.ndarray, unit: str) -> tuple[np.ndarray, str]:
 
 
 def _short(values: np.ndarray) -> list[float]:
-    """Five figures are more than one figure shows."""
+    """The values to five digits, more than can be seen."""
     return [float(f"{value:.5g}") for value in values]

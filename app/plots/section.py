@@ -97,7 +97,7 @@ def _dots(points: np.ndarray, number: np.ndarray, size: float) -> dict[str, Any]
 
 
 def _short(values: np.ndarray) -> list[float]:
-    """Seven figures: a section is sent anew with every step of the phase's slider."""
+    """The values to seven digits: a section is sent anew with every step of the slider of the phase."""
     return [float(f"{value:.7g}") for value in values]
 
 

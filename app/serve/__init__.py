@@ -1,1 +1,1 @@
-"""The server's machinery: requests, documents, computing for many sessions, compiling, monkeypatches, monitoring."""
+"""The server's machinery, a folder for each task."""

@@ -1,1 +1,1 @@
-"""One session and what its pages share: hooks, host, tasks, message checks; it imports no view."""
+"""One session and what its pages share: hooks, host, tasks, share links, checks of messages."""

@@ -43,7 +43,7 @@ class WorkHost(Caller, Protocol):
     def awaiting_picture(self) -> bool:
         """Whether a knob has moved and its settled picture has not come; false for a live run, which never ends."""
 
-    def report_failure(self, error: Exception) -> None:
+    def show_failure(self, error: Exception) -> None:
         """Show the visitor a failure for which a page has no place."""
 
     def report_fault(self, error: Exception, sentence: str, fault: str = "") -> None:

@@ -20,14 +20,14 @@ def quoted(value: object) -> str:
     return repr(str(value)[:40])
 
 
-def whole(what: str, value: object, low: int, high: int) -> int:
+def check_integer(what: str, value: object, low: int, high: int) -> int:
     """Return `value` if it is a whole number in the range; raise `BadInput` otherwise, also for `True` and `False`."""
     if not is_number(value) or not low <= value <= high or value != int(value):
         raise BadInput(f"The {what} {quoted(value)} is not a whole number from {low} to {high}.")
     return int(value)
 
 
-def listed(what: str, items: Sequence[Item], index: object) -> Item:
+def check_index(what: str, items: Sequence[Item], index: object) -> Item:
     """Return the item at this index of a list on the page; raise `BadInput` if the list has no such item."""
     if not is_number(index) or not isinstance(index, int) or not 0 <= index < len(items):
         raise BadInput(f"That {what} is no longer on the page; choose another.")

@@ -30,7 +30,10 @@ def refusal(name: str, shown: Scene) -> str:
 
 
 def changes(name: str, on: bool, shown: Scene, remembered: Mapping[str, Any]) -> dict[str, Any]:
-    """Knob values that a switch sets; for an effect that is switched on the visitor's, the preset's or usual values."""
+    """Knob values that a switch sets.
+
+    An effect that is switched on gets the values of the visitor, of the preset, or usual ones, in this order.
+    """
     if name not in SWITCHES or name == ACCOUNT_SWITCH:
         raise BadInput(f"There is no switchable effect {quoted(name)}.")
     if refused := refusal(name, shown):

@@ -61,13 +61,13 @@ class Job:
                 raise Cancelled
             COMPILER.load(scene, piece)
 
-    def give_way(self, while_: Callable[[], bool] | None = None) -> None:
-        """Wait while the picture for a moved knob is being computed, or while `while_` returns True.
+    def give_way(self, waits: Callable[[], bool] | None = None) -> None:
+        """Wait while `waits` returns True; without it, while the picture for a moved knob is being computed.
 
         The longer the wait, the rarer the checks: each check takes the GIL from all other threads.
         """
-        waits, pause = while_ or (lambda: self._host.awaiting_picture), _PICTURE_CHECK_INTERVAL
-        while waits() and not self.stop:
+        must_wait, pause = waits or (lambda: self._host.awaiting_picture), _PICTURE_CHECK_INTERVAL
+        while must_wait() and not self.stop:
             time.sleep(pause)
             pause = min(2.0 * pause, _LONGEST_CHECK_INTERVAL)
 
@@ -161,4 +161,4 @@ class Task:
         self._job = None
         self._report(status, sentence)
         if problem is not None and self._report_to_host:
-            self._host.report_failure(problem)
+            self._host.show_failure(problem)

@@ -1,1 +1,1 @@
-"""Analyses, a module each: spectrum, Lyapunov spectrum, rotation number, bifurcation diagram, basins, pulses, bands."""
+"""Analyses (docs/analysis.md): spectra, rotation number, bifurcation diagram, basins; pulses and pass bands."""

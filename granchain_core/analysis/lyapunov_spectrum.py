@@ -31,8 +31,8 @@ from ..tables.provenance import Attribute
 
 #: Directions that shrink in one period by more than this fraction of the one that grows most are rounding.
 _ROUNDING = 1e-12
-#: Periods in which the directions turn into their places, not counted.
-_TURNING = 50
+#: First periods, which are not counted: the directions align with those that grow at the rates of the exponents.
+_ALIGNMENT_PERIODS = 50
 #: Most periods of one measurement.
 MOST_PERIODS = 1_000_000
 #: Blocks over which the standard errors are taken.
@@ -195,21 +195,23 @@ def lyapunov_spectrum(scene: Scene, periods: int = 400, start: State | None = No
     stroboscopic_map = StroboscopicMap(scene, 1, stop)
     x = stroboscopic_map.inner(run_until_settled(scene, start, stop).engine.y)
     size = len(x)
-    directions, growth, traces = np.eye(size), np.zeros((_TURNING + periods, size)), np.zeros(_TURNING + periods)
+    every = _ALIGNMENT_PERIODS + periods
+    directions, growth, traces = np.eye(size), np.zeros((every, size)), np.zeros(every)
     rounding = np.zeros(size, dtype=bool)
-    for p in range(len(growth)):
+    for p in range(every):
         flow = stroboscopic_map(x, directions=directions)
         directions, triangle = np.linalg.qr(flow.derivative)
-        shrinks = np.abs(np.diag(triangle))
-        rounding |= shrinks <= _ROUNDING * shrinks.max()
-        growth[p] = np.log(np.maximum(shrinks, np.finfo(float).tiny))
+        stretching = np.abs(np.diag(triangle))
+        rounding |= stretching <= _ROUNDING * stretching.max()
+        growth[p] = np.log(np.maximum(stretching, np.finfo(float).tiny))
         x, traces[p] = flow.end, flow.log_determinant
         if progress is not None:
-            progress((p + 1) / len(growth))
-    counted = growth[_TURNING:]
+            progress((p + 1) / every)
+    counted = growth[_ALIGNMENT_PERIODS:]
     blocks = np.array([part.mean(axis=0) for part in np.array_split(counted, _BLOCKS)])
     resolved = int(np.argmax(rounding)) if rounding.any() else size
     exponents, errors = counted.mean(axis=0), blocks.std(axis=0, ddof=1) / np.sqrt(_BLOCKS)
     # the factorization puts them in this order in the limit only: near ones may have changed places
     order = np.concatenate([np.argsort(-exponents[:resolved], kind="stable"), np.arange(resolved, size)])
-    return LyapunovSpectrum(scene, exponents[order], errors[order], resolved, periods, float(traces[_TURNING:].mean()))
+    mean_trace = float(traces[_ALIGNMENT_PERIODS:].mean())
+    return LyapunovSpectrum(scene, exponents[order], errors[order], resolved, periods, mean_trace)

@@ -27,7 +27,7 @@ from ..tables.provenance import Attribute
 #: Forces that have a spectrum, as attributes of a run, and their names.
 FORCES = {"input": "input_force", "output": "output_force", "elastic": "output_force_elastic"}
 #: Part of the input force's largest line that a line must have to be the denominator of a transfer.
-_COUNTS = 1e-6
+_SMALLEST_INPUT_LINE = 1e-6
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -232,7 +232,7 @@ def transfer(run: Run) -> Transfer:
     if run.regime.period is None:
         raise BadInput(f"A transfer needs lines, and this motion has none: {run.regime.sentence}.")
     into, out = spectrum(run, "input"), spectrum(run, "output")
-    strong = into.amplitude > max(_COUNTS * into.amplitude.max(), 2.0 * into.aliasing)
+    strong = into.amplitude > max(_SMALLEST_INPUT_LINE * into.amplitude.max(), 2.0 * into.aliasing)
     turned = out.phase[strong] - into.phase[strong]
     gain = out.amplitude[strong] / into.amplitude[strong]
     a, b = out.error / out.amplitude[strong], into.error / into.amplitude[strong]  # relative errors of both lines

@@ -1,1 +1,1 @@
-"""Execution of long computations: processors, child processes, checkpoints, the stop flag, the time it takes."""
+"""How long computations are executed: processors, child processes, checkpoints, the stop flag, their time."""

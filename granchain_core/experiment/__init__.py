@@ -1,4 +1,4 @@
-"""Measured data: a user's tables and series, and the peaks and valleys that the paper's text states."""
+"""Measured data: a user's tables and series (docs/data.md), and the peaks and valleys that the paper states."""
 
 from .columns import Convention
 from .compare import Difference, compared

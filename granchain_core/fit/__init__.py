@@ -1,4 +1,4 @@
-"""Fits of a model's parameters to measured data: misfit, search, confidence intervals, verdict."""
+"""Fits of parameters to measured data: misfit, search, profile likelihood, verdict; a measured series over a run."""
 
 from .beginning import Beginning, settled_beginning
 from .fit import Fit, fit

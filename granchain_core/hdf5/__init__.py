@@ -1,4 +1,4 @@
-"""HDF5 files as such: sealed when they are written, and checked in everything when they are read."""
+"""HDF5 files: sealed with a checksum when they are written, checked when they are read (docs/reliability.md)."""
 
 from .border import File, opened
 from .seal import SIGNATURE, VERSIONS, seal

@@ -1,4 +1,4 @@
-"""Time integration: from a scene to scaled numbers, the table of methods, the engine that advances a state."""
+"""Time integration: from a scene to scaled numbers, the table of methods, the engine that carries a state, batches."""
 
 from .counts import Counts
 from .engine import Engine

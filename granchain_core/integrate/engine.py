@@ -40,7 +40,7 @@ class Engine:
     def __init__(self, scene: Scene, setting: MethodSetting, samples: int = 1, account: bool = False,
                  stop: Stop | None = None, scaled: ScaledChain | None = None) -> None:
         method = METHODS[setting.method]
-        ready = (scale_chain(scene, account and method.has_account) if scaled is None else scaled).own()
+        ready = (scale_chain(scene, account and method.has_account) if scaled is None else scaled).with_own_tension()
         self.setting = setting
         self.samples = samples
         self.counts = Counts()
@@ -69,7 +69,7 @@ class Engine:
         `steps` is their number in a period. The arrays are used again: where many orbits are followed for a period
         each, a new engine would take as long.
         """
-        self.stepper.move(scaled.own(), steps)
+        self.stepper.move(scaled.with_own_tension(), steps)
         self.grid = self.stepper.grid
 
     # --- state ---------------------------------------------------------------------------------------------

@@ -25,7 +25,7 @@ RK4_SPLIT = "rk4-split"
 DOP853 = "dop853"
 
 #: Above this relative error the fixed-step method is cheaper than dop853 (`granchain accuracy sec2` measures it).
-FIXED_STEP_IS_CHEAPER = 1e-10
+FIXED_STEP_CHEAPER_ABOVE = 1e-10
 #: The fixed-step method's usual relative error at the default step.
 _FIXED_STEP_ERROR = 7e-6
 #: About one random scene in a thousand has an error larger than this factor times the usual one (`python -m
@@ -95,7 +95,7 @@ Setting = MethodSetting
 
 @dataclass(frozen=True)
 class StepCost:
-    """Seconds per accepted step: `fixed`, plus `each` for every contact, rejected steps included.
+    """Seconds per accepted step: `fixed`, plus `per_contact` for each contact, rejected steps included.
 
     For error control: `steps_per_time` steps in a unit of scaled time at tolerance 1e-8, growing with
     tolerance^(−`power`).
@@ -103,7 +103,7 @@ class StepCost:
     """
 
     fixed: float
-    each: float
+    per_contact: float
     steps_per_time: float = 0.0
     power: float = 0.0
 
@@ -264,7 +264,7 @@ def following_setting(tension_cut: bool) -> MethodSetting:
 
 def method_for(accuracy: float, tension_cut: bool = False) -> MethodSetting:
     """The first setting to try for a relative error of `accuracy`."""
-    if accuracy >= FIXED_STEP_IS_CHEAPER and not tension_cut:  # where tension is cut the fixed-step method has order 1
+    if accuracy >= FIXED_STEP_CHEAPER_ABOVE and not tension_cut:  # with a cut the fixed-step method has order 1
         # the order without events, 4, where `typical_error` has the observed one: a guess that halvings refine
         return fixed_step_setting(max(_COARSEST_REFINEMENT, (_FIXED_STEP_ERROR / accuracy) ** 0.25))
     return dop853_setting(_first_tolerance(accuracy))

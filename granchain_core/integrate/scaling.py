@@ -114,7 +114,7 @@ class ScaledChain:
         """Length of the whole state array."""
         return 2 * self.bodies + (2 if self.slots.account is not None else 0)
 
-    def own(self) -> ScaledChain:
+    def with_own_tension(self) -> ScaledChain:
         """A copy with its own flags of force-free contacts, if there are any: an engine writes into them."""
         if self.slots.tension is None:
             return self
@@ -277,7 +277,7 @@ def scale_like(known: ScaledChain, scene: Scene) -> ScaledChain:
         return scale_chain(scene)
     beta = 2 * math.pi * scene.f / known.scales.phi
     driver = known.slots.driver._replace(beta=beta)
-    scaled = replace(known, scene=scene, slots=known.slots._replace(driver=driver), beta=beta).own()
+    scaled = replace(known, scene=scene, slots=known.slots._replace(driver=driver), beta=beta).with_own_tension()
     vars(scaled)["slot_types"] = known.slot_types  # the arrays are the same ones, or of the same types
     return scaled
 

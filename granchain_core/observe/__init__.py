@@ -1,4 +1,4 @@
-"""Observers, models (3) and (4) of the paper: a chain pushed by a measured force, and whether it converges."""
+"""Observers, models (3) and (4) of the paper: chains pushed by a measured force, and twins."""
 
 from .observation import Observation, Residual, observe
 from .read import first_state, read_force, read_force_csv

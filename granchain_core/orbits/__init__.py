@@ -1,4 +1,4 @@
-"""Periodic orbits as fixed points of the stroboscopic map, their stability, and their branches."""
+"""Periodic orbits as fixed points of the stroboscopic map: its derivative, Newton's method, multipliers, modes."""
 
 from .branch.axis import CONTINUOUS, KnobAxis
 from .branch.branch import Branch, Continuation, begin_branch, continue_branch

@@ -71,7 +71,7 @@ class Orbit(Labelled):
         Derivatives of the n-period map in scaled displacements, then w, whose eigenvalues the multipliers are; None
         with more than 100 beads.
     period_note : str
-        Why period 1 was taken, in words, where no period was given and no motion has one; else empty.
+        Why period 1 was assumed, in words; empty if a period was given or found.
 
     Examples
     --------

@@ -1,7 +1,7 @@
 """The parameter map: regime and largest forces over two knobs, every cell from rest.
 
-`diagram` and `Diagram` are older names of `parameter_map` and `ParameterMap`. The diagram over one knob, the
-bifurcation diagram, is in `analysis/strobe_diagram.py`.
+`diagram` and `Diagram` are older names of `parameter_map` and `ParameterMap`. The bifurcation diagram, over one knob,
+is in `analysis/bifurcation_diagram.py`.
 """
 
 from .cells import ParameterMap

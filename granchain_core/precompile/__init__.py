@@ -1,1 +1,1 @@
-"""Kernels compiled ahead of time, piece by piece (`granchain warm`)."""
+"""Kernels compiled ahead of time: which there are, and in which pieces (`granchain warm`)."""

@@ -1,4 +1,4 @@
-"""Chains whose driver has a given motion: chirp, burst, tones, noise, or a measured series."""
+"""Chains whose driver has a given motion: chirp, burst, tones, noise, a measured series (docs/scenes.md)."""
 
 from .driven import Driven, drive
 from .signal import Signal

@@ -67,7 +67,7 @@ def _estimate(scaled: ScaledChain, setting: MethodSetting, periods: int, samples
         else:
             count = float(periods * one.steps_per_period(scaled, samples))
         steps += count
-        seconds += count * (cost.fixed + cost.each * (beads + 1))
+        seconds += count * (cost.fixed + cost.per_contact * (beads + 1))
     repetition_factor = np.sqrt(1.0 + _relative_cost(finer.finer_than(scaled, samples)) / twice)
     steps, seconds = steps * repetition_factor, seconds * repetition_factor
     seconds += 2.0 * record * samples * (_SAMPLE[0] + _SAMPLE[1] * beads)
@@ -79,7 +79,7 @@ def picture_seconds(scene: Scene, periods: int, samples: int) -> float:
     setting, scaled = fixed_step_setting(), scale_chain(scene)
     cost = METHODS[setting.method].cost
     steps = float(periods * setting.steps_per_period(scaled, samples))
-    return steps * (cost.fixed + cost.each * (scene.N + 1)) * machine_factor()
+    return steps * (cost.fixed + cost.per_contact * (scene.N + 1)) * machine_factor()
 
 
 def refuse_long_picture(scene: Scene, periods: int, samples: int, budget: float) -> None:

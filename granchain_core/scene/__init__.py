@@ -1,4 +1,4 @@
-"""Scenes: frozen descriptions in SI, presets, the tables of knobs and damping laws; a chain's state at one instant."""
+"""Scenes: frozen descriptions in SI, knobs and damping laws, presets, the equation on screen; states of chains."""
 
 from .amplitude import Amplitude
 from .description import Bead, hertz_stiffness

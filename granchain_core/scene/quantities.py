@@ -172,7 +172,7 @@ _TABLE = (
              "Stiffness of the last contact over that of two beads like the last: 1 for a fixed bead, √2 for a flat "
              "wall of the same material, 2√2 for a rigid flat wall, or a number.",
              1e-6, 1e6, choices=tuple(WALL_FACTORS), short="wall"),
-    Quantity("dissipation", "", "", "", "dissipation law", "How a contact loses energy.",
+    Quantity("dissipation", "", "", "", "damping law", "How a contact loses energy.",
              choices=DISSIPATION_LAWS, numeric=False, short="law"),
     Quantity("tension", "", "", "", "tension", "Whether the dashpot may pull while a contact opens "
              "(the paper's law) or the contact force is cut at zero.", choices=TENSION, numeric=False),

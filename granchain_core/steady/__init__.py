@@ -1,1 +1,1 @@
-"""Steady states of a driven chain: settling, batches, the resonance curve; criteria of the regime, errors of forces."""
+"""Steady states: criteria of the regime, Lyapunov exponent, Poincaré section, errors of an orbit's forces."""

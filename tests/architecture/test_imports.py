@@ -16,8 +16,8 @@ from source import ROOT, by_folder, imports_in, nodes
 
 import app.server  # noqa: F401  (makes every component and table known)
 from app import library_internals
-from app.parts.figures.figure_part import FigurePart
 from app.parts.figures.result_figure import ResultFigure
+from app.parts.figures.streamed_figure import StreamedFigure
 from app.parts.toolkit.component import Component
 from app.scripts import FILES
 from granchain_core.kernels.compiling import cache, link_only
@@ -113,8 +113,8 @@ def test_the_order_of_the_map_is_read() -> None:
     """A family's own folders, and those that other folders use with it."""
     assert {"serve", "parts", "pages"} == FAMILIES
     assert allowed("serve.compiling") == {"serve.compiling", "serve.computing", "serve.monitoring"}
-    assert {"parts.toolkit", "serve.document", "plots"} <= allowed("parts.stage")
-    assert not {"parts.chain", "curve", "pages"} & allowed("parts.stage")
+    assert {"parts.toolkit", "serve.document", "plots"} <= allowed("parts.time_figures")
+    assert not {"parts.chain", "curve", "pages"} & allowed("parts.time_figures")
     assert {"parts.chain", "serve.computing"} <= allowed("pages.map") and "pages.probe" not in allowed("pages.map")
 
 
@@ -279,7 +279,7 @@ def test_the_documentation_names_what_is_used_of_numba() -> None:
 
 def test_parts_override_of_panel_only_what_is_documented() -> None:
     """In their own classes and in those they are mixed from; what takes a shortcut is in one module."""
-    parts = [Component, *Component.__subclasses__(), *FigurePart.__subclasses__(),
+    parts = [Component, *Component.__subclasses__(), *StreamedFigure.__subclasses__(),
              *ResultFigure.__subclasses__()]
     assert len(parts) > 10
     for part in parts:

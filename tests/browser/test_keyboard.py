@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from knobs import Visit, settled
 from playwright.sync_api import Locator, Page, expect
+from server import until
 
 from app.dashboard.table import PAGES
 
@@ -32,6 +33,27 @@ def test_the_focus_moves_to_an_overlay_and_back(name: str, at: Visit) -> None:
         page.keyboard.press(close)
         expect(page.locator(f"[data-overlay={name}]")).to_be_hidden()
         expect(button).to_be_focused()
+
+
+@pytest.mark.parametrize("overlaid", [False, True], ids=["tab", "overlay"])
+def test_the_focus_stays_at_a_button_that_is_drawn_again(overlaid: bool, at: Visit) -> None:
+    """The open tab is made anew whenever the state of the tabs changes, such as by a warning about the amplitude."""
+    page = at()
+    settled(page)
+    button = opener(page, "analysis")
+    button.focus()
+    if overlaid:
+        page.keyboard.press("Enter")
+        expect(page.locator("[data-overlay=analysis] h2").first).to_be_focused()
+    page.locator("#tabs button.open").evaluate("button => { button.old = true; }")
+    page.evaluate("""() => {
+        const [tabs] = [...Bokeh.documents[0]._all_models.values()].filter(({ data }) => data?.attributes?.state?.tabs);
+        tabs.data.setv({ state: { ...tabs.data.attributes.state, validity: [`At ${performance.now()} ms.`] } }, { sync: false });
+    }""")
+    until(page, lambda: page.locator("#tabs button.open").evaluate("button => !button.old"))
+    if overlaid:
+        page.keyboard.press("Escape")
+    expect(button).to_be_focused()
 
 
 @pytest.mark.parametrize("name", POPOVERS)

@@ -73,7 +73,7 @@ def test_a_knob_that_turns_nothing_says_so(at: Visit) -> None:
     expect(damping).to_contain_text("no effect: the law, under “more knobs”, is “none”")
     more = page.locator("summary").get_by_text("more knobs", exact=True).first
     more.click()
-    page.get_by_label("dissipation law").select_option("linear")
+    page.get_by_label("damping law").select_option("linear")
     expect(damping).to_contain_text("0: contacts lose no energy")
     more.click()
 

@@ -1,4 +1,6 @@
-"""spectrum, lyapunov, rotation, strobes, attractors, basins, pulse, bands: words, pictures, and what they refuse."""
+"""spectrum, lyapunov, rotation, bifurcation-diagram, attractors, basins, pulse, bands:
+words, pictures, and what they refuse.
+"""
 
 from __future__ import annotations
 
@@ -16,15 +18,15 @@ COMMANDS = {
     "spectrum": [*SHORT, "--samples", "32"],
     "lyapunov": [*SHORT, "--periods", "20"],
     "rotation": ["sec2", "--set", "f=1700", "--periods", "2000"],
-    "strobes": [*SHORT, "--over", "f=1900:2000:2", "--keep", "4"],
+    "bifurcation-diagram": [*SHORT, "--over", "f=1900:2000:2", "--keep", "4"],
     "attractors": [*SHORT, "--random-states", "2"],
     "basins": [*SHORT, "--x", "u1=0:2e-7:2", "--y", "v1=0:1e-3:2"],
     "pulse": ["impact", "--set", "N=5"], "bands": ["precompressed"],
 }
 #: A source in the picture of each, where it has one.
-SOURCES = {"spectrum": "lines", "lyapunov": "exponents", "rotation": "convergence", "strobes": "strobes", "attractors": "period 1", "basins": "basin 1"}
+SOURCES = {"spectrum": "lines", "lyapunov": "exponents", "rotation": "convergence", "bifurcation-diagram": "strobes", "attractors": "period 1", "basins": "basin 1"}
 #: A group of the file of each that has `--out`.
-GROUPS = {"spectrum": "spectrum", "lyapunov": "lyapunov", "rotation": "rotation", "strobes": "strobes", "basins": "basins",
+GROUPS = {"spectrum": "spectrum", "lyapunov": "lyapunov", "rotation": "rotation", "bifurcation-diagram": "strobes", "basins": "basins",
           "pulse": "pulse", "orbit": "multipliers"}
 
 
@@ -50,7 +52,7 @@ def test_the_file_has_the_result(command: str, tmp_path: Path, capsys: pytest.Ca
 
 @pytest.mark.parametrize(("command", "words"), [
     ("spectrum", "Fourier series of a motion of period 1"), ("lyapunov", "of 4 exponents resolved"),
-    ("rotation", "rotation number 0.22181"), ("strobes", "settled within"), ("basins", "100%"), ("attractors", "100 ± 19 %             2.30266     yes       5  period 1"),
+    ("rotation", "rotation number 0.22181"), ("bifurcation-diagram", "settled within"), ("basins", "100%"), ("attractors", "100 ± 19 %             2.30266     yes       5  period 1"),
     ("pulse", "energy closes to"), ("pulse", "by sampling of forces "), ("pulse", ", speeds "), ("bands", "cut-off 7200.22 Hz"),
 ])
 def test_the_result_in_words(command: str, words: str, capsys: pytest.CaptureFixture[str]) -> None:
@@ -61,9 +63,9 @@ def test_the_result_in_words(command: str, words: str, capsys: pytest.CaptureFix
 @pytest.mark.parametrize(("words", "sentence"), [
     (["spectrum", *SHORT, "--force", "wall"], "force 'wall'"), (["lyapunov", *SHORT, "--periods", "3"], "outside 20 to"),
     (["rotation", *SHORT, "--periods", "3"], "periods = 3 is outside 1000 to"), (["rotation", "impact"], "drive = rest"),
-    (["strobes", *SHORT, "--over", "f=1:2"], "must have the form KNOB=a:b:n"),
-    (["strobes", *SHORT, "--over", "wall=1:2:3"], "knob of a bifurcation diagram 'wall'"),
-    (["strobes", *SHORT, "--over", "f=1000:1100:2", "--bead", "3"], "--bead 3 is outside 1 to 2"),
+    (["bifurcation-diagram", *SHORT, "--over", "f=1:2"], "must have the form KNOB=a:b:n"),
+    (["bifurcation-diagram", *SHORT, "--over", "wall=1:2:3"], "knob of a bifurcation diagram 'wall'"),
+    (["bifurcation-diagram", *SHORT, "--over", "f=1000:1100:2", "--bead", "3"], "--bead 3 is outside 1 to 2"),
     (["attractors", *SHORT, "--random-states", "-1"], "--random-states -1 is outside 0 to 10000"),
     (["attractors", *SHORT, "--seed", "-1"], "--seed -1 is outside 0 to"), (["attractors", "impact"], "drive = rest"),
     (["basins", *SHORT, "--x", "u9=0:1:2", "--y", "v1=0:1:2"], "Coordinate 'u9' does not exist"),
@@ -72,6 +74,13 @@ def test_the_result_in_words(command: str, words: str, capsys: pytest.CaptureFix
 def test_what_cannot_be_is_refused_with_a_sentence(words: list[str], sentence: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(words) == 2
     assert sentence in capsys.readouterr().err
+
+
+def test_a_command_works_by_its_older_name(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["bifurcation-diagram", *COMMANDS["bifurcation-diagram"]]) == 0
+    printed = capsys.readouterr().out
+    assert main(["strobes", *COMMANDS["bifurcation-diagram"]]) == 0
+    assert capsys.readouterr().out == printed
 
 
 def test_starts_without_a_steady_state_are_counted_and_the_first_is_explained(capsys: pytest.CaptureFixture[str]) -> None:

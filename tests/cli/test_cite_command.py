@@ -1,4 +1,4 @@
-"""`granchain cite`: the software, the paper, Hertz, and the law of damping where the scene has it."""
+"""`granchain cite`: the software, the paper, Hertz, and the damping law where the scene has it."""
 
 from __future__ import annotations
 

@@ -45,7 +45,7 @@ EXAMPLES = {
     "spectrum": ["spectrum", *_SMALL, "--samples", "32"],
     "lyapunov": ["lyapunov", *_SMALL, "--periods", "20"],
     "rotation": ["rotation", *_SMALL],
-    "strobes": ["strobes", *_SMALL, "--over", "f=1900:2000:2", "--keep", "2"],
+    "bifurcation-diagram": ["bifurcation-diagram", *_SMALL, "--over", "f=1900:2000:2", "--keep", "2"],
     "attractors": ["attractors", *_SMALL, "--random-states", "1"],
     "basins": ["basins", *_SMALL, "--x", "u1=0:2e-7:2", "--y", "v1=0:1e-3:2"],
     "pulse": ["pulse", "impact", "--set", "N=5"],

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import threading
-import time
 from concurrent.futures import Future
 from dataclasses import replace
 from types import SimpleNamespace
@@ -12,7 +11,7 @@ from typing import Any
 import pytest
 from headless_dashboard import Dashboard
 
-from app.dashboard import exports, main_picture
+from app.dashboard import exports, main_picture, picture_work
 from app.frames import settled_frames
 from app.serve.compiling.compiler import Compiler
 from app.serve.monitoring.metrics import METRICS
@@ -41,12 +40,12 @@ def test_a_refusal_belongs_to_the_scene_that_was_refused(dashboard: Dashboard) -
     """A knob may have moved before the refusal arrives: what is computed anyway is then not what the sentence is about.
     """
     refused = dashboard.session.scene.evolve(N=10_000)
-    dashboard.report_failure(RefusedPicture(refused, "It would take long."))
+    dashboard.show_failure(RefusedPicture(refused, "It would take long."))
     assert dashboard.session.sentence == "" and not dashboard.views.status_line.state.get("insist")
     dashboard.session.scene = refused
-    dashboard.report_failure(RefusedPicture(refused, "It would take long."))
+    dashboard.show_failure(RefusedPicture(refused, "It would take long."))
     assert dashboard.views.status_line.state["insist"]
-    dashboard.report_failure(BadInput("Something else."))
+    dashboard.show_failure(BadInput("Something else."))
     assert not dashboard.views.status_line.state["insist"]
 
 
@@ -123,7 +122,7 @@ def test_the_pages_do_not_hear_of_a_picture_of_knobs_that_have_moved_on(dashboar
 def test_a_picture_is_computed_as_it_was_asked_for(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
     """Whatever changes on the page between the request and the thread that takes it."""
     asked, changed = threading.Event(), threading.Event()
-    monkeypatch.setattr(main_picture, "check_first_picture", lambda _: (asked.set(), changed.wait(60)))
+    monkeypatch.setattr(picture_work, "check_first_picture", lambda _: (asked.set(), changed.wait(60)))
     session = dashboard.session
     session.scene = chain = scene("sec2").evolve(N=2, f=2000.0)
     session.set_start("previous")
@@ -155,8 +154,8 @@ def test_nothing_is_settled_for_a_visitor_who_left_while_kernels_were_compiled(d
             waiting.set()
             return Future()
 
-    monkeypatch.setattr(main_picture, "COMPILER", Compiling())
-    monkeypatch.setattr(main_picture, "settling", lambda *_, **__: settled.append("began") or iter(()))
+    monkeypatch.setattr(picture_work, "COMPILER", Compiling())
+    monkeypatch.setattr(picture_work, "settling", lambda *_, **__: settled.append("began") or iter(()))
     dashboard.pictures.compute()
     assert waiting.wait(60)
     dashboard.close(None)
@@ -167,7 +166,7 @@ def test_nothing_is_settled_for_a_visitor_who_left_while_kernels_were_compiled(d
 def test_a_busy_server_says_so_with_the_next_picture(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
     """The message disappears with the first picture that comes in time."""
     clock = [5.0]
-    monkeypatch.setattr(main_picture, "time", SimpleNamespace(monotonic=lambda: clock[0], thread_time=time.thread_time))
+    monkeypatch.setattr(main_picture, "time", SimpleNamespace(monotonic=lambda: clock[0]))
     try:
         for late, wait, said in ((0.4, 0.0, True), (0.0, 0.1, False), (0.0, 0.4, True)):
             for _ in range(40):
@@ -197,8 +196,8 @@ def test_only_the_picture_of_a_request_answers_it(dashboard: Dashboard, monkeypa
     """A picture of the knobs before may arrive in between; it is shown, but the visitor still waits for the other."""
     clock, counted, begun = [0.0], [], threading.Event()
     go_on = {frequency: threading.Event() for frequency in (2000.0, 2100.0)}
-    monkeypatch.setattr(main_picture, "time", SimpleNamespace(monotonic=lambda: clock[0], thread_time=time.thread_time))
-    monkeypatch.setattr(main_picture, "check_first_picture", lambda chain: (begun.set(), go_on[chain.f].wait(60)))
+    monkeypatch.setattr(main_picture, "time", SimpleNamespace(monotonic=lambda: clock[0]))
+    monkeypatch.setattr(picture_work, "check_first_picture", lambda chain: (begun.set(), go_on[chain.f].wait(60)))
     monkeypatch.setattr(METRICS, "answered", counted.append)
     session, pictures = dashboard.session, dashboard.pictures
     session.scene = scene("sec2").evolve(N=2, f=2000.0)

@@ -15,6 +15,7 @@ import pytest
 from documents import ROOT
 
 from granchain_core import orbit, scene
+from granchain_core.analysis import lyapunov_spectrum
 from granchain_core.integrate.fixed import SHORT_CHAIN
 from granchain_core.kernels.batch import checks, record
 from granchain_core.observe.drift import TRANSLATION
@@ -24,7 +25,7 @@ from granchain_core.results.regime import Regime
 from granchain_core.steady import exponent_measurements, regime_criteria, residuals
 from granchain_core.steady.batch import job, threads
 from granchain_core.steady.curve import resonance_curve
-from granchain_core.steady.settling import regime_decisions, single_chain
+from granchain_core.steady.settling import nearby_orbit, regime_decisions, single_chain
 from tools.thresholds import _REGIMES, marked_constants, printed
 
 OBSERVERS, GLOSSARY = (" ".join((ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8").split())
@@ -73,6 +74,16 @@ def test_the_text_on_branches_has_the_values_of_the_constants() -> None:
     for pattern, value in said.items():
         found = re.findall(pattern, text)
         assert len(found) == 1 and float(found[0]) == pytest.approx(value, rel=1e-12), pattern
+
+
+def test_docstrings_and_pages_say_up_to_how_many_beads_there_are_multipliers() -> None:
+    most = nearby_orbit.MOST_BEADS_WITH_MULTIPLIERS
+    for file, times in (("granchain_core/orbits/orbit.py", 3), ("granchain_core/analysis/lyapunov_spectrum.py", 1)):
+        assert re.findall(r"(\d+) beads", (ROOT / file).read_text(encoding="utf-8")) == times * [str(most)], file
+    for page, words in (("orbits", f"Up to {most} beads the whole derivative"), ("stability", f"of more than {most} beads only"),
+                        ("regimes", f"up to {most} beads if the claim"), ("regimes", f"*Run:* up to {most} beads")):
+        assert words in " ".join((ROOT / "docs" / f"{page}.md").read_text(encoding="utf-8").split()), page
+    assert f"20 to {lyapunov_spectrum.MOST_PERIODS:,}." in str(lyapunov_spectrum.lyapunov_spectrum.__doc__) and lyapunov_spectrum._BLOCKS == 20
 
 
 PARTS = {2: "half", 3: "a third", 4: "a quarter"}

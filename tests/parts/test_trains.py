@@ -11,7 +11,7 @@ import pytest
 from bokeh.models import Range1d
 
 from app.frames import LiveWindow, settled_frames, with_jumps
-from app.parts.stage.trains import ForceTrains
+from app.parts.time_figures.trains import ForceTrains
 from granchain_core import LiveChain, scene, settle
 
 CHAIN = scene("sec2").evolve(D=300.0, f=100.0, accuracy=1e-4)

@@ -37,7 +37,7 @@ RESULTS = {
     "transfer": (lambda: granchain.transfer(granchain.settle(CHAIN).run), "gain |H|"),
     "lyapunov": (lambda: granchain.lyapunov_spectrum(CHAIN, periods=20), "Lyapunov exponent per drive period"),
     "rotation": (lambda: granchain.rotation_number(scene("sec2").evolve(f=1700.0), 2000), "difference of halves of the record"),
-    "strobes": (lambda: granchain.strobe_diagram(CHAIN, "f", [1900.0, 2000.0], keep=4), "displacement of bead 2 at drive phase 0 (nm)"),
+    "strobes": (lambda: granchain.bifurcation_diagram(CHAIN, "f", [1900.0, 2000.0], keep=4), "displacement of bead 2 at drive phase 0 (nm)"),
     "basins": (lambda: granchain.basins(CHAIN, ("u1", [0.0, 1e-7]), ("v1", [0.0, 1e-3])), "displacement of bead 1 at the start (nm)"),
     "attractors": (lambda: granchain.attractors(CHAIN, random_states=2), "random states that lead there (%)"),
     "paper": (lambda: compute("5"), "velocity amplitude V0 (mm/s)"),

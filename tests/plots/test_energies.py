@@ -13,7 +13,7 @@ import app
 import granchain
 from app.dashboard.layout import Views
 from app.pages.observer.view import first_state
-from app.parts.stage.energy import EnergyMap
+from app.parts.time_figures.energy import EnergyMap
 from app.plots.energies import ENERGY_COLOURS, bead_interval
 from app.session.session import Session
 from granchain import scene

@@ -20,6 +20,7 @@ from granchain_core import (
     State,
     attractors,
     basins,
+    bifurcation_diagram,
     drive,
     load,
     lyapunov_spectrum,
@@ -34,7 +35,6 @@ from granchain_core import (
     scene,
     settle,
     spectrum,
-    strobe_diagram,
     transfer,
 )
 from granchain_core.observe.twin import twin
@@ -58,7 +58,7 @@ def test_counts_of_numpy_become_plain_ones_and_the_run_can_be_saved(tmp_path: Pa
     lambda wrong: orbit(CHAIN, period=wrong), lambda wrong: attractors(CHAIN, random_states=wrong),
     lambda wrong: attractors(CHAIN, random_states=1, seed=wrong), lambda wrong: lyapunov_spectrum(CHAIN, periods=wrong),
     lambda wrong: rotation_number(CHAIN, periods=wrong),
-    lambda wrong: strobe_diagram(CHAIN, "A0", [5e-7], keep=wrong), lambda wrong: twin(CHAIN, periods=wrong),
+    lambda wrong: bifurcation_diagram(CHAIN, "A0", [5e-7], keep=wrong), lambda wrong: twin(CHAIN, periods=wrong),
     lambda wrong: twin(CHAIN, samples=wrong), lambda wrong: LiveChain(CHAIN, samples=wrong),
     lambda wrong: LiveChain(CHAIN).advance(wrong)])
 @pytest.mark.parametrize("wrong", [2.5, "4", [1], True, math.nan])
@@ -93,7 +93,7 @@ def test_the_nearest_whole_number_is_named() -> None:
     (lambda: resonance_curve(CHAIN, 300.0), r"Frequencies must be a list or an array.*\[300\.0\] is a list of one"),
     (lambda: resonance_curve(CHAIN, "300"), "Frequencies must be a list or an array"),
     (lambda: resonance_curve(CHAIN, ["low"]), "Frequencies must be numbers"),
-    (lambda: strobe_diagram(CHAIN, "A0", 5e-7), "The values of A0 must be a list"),
+    (lambda: bifurcation_diagram(CHAIN, "A0", 5e-7), "The values of A0 must be a list"),
     (lambda: parameter_map(CHAIN, "f", ("A0", [5e-7])), r"x must be a name and its values, as in \(\"f\""),
     (lambda: parameter_map(CHAIN, ("f", 300.0), ("A0", [5e-7])), "The values of the axis f must be a list"),
     (lambda: basins(CHAIN, ("u1", 0.0), ("u2", [0.0])), "The values of u1 must be a list"),

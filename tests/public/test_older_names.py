@@ -9,6 +9,7 @@ from pathlib import Path
 
 import granchain
 import granchain_core
+from app.cli.commands import OLDER_NAMES as COMMANDS
 from granchain_core.kernels import batch_size
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -39,7 +40,8 @@ def test_every_older_name_is_in_the_table() -> None:
     packaging = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
     extras = {(only, f"granchain[{extra}]") for extra, (only, *more) in packaging.items() if not more and only.startswith("granchain[")}
     known = {*((new, old) for old, new in granchain_core.OLDER_NAMES.items()), *in_the_code(), *extras,
-             (batch_size.VARIABLE, batch_size.OLDER_VARIABLE), ("--max-sessions", "--most-visitors")}
+             (batch_size.VARIABLE, batch_size.OLDER_VARIABLE), ("--max-sessions", "--most-visitors"),
+             *((f"granchain {new}", f"granchain {old}") for old, new in COMMANDS.items())}
     assert known == LISTED
     assert len(in_the_code()) >= 10  # the search finds them
 

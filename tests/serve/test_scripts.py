@@ -13,8 +13,8 @@ from tornado.web import HTTPError
 
 from app import scripts
 from app.dashboard.layout import Views
-from app.parts.figures.figure_part import FigurePart
 from app.parts.figures.result_figure import ResultFigure
+from app.parts.figures.streamed_figure import StreamedFigure
 from app.parts.toolkit.component import Component
 from app.scripts import FILES, address, files_by_name, module
 from app.server import Access
@@ -62,7 +62,7 @@ def test_a_name_that_is_used_twice_is_refused(tmp_path: Path) -> None:
 
 def test_every_component_renders_a_module_of_its_own() -> None:
     assert Views.__name__  # importing it makes every component known
-    parts = {*Component.__subclasses__(), *FigurePart.__subclasses__(), *ResultFigure.__subclasses__()} - {FigurePart, ResultFigure}
+    parts = {*Component.__subclasses__(), *StreamedFigure.__subclasses__(), *ResultFigure.__subclasses__()} - {StreamedFigure, ResultFigure}
     rendered = {part._esm for part in parts if part.__module__.startswith("app.")}
     assert rendered == {module(name) for name, path in FILES.items() if "render" in EXPORT.findall(path.read_text(encoding="utf-8"))}
 

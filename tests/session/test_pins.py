@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from app.dashboard.addresses import apply_address
-from app.parts.stage.pinned_trains import DASHES, SIGNS
+from app.parts.time_figures.pinned_trains import DASHES, SIGNS
 from app.session.pins import NAMES, Pin, compared_rows, read_pin, setting_words
 from app.session.session import Session
 from app.session.share import PINS

@@ -16,7 +16,7 @@ PARTS = {part.partition("\n")[0]: part.partition("\n")[2]
 SECTIONS = {heading: text for section in re.split(r"^## ", PAGE, flags=re.MULTILINE)[1:]
             for heading, _, text in [section.partition("\n")] if "`" in heading}
 #: The page's names of axes whose names are knobs or coordinates.
-AXES = {"ParameterMap": {"A0": "y", "f": "x"}, "StrobeDiagram": {"f": "knob"}, "Basins": {"v1": "y", "u1": "x"}}
+AXES = {"ParameterMap": {"A0": "y", "f": "x"}, "BifurcationDiagram": {"f": "knob"}, "Basins": {"v1": "y", "u1": "x"}}
 #: Groups with a column for each knob or free parameter, of which the page says so in words.
 KNOBS = {"runs": set(CHAIN.knobs), "landscape": {"D"}}
 #: How the meaning of a largest force ends, which depends on the result.

@@ -54,7 +54,7 @@ RESULTS = {
     "RotationNumber": lambda: granchain_core.rotation_number(CHAIN),
     "RotationNumber decided": lambda: granchain_core.rotation_number(scene("sec2").evolve(f=1700.0), 2000),
     "LyapunovSpectrum": lambda: granchain_core.lyapunov_spectrum(CHAIN, periods=20),
-    "StrobeDiagram": lambda: granchain_core.strobe_diagram(CHAIN, "f", [1900.0, 2000.0], keep=4),
+    "BifurcationDiagram": lambda: granchain_core.bifurcation_diagram(CHAIN, "f", [1900.0, 2000.0], keep=4),
     "Basins": lambda: granchain_core.basins(CHAIN, ("u1", [0.0, 1e-7, 2e-7]), ("v1", [0.0, 1e-3])),
     "Attractors": lambda: granchain_core.attractors(CHAIN, random_states=2),
     "Driven": lambda: granchain_core.drive(CHAIN, granchain_core.Signal.burst(CHAIN.A0, 2000.0, 2, 0.002)),
@@ -86,7 +86,7 @@ def test_what_print_shows_is_the_summary_and_no_array(kind: str) -> None:
 #: Knobs that a result varies, and those that differ from the preset: only the latter are stated.
 HEADINGS = {
     "Run": "Run of sec2: f = 2000 Hz, N = 2", "Curve": "Curve of sec2: N = 2", "Branch": "Branch of sec2: N = 2",
-    "ParameterMap": "ParameterMap of sec2: N = 2", "StrobeDiagram": "StrobeDiagram of sec2: N = 2",
+    "ParameterMap": "ParameterMap of sec2: N = 2", "BifurcationDiagram": "BifurcationDiagram of sec2: N = 2",
     "Pulse": "Pulse of sec2: time 1/f = 0.00125 s, N = 5, drive = rest, strike = 0.01 m/s",
 }
 
@@ -137,7 +137,7 @@ def test_a_frame_has_a_column_for_each_bead_and_words_for_regimes() -> None:
     assert (run["displacement_2"] == result("Run").displacement[:, 1]).all()  # type: ignore[attr-defined]
     cells = result("ParameterMap").to_pandas()
     assert cells.index.names == ["A0", "f"] and set(cells["regime"]) == {"periodic"}
-    strobes = result("StrobeDiagram").to_pandas()
+    strobes = result("BifurcationDiagram").to_pandas()
     assert len(strobes) == 8 and set(strobes["regime"]) == {"periodic"}
     assert list(result("Run").to_pandas(rows="jump").columns) == ["jump_time", "jump_contact", "jump_force"]
 
@@ -162,7 +162,7 @@ FLOW = "tangent flow (DOP853, time substitution at events)"
 
 
 @pytest.mark.parametrize(("kind", "method"), [
-    ("Run", "rk4-split"), ("Orbit", FLOW), ("Branch", FLOW), ("LyapunovSpectrum", FLOW), ("StrobeDiagram", f"{ALONE} value by value"),
+    ("Run", "rk4-split"), ("Orbit", FLOW), ("Branch", FLOW), ("LyapunovSpectrum", FLOW), ("BifurcationDiagram", f"{ALONE} value by value"),
     ("Curve", f"{BATCH}, {ALONE} point by point"), ("ParameterMap", f"{BATCH}, {ALONE} cell by cell"),
     ("Basins", f"{BATCH}, {ALONE} start by start; orbits by {FLOW}"),
     ("Attractors", f"{BATCH}, {ALONE} start by start; orbits by {FLOW}"),

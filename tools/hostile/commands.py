@@ -39,7 +39,7 @@ _WRITTEN = tuple(line.split() for line in (
     f"spectrum sec2 {_SMALL} --json",
     f"lyapunov sec2 {_SMALL} --periods 20 --json",
     f"rotation sec2 {_SMALL} --json",
-    f"strobes sec2 {_SMALL} --over f=2990:3000:2 --keep 4 --json",
+    f"bifurcation-diagram sec2 {_SMALL} --over f=2990:3000:2 --keep 4 --json",
     f"attractors sec2 {_SMALL} --random-states 1 --json",
     f"basins sec2 {_SMALL} --x u1=0:2e-7:2 --y v1=0:1e-3:2 --json",
     f"virtual sec2 {_SMALL} --periods 2 --noise 0.01 --out virtual.csv",

@@ -12,10 +12,10 @@ import numpy as np
 from granchain_core.accuracy import Lesson, Row, WorkPrecision, compared_methods
 
 from ...format import prefixed, short_error
-from ...parts.figures.figure_part import FigurePart, page_and_small
+from ...parts.figures.streamed_figure import StreamedFigure, page_and_small
 from ...parts.toolkit.component import text
 from ...plots.accuracy import Annotations, accuracy, marks, points
-from ...plots.item import figure_item
+from ...plots.json_item import figure_item
 from ...plots.naive_forces import naive_forces
 from ...plots.theme import Theme
 from ...scripts import module
@@ -30,7 +30,7 @@ def empty_figures(theme: Theme) -> dict[str, Any]:
     return page_and_small(lambda compact: accuracy([], Annotations(1e-6), theme, compact))
 
 
-class Accuracy(FigurePart):
+class Accuracy(StreamedFigure):
     """The overlay. `state` has the text and the figures; what is drawn into them comes as messages."""
 
     _esm = module("accuracy.js")

@@ -30,11 +30,11 @@ WORDS = StatusWords("the kernels of the analysis", ORBIT_KERNELS)
 
 
 class AnalysisPage(Page):
-    """An answer stays, with the scene that it is about in its title, until another question is asked.
+    """Answers one question at a time; an answer stays, with its scene in the title, until another question is asked.
 
-    The question and the values with which it was last computed are in the address. A page that is opened with them
-    offers them again; it computes when it is asked to. One that is opened without answers the first question, which
-    takes no time, and goes on doing so for every picture until the visitor asks something.
+    The address has the question and the values with which it was last computed. A page that is opened with a question
+    in its address offers it again, and computes nothing until the visitor wants it. A page without one answers the
+    first question, which takes no time, for every picture until the visitor asks another.
     """
 
     def __init__(self, host: PageHost, view: Analysis) -> None:
@@ -57,13 +57,13 @@ class AnalysisPage(Page):
             self._view.offer(self._fields)
 
     def visibility_changed(self, visible: bool) -> None:
-        """Somebody opens the page: without a question it begins with the first."""
+        """When the page is opened without a question, answer the first one."""
         self._visible = visible
         self._unasked = self._unasked or (visible and self._question is None)
         self._begin_unasked()
 
     def picture_ready(self, settled: Settled) -> None:
-        """The knobs stand still."""
+        """Answer the first question for the new picture, unless the visitor has asked one."""
         if settled.final:
             self._begin_unasked()
 
@@ -123,7 +123,7 @@ class AnalysisPage(Page):
             self._show_status("stopped")
 
     def _compute(self, plan: Plan, job: Job) -> None:
-        """In a thread of the queue."""
+        """In a thread of the pool `LONG`."""
         for scene, pieces in plan.kernels:
             job.compile(scene, *pieces)
         job.report("computing")

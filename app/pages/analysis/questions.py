@@ -11,7 +11,7 @@ from urllib.parse import parse_qsl, urlencode
 import numpy as np
 from bokeh.models import LayoutDOM
 
-from granchain_core import BadInput, Scene, Stop, basins, lyapunov_spectrum, run, settle, spectrum, strobe_diagram
+from granchain_core import BadInput, Scene, Stop, basins, bifurcation_diagram, lyapunov_spectrum, run, settle, spectrum
 from granchain_core.analysis.spectrum import FORCES
 from granchain_core.inputs.checks import check_range, unknown_name
 from granchain_core.inputs.text import number_in, whole_in
@@ -20,9 +20,9 @@ from granchain_core.scene.quantities import QUANTITIES
 from granchain_core.steady.curve.order import CURVE_STARTS
 
 from ...plots.basins import basins as draw_basins
+from ...plots.bifurcation_diagram import bifurcation_diagram as draw_bifurcation_diagram
 from ...plots.lyapunov import lyapunov as draw_lyapunov
 from ...plots.spectrum import spectrum as draw_spectrum
-from ...plots.strobe_diagram import strobe_diagram as draw_strobes
 from ...plots.theme import Theme
 
 # The page's own limits; the commands take more.
@@ -200,9 +200,9 @@ def _lyapunov_plan(chain: Scene, chosen: Mapping[str, str]) -> Plan:
                 ((chain, (*MOTION_KERNELS, ORBIT_KERNELS)),), compute, draw_lyapunov)
 
 
-# Strobes over a knob
+# Bifurcation diagram
 
-def _strobe_fields(chain: Scene) -> tuple[Field, ...]:
+def _bifurcation_fields(chain: Scene) -> tuple[Field, ...]:
     knobs = tuple(name for name, quantity in QUANTITIES.items() if quantity.is_continuous)
     return (Field("knob", "knob", "f", knobs), Field("from", "from (SI)", f"{0.95 * chain.f:.6g}"),
             Field("to", "to (SI)", f"{1.05 * chain.f:.6g}"), Field("values", "values", "61"),
@@ -210,7 +210,7 @@ def _strobe_fields(chain: Scene) -> tuple[Field, ...]:
             Field("bead", "bead", "1"))
 
 
-def _strobe_plan(chain: Scene, chosen: Mapping[str, str]) -> Plan:
+def _bifurcation_plan(chain: Scene, chosen: Mapping[str, str]) -> Plan:
     knob, start = chosen["knob"], chosen["start"]
     low, high = _span(knob, chosen["from"], chosen["to"])
     count = _whole("values", chosen["values"], 2, MOST_VALUES)
@@ -219,12 +219,13 @@ def _strobe_plan(chain: Scene, chosen: Mapping[str, str]) -> Plan:
     ends = tuple(chain.evolve(**{knob: value}) for value in (low, high))  # refused here rather than in the thread
 
     def compute(stop: Stop, progress: Progress) -> Any:
-        return strobe_diagram(chain, knob, np.linspace(low, high, count), start, keep, stop, progress)
+        return bifurcation_diagram(chain, knob, np.linspace(low, high, count), start, keep, stop, progress)
 
     words = f"--over {_axis(knob, (low, high), count)} --start {start} --keep {keep} --bead {bead}"
-    return Plan(f"Strobes of bead {bead} over {knob}, {chain.name}", _command("strobes", chain, words),
+    return Plan(f"Bifurcation diagram of bead {bead} over {knob}, {chain.name}",
+                _command("bifurcation-diagram", chain, words),
                 tuple((one, MOTION_KERNELS) for one in ends), compute,
-                lambda found, theme: draw_strobes(found, bead, theme))
+                lambda found, theme: draw_bifurcation_diagram(found, bead, theme))
 
 
 # Basins in a plane of starts
@@ -259,9 +260,10 @@ QUESTIONS = {one.name: one for one in (
         "spectrum", "Which frequencies?", "The lines of a force of the settled motion: where it has energy, and "
         "whether they are multiples of f or of f / n.", _spectrum_fields, _spectrum_plan),
     AnalysisQuestion(
-        "strobes", "What over a knob?", "The position of a bead once per drive period, at each value of a knob: one "
-        "point means period 1, n points period n, many points a quasi-periodic or chaotic motion.",
-        _strobe_fields, _strobe_plan),
+        "strobes", "What changes over a knob?", "The bifurcation diagram: the position of a bead once per drive "
+        "period, at each value of a knob. One point means period 1, n points period n, many points a quasi-periodic or "
+        "chaotic motion.",
+        _bifurcation_fields, _bifurcation_plan),
     AnalysisQuestion(
         "basins", "Which start leads where?", "Starts in a plane of two coordinates, with all others zero, coloured by "
         "the motion that each settles to.", _basin_fields, _basin_plan),

@@ -16,7 +16,7 @@ from ...plots.branches import BranchRows
 from ...serve.computing.worker_pools import LONG
 from ...session.budget import curve_affordable
 from ...session.host import PageHost
-from ...session.message_checks import listed, whole
+from ...session.message_checks import check_index, check_integer
 from ...session.page import Actions, Page
 from ...session.progress import Status, StatusWords
 from ...session.scene_facts import slider_range, without_frequency
@@ -112,7 +112,7 @@ class BranchesPage(Page):
     def _start(self, message: dict[str, Any]) -> None:
         period = message.get("period")
         if period is not None:
-            period = whole("period of a branch", period, 1, LONGEST_BRANCH_PERIOD)
+            period = check_integer("period of a branch", period, 1, LONGEST_BRANCH_PERIOD)
         scene, settled = self._host.session.scene, self._host.session.settled
         low, high = slider_range(scene, "f")
         axis = min(low, scene.f), max(high, scene.f)
@@ -133,14 +133,14 @@ class BranchesPage(Page):
     def _double(self, message: dict[str, Any]) -> None:
         if self._task.running:
             return
-        branch, special = listed("special point", self._special, message.get("place"))
+        branch, special = check_index("special point", self._special, message.get("place"))
         self._submit(lambda stop: [switch_to_doubled(branch, special, stop)], branch.axis.scene)
 
     def _load_orbit(self, message: dict[str, Any]) -> None:
         """Show an orbit on the main page: a stable one settled, an unstable one live, to be seen leaving."""
         half: Any = message.get("arm")
-        drawn = listed("branch", self._drawn, half)
-        point = listed("orbit", self._rows.orbits.get(half, []), message.get("place"))
+        drawn = check_index("branch", self._drawn, half)
+        point = check_index("orbit", self._rows.orbits.get(half, []), message.get("place"))
         self._host.show(drawn.branch.axis.scene_at(point.knob), drawn.branch.state(point),
                         "settled" if point.stable else "live")
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any
 
-from ...parts.figures.figure_part import FigurePart, page_and_small
+from ...parts.figures.streamed_figure import StreamedFigure, page_and_small
 from ...parts.toolkit.component import text
 from ...plots.branches import SPECIAL, branches
 from ...plots.theme import Theme
@@ -22,7 +22,7 @@ def empty_figures(theme: Theme) -> dict[str, Any]:
     return page_and_small(lambda compact: branches([], theme, compact=compact))
 
 
-class Branches(FigurePart):
+class Branches(StreamedFigure):
     """The overlay; the growing branch comes in messages."""
 
     _esm = module("branches.js")

@@ -185,7 +185,7 @@ class EffectsPage(Page):
 
 
 def _words(cost: EffectCost | None) -> dict[str, Any] | None:
-    """A measured cost for the page; None where there is none."""
+    """A measured cost for the page; None if there is none."""
     if cost is None:
         return None
     return {"with": cost.with_it, "without": cost.without, "difference": cost.difference, "percent": cost.percent,

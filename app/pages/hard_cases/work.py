@@ -82,5 +82,5 @@ class CaseProcess:
         self._process = context.Process(target=serve_cases, args=(theirs,), name="hard cases", daemon=True)
         with starting():
             self._process.start()
-        theirs.close()  # with only their end in the process, its death ends recv() here
+        theirs.close()  # the process then has the only copy of its end, and recv() here fails when it dies
         return self._connection

@@ -17,13 +17,13 @@ from granchain_core.parameter_map.cells import cell_of, empty_cells
 from granchain_core.precompile.pieces import ORBIT_KERNELS
 
 from ...parts.toolkit.component import Component
-from ...plots.diagram import now_row
+from ...plots.parameter_map import now_row
 from ...plots.theme import THEMES, Theme
 from ...serve.compiling.compiler import PICTURE_PIECES
 from ...serve.computing.worker_pools import LONG
 from ...session.debounce import Debounce
 from ...session.host import PageHost
-from ...session.message_checks import listed
+from ...session.message_checks import check_index
 from ...session.page import Actions, Page
 from ...session.progress import Status, StatusWords
 from ...session.scene_facts import slider_range
@@ -152,7 +152,7 @@ class MapPage(Page):
             job.next_tick(self._show, rows)
 
     def _in_front(self) -> bool:
-        """Whether the picture or the curve, which come first, is being computed."""
+        """Whether a picture or the curve is being computed, for which the map waits."""
         return self._host.awaiting_picture or self._host.curve_computing
 
     # To the browser
@@ -223,7 +223,7 @@ class MapPage(Page):
 
     def _load(self, message: dict[str, Any]) -> None:
         """Put the chain on an attractor; from then on settled pictures start from the previous state."""
-        found = listed("attractor", self._found, message.get("number"))
+        found = check_index("attractor", self._found, message.get("number"))
         self._host.session.set_start("previous")
         self._host.show(found.scene, found.state)
 

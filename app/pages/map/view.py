@@ -12,15 +12,15 @@ from granchain_core.parameter_map import Grid
 from granchain_core.results.regime import exponent_words, modulus_words
 
 from ...format import figures_of, in_words, short_error
-from ...plots.diagram import cell_rows, diagram, nothing, scale_models, shown_models
-from ...plots.item import figure_item
+from ...plots.json_item import figure_item
+from ...plots.parameter_map import cell_rows, nothing, parameter_map, scale_models, shown_models
 from ...plots.regimes import REGIME_MARKS, regime_key
 from ...plots.theme import Theme
 
 
 def head_message(grid: Grid, theme: Theme) -> dict[str, Any]:
     """The figure of a map whose cells are still to come, and the values of its knobs in SI."""
-    return {"type": "map-head", "figure": figure_item(diagram(nothing(grid), theme)), "x": list(grid.x.values),
+    return {"type": "map-head", "figure": figure_item(parameter_map(nothing(grid), theme)), "x": list(grid.x.values),
             "y": list(grid.y.values), "shown": {name: shown_models(name) for name in ("force", "regime")}}
 
 

@@ -13,7 +13,7 @@ from granchain_core import Scene, scene
 from ...format import prefixed
 from ...frames import chain_series
 from ...parts.chain.chain import drawn_chain
-from ...parts.figures.figure_part import FigurePart, page_and_small
+from ...parts.figures.streamed_figure import StreamedFigure, page_and_small
 from ...parts.toolkit.component import text
 from ...plots.energies import ENERGY_COLOURS
 from ...plots.observer import observer, prediction
@@ -31,7 +31,7 @@ def empty_figures(theme: Theme) -> dict[str, Any]:
     return page_and_small(lambda compact: observer([], [], [], theme, compact))
 
 
-class Observer(FigurePart):
+class Observer(StreamedFigure):
     """The overlay; every period comes as one message."""
 
     _esm = module("observer.js")

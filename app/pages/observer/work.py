@@ -62,7 +62,7 @@ class ObserverRun:
         self.samples = min(_MOST_ROWS, samples_for(scene))
         self.pair = Pair(scene, self.samples, stop)
         self.number, self.since = 0, 0
-        self._largest_input = 0.0  # of all periods so far: an orbit may push in one of three only
+        self._largest_input = 0.0  # over all periods so far: an orbit of period 3 may have one push
         if previous is not None and previous.scene.N == scene.N:
             self.number = previous.number
             self._begin(*previous.pair.states)
@@ -93,7 +93,7 @@ class ObserverRun:
             self.orbit = periodic_orbit(self.scene, settled.regime.period, settled.state, observer=True,
                                         stop=self.pair.engine.stop)
             self.drifts = observer_drift(self.orbit) is not None
-        except (ComputationError, BadInput) as problem:  # the latter where tension is cut
+        except (ComputationError, BadInput) as problem:  # `BadInput` where tension is cut
             self.failure = str(problem)
 
     @property

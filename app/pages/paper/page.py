@@ -40,7 +40,7 @@ class PaperPage(Page):
         self.actions: Actions = {"paper-show": self._show, "paper-stop": lambda _: self._stop()}
 
     def visibility_changed(self, visible: bool) -> None:
-        """Somebody opens the page: it begins with a figure rather than empty."""
+        """When the page is opened for the first time, show a figure rather than nothing."""
         if visible and not self._chosen:
             self._show({"figure": _FIRST_FIGURE})
 
@@ -61,7 +61,7 @@ class PaperPage(Page):
         self._task.start(lambda job: self._compute(figure, job))
 
     def _compute(self, figure: PaperFigure, job: Job) -> None:
-        """In a thread of the queue."""
+        """In a thread of the pool `LONG`."""
         for name, pieces in _KERNELS.get(figure.number, ()):
             job.compile(scene(name), *pieces)
         job.report("computing")

@@ -7,7 +7,7 @@ from typing import Any
 from granchain_core import Settled
 
 from ...session.host import PageHost
-from ...session.message_checks import whole
+from ...session.message_checks import check_integer
 from ...session.page import Actions, Page
 from .view import Probe
 
@@ -32,7 +32,7 @@ class ProbePage(Page):
         self._draw(self._host.session.settled)
 
     def _choose(self, message: dict[str, Any]) -> None:
-        self._bead = whole("bead", message.get("bead"), 1, self._host.session.scene.N)
+        self._bead = check_integer("bead", message.get("bead"), 1, self._host.session.scene.N)
         self._draw(self._host.session.settled)
 
     def _draw(self, settled: Settled | None) -> None:

@@ -9,9 +9,9 @@ from typing import Any
 from granchain_core import Run
 
 from ...format import in_words
-from ...parts.figures.figure_part import FigurePart
+from ...parts.figures.streamed_figure import StreamedFigure
 from ...parts.toolkit.component import text
-from ...plots.item import figure_item
+from ...plots.json_item import figure_item
 from ...plots.probe import FIGURES, closed_spells, probe_state, without_points
 from ...plots.theme import Theme
 from ...scripts import module
@@ -24,7 +24,7 @@ def empty_figures(theme: Theme) -> dict[str, Any]:
     return {**full_size, "small": figure_item(without_points("phase", theme, compact=True))}
 
 
-class Probe(FigurePart):
+class Probe(StreamedFigure):
     """The overlay and, through what it shares in the browser, the small figure in its tab."""
 
     _esm = module("probe.js")

@@ -16,7 +16,7 @@ from ...serve.computing.worker_pools import ANALYSES
 from ...session.activities import Activity
 from ...session.debounce import Debounce
 from ...session.host import PageHost
-from ...session.message_checks import whole
+from ...session.message_checks import check_integer
 from ...session.page import Actions, Page
 from ...session.progress import COMPUTING, OFF, READY, Status, StatusWords
 from ...session.task import Job, Task
@@ -92,7 +92,8 @@ class StabilityPage(Page):
         """A picture has arrived: if it is the final one for these knobs, analyse it if it stays."""
         if not settled.final:
             return
-        again = self._settled is not None and settled.state is self._settled.state  # with its energy account
+        # the same picture, with its energy account
+        again = self._settled is not None and settled.state is self._settled.state
         self._settled = settled
         if not again:
             self._start, self._rank = self._host.session.initial_state, 0
@@ -116,7 +117,7 @@ class StabilityPage(Page):
         self.status = "none"
 
     def _begin(self) -> None:
-        """Analyse the picture, unless there is none, that was done, or nobody looks."""
+        """Analyse the picture, unless there is none, it has been analysed, or nobody looks."""
         settled = self._settled
         if not self._visible or settled is None or self._analysed is settled.state:
             return
@@ -236,7 +237,7 @@ class StabilityPage(Page):
         self._again()
 
     def _choose_mode(self, message: dict[str, Any]) -> None:
-        self._rank = whole("mode", message.get("value"), 0, 2 * self._host.session.scene.N - 1)
+        self._rank = check_integer("mode", message.get("value"), 0, 2 * self._host.session.scene.N - 1)
         self._again()
 
     def _again(self) -> None:
@@ -245,12 +246,12 @@ class StabilityPage(Page):
             self._follow(self._target)
 
     def _choose_section(self, message: dict[str, Any]) -> None:
-        self._bead = whole("bead", message.get("bead"), 1, self._host.session.scene.N)
-        self._phase = whole("phase", message.get("phase"), 0, PHASES - 1)
+        self._bead = check_integer("bead", message.get("bead"), 1, self._host.session.scene.N)
+        self._phase = check_integer("phase", message.get("phase"), 0, PHASES - 1)
         self._show_section()
 
     def _search(self, message: dict[str, Any]) -> None:
-        period = whole("period", message.get("value"), 1, LONGEST_LOCKED_PERIOD)
+        period = check_integer("period", message.get("value"), 1, LONGEST_LOCKED_PERIOD)
         settled, section = self._settled, self._section
         if not self._visible or settled is None:
             raise BadInput("There is no settled picture to search from yet; wait for it.")

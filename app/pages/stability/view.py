@@ -19,9 +19,9 @@ from granchain_core.steady.regime_criteria import LONGEST_LOCKED_PERIOD
 
 from ...format import UNSURE_FIGURES, duration, figures_of, prefixed, short_error, with_figures
 from ...parts.chain.chain import drawn_chain
-from ...parts.figures.figure_part import FigurePart
+from ...parts.figures.streamed_figure import StreamedFigure
 from ...parts.toolkit.component import text
-from ...plots.item import figure_item
+from ...plots.json_item import figure_item
 from ...plots.multipliers import multiplier_words, plane, plane_state
 from ...plots.section import SectionPoints, close_up, section, section_state
 from ...plots.theme import Theme
@@ -41,7 +41,7 @@ def empty_figures(theme: Theme) -> dict[str, Any]:
             "small": figure_item(plane(empty, theme, compact=True))}
 
 
-class Stability(FigurePart):
+class Stability(StreamedFigure):
     """The overlay and, through what it shares in the browser, the small version in its tab."""
 
     _esm = module("stability.js")
@@ -133,7 +133,8 @@ def evidence(settled: Settled, analysis: OrbitAnalysis | None, section: Section 
     if regime.distance is not None:
         row("distance to the orbit", f"≤ {short_error(regime.distance)}, same method",
             "Bound on the relative distance of the settled picture from the orbit of the method that settled it: its "
-            "change over one orbit times r/(1 − r), where r is |μ| if it was computed, else the decay, else ½.")
+            "change over one orbit times r/(1 − r), where r is |μ|, or the decay if |μ| was not computed, or ½ if "
+            "neither is known.")
     if regime.lyapunov is not None:
         row("Lyapunov exponent", f"{exponent_words(*regime.lyapunov)} per drive period",
             "Mean rate at which neighbouring motions separate, with its standard error over blocks of periods"

@@ -11,7 +11,7 @@ from ...parts.toolkit.component import Component
 from ...serve.compiling.compiler import PICTURE_PIECES
 from ...serve.computing.worker_pools import ANALYSES
 from ...session.host import PageHost
-from ...session.message_checks import whole
+from ...session.message_checks import check_integer
 from ...session.page import Actions, Page
 from ...session.stories import Story, StoryStep, state_before, stories, told_words
 from ...session.task import Job, Task, report_nothing
@@ -79,7 +79,7 @@ class StoriesPage(Page):
         story = self._stories.get(str(message.get("name")))
         if story is None:
             raise BadInput("This story no longer exists; reload the page.")
-        number = whole("step", message.get("step"), 1, len(story.steps))
+        number = check_integer("step", message.get("step"), 1, len(story.steps))
         step = story.steps[number - 1]
         self._host.session.story = f"{story.name}.{number}"
         self.address_applied()

@@ -6,7 +6,7 @@ import { unpack } from "./chain_series.js";
 import { Clock } from "../time/clock.js";
 import { Crosshair } from "../time/crosshair.js";
 import { Cursor } from "../time/cursor.js";
-import { StageLayout } from "../time/stage_layout.js";
+import { FigureLayout } from "../time/figure_layout.js";
 import { button, element } from "../toolkit/dom.js";
 import { Sound } from "./sound.js";
 import { colourOf, Steel } from "./steel.js";
@@ -33,7 +33,7 @@ class Chain {
     this.canvas = element("canvas");
     this.drawing = new ChainDrawing(this.canvas, model.state.palette);
     this.clock = new Clock(() => this.mark());
-    this.layout = new StageLayout();
+    this.layout = new FigureLayout();
     this.cursor = new Cursor(this.clock, this.layout);
     this.link = new BeadLink(this.drawing, this.layout, () => this.mark());
     this.crosshair = new Crosshair(this.clock, this.layout, (bead) => this.link.point(bead));

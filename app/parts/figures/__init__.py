@@ -1,1 +1,1 @@
-"""Bokeh figures in components: base classes, style, and what the browser does with them."""
+"""Bokeh figures in components: base classes, styles, and what the page uses of BokehJS."""

@@ -8,7 +8,7 @@ from typing import Any
 
 from bokeh.models import LayoutDOM
 
-from ...plots.item import figure_item
+from ...plots.json_item import figure_item
 from ...plots.theme import THEMES, Theme
 from ..toolkit.component import Component
 
@@ -26,7 +26,7 @@ class ResultFigure(Component):
     """A component whose figures come whole, with all their points: when there is a result, and again in another theme.
 
     Each has a place on the page, whose name its `ResultFigure` of result_figure.js has, too. A figure that grows, or is
-    filled in the browser, is a `FigurePart` instead.
+    filled in the browser, is a `StreamedFigure` instead.
     """
 
     __abstract = True

@@ -17,7 +17,7 @@ _MODES = {
     "live": "The run goes on while you move the knobs",
 }
 _STARTS = {"rest": "start: from rest", "previous": "start: previous state"}
-#: Replaces the first of these while the motion on the screen began elsewhere: in a story, a map or a branch.
+#: Stands in place of “from rest” while the motion on the screen began in another state, of a story, a map or a branch.
 _STARTED_ELSEWHERE = "start: a given state"
 
 

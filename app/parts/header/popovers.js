@@ -73,7 +73,8 @@ export class Popovers {
     return this.all.some((one) => one.contains(one.getRootNode().activeElement));
   }
 
-  // Opens a box and moves the focus to this element of it. A box that was opened from another one has its opener.
+  // Opens a box and moves the focus to this element of it. If a box is opened from another one, the focus
+  // later goes back to the opener of the first.
   open(box, focused) {
     if (!this.hasFocus()) this.opener = window.granchain.focused;
     for (const one of this.all) one.hidden = one !== box;

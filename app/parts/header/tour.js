@@ -76,7 +76,7 @@ export class Tour {
     this.part().scrollIntoView({ block: PHONE.matches ? "start" : "nearest" }); // a phone has the words at the bottom
   }
 
-  // Beside the part where there is room, else below or above it, else at the bottom of the window.
+  // Beside the part if there is room; otherwise below or above it, or at the bottom of the window.
   place() {
     const box = this.part().getBoundingClientRect();
     const { offsetWidth: wide, offsetHeight: tall } = this.root;

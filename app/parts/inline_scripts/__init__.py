@@ -1,1 +1,1 @@
-"""The scripts that are written into the page and run before any module."""
+"""Scripts that the page runs before any module: what all scripts share, the address, the connection."""

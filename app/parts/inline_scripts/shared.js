@@ -52,7 +52,7 @@ window.granchain = (() => {
     }
   }
 
-  /** The theme: what the visitor has chosen, now or at an earlier visit, else that of the system. */
+  /** The theme: the visitor's choice, of now or an earlier visit, or without one that of the system. */
   class Theme {
     names = THEMES;
     #events;
@@ -214,10 +214,13 @@ window.granchain = (() => {
       heading.focus();
     }
 
-    // A tab may have been drawn again meanwhile, with another button.
+    // A tab may have been drawn again meanwhile, with another button of the same `data-name`.
     #focusOpener() {
+      const tabs = document.getElementById("tabs");
+      const again = (selector) => selector && find(tabs, selector);
       const opener = this.#opener?.isConnected ? this.#opener : null;
-      (opener ?? find(document.getElementById("tabs"), "[role=tab][aria-selected=true]"))?.focus();
+      const name = this.#opener?.dataset?.name;
+      (opener ?? again(name && `[data-name="${name}"]`) ?? again("[role=tab][aria-selected=true]"))?.focus();
     }
 
     closePage() {

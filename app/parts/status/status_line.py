@@ -126,7 +126,7 @@ def _worse_forces(run: Run) -> str:
 
 
 def why_no_error(run: Run) -> str:
-    """Why no error of the displacements is stated; empty where one is."""
+    """Why no error of the displacements is stated; empty if one is."""
     if run.displacement_error is not None:
         return ""
     if run.regime.name in NEVER_REPEATING:

@@ -1,1 +1,1 @@
-"""What every part and page is made of: the base class of components, elements and controls."""
+"""What parts and pages are made of: the base class of components, elements, controls, small drawings."""

@@ -42,9 +42,12 @@ export const table = (titles, body, properties = {}) => {
   return element("table", properties, element("thead", {}, head), body);
 };
 
-// The button in a tab that opens the page of the tab.
-export const openButton = (name) =>
-  button("open the page", () => window.granchain.openPage(name), { className: "open" });
+// The button in a tab that opens the page of the tab. By `data-name` the focus finds it again in a tab that is drawn anew.
+export const openButton = (name) => {
+  const opener = button("open the page", () => window.granchain.openPage(name), { className: "open" });
+  opener.dataset.name = "open";
+  return opener;
+};
 
 // The top line of a page: its title, its controls and, at the right end, the button that closes the page.
 export const pageHead = (title, ...controls) =>

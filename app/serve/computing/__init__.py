@@ -1,1 +1,1 @@
-"""Computing for many sessions: worker pools, turns, priorities, shared results."""
+"""What is computed for many sessions: worker pools, turns, priorities, processor time, shared results."""

@@ -1,1 +1,1 @@
-"""A page's document: its lock, actions on it, its changes on their way to the browser, and their pace."""
+"""A page's document: its lock, messages to its parts, changes on their way to the browser."""

@@ -1,1 +1,1 @@
-"""What comes from outside: guards, the rules of messages, limits, compressed files."""
+"""What comes from outside: guards, sessions, rules of messages, limits, files; health and metrics for operators."""

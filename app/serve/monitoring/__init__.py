@@ -1,1 +1,1 @@
-"""What whoever runs the server sees of it: the log and the metrics."""
+"""What operators see of the server: its log and its metrics."""

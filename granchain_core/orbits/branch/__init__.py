@@ -1,1 +1,1 @@
-"""Branches of periodic orbits along a knob, and the special points on them."""
+"""Branches: the continuation of periodic orbits over a knob, special points and their normal forms."""

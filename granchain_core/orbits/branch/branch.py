@@ -49,8 +49,8 @@ class Branch(Labelled):
     half_branches : tuple of HalfBranch
         One or two directions from the same starting orbit; `ended` and `reason` say how each ended.
     period_note : str
-        Why period 1 was taken, in words, where none was given and the steady state has none (`Orbit.period_note`); else
-        empty, as in a branch from a file.
+        Why period 1 was assumed (`Orbit.period_note`); empty if a period was given or found, and in a branch from a
+        file.
     points : list of BranchPoint
         All orbits in their order along the branch.
     special : list of SpecialPoint

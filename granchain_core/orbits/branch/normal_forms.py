@@ -124,7 +124,7 @@ def normal_form(kind: str, multiplier: complex, sides: tuple[MapNear, MapNear],
     except NotSmooth as obstacle:
         return NormalForm(NOT_DECIDED, reason=str(obstacle))
     if kind == "fold":  # the sign of a depends on that of q
-        critical[1] = _alike(critical[1], critical[0])
+        critical[1] = _with_sign_of(critical[1], critical[0])
     for amplitude in amplitudes[kind]:
         try:
             found = _judged(kind, *(_COEFFICIENTS[kind](side, one, size) for side, one, size in
@@ -178,8 +178,8 @@ def _nearest(kind: str, multiplier: complex, matrix: np.ndarray) -> tuple[comple
     return complex(values[place]), vector if kind == "neimark_sacker" else vector.real
 
 
-def _alike(one: _Critical, other: _Critical) -> _Critical:
-    """The same with q on the side of the q of `other`."""
+def _with_sign_of(one: _Critical, other: _Critical) -> _Critical:
+    """`one` with the sign of q that points as the q of `other` does."""
     return one if one.q @ other.q > 0.0 else _Critical(one.multiplier, -one.q, -one.p)
 
 

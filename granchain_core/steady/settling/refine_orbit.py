@@ -33,7 +33,7 @@ def orbit_setting(scene: Scene, accuracy: float, contraction: float) -> MethodSe
     """The first setting for an orbit to `accuracy`: one period's error e moves it by e/(1 − contraction).
 
     It is rk4-split with finer steps; dop853 if tension is cut, or if one period's error must be below
-    `FIXED_STEP_IS_CHEAPER` (integrate/methods.py).
+    `FIXED_STEP_CHEAPER_ABOVE` (integrate/methods.py).
     """
     one_period = INTEGRATION_FRACTION * min(accuracy, LEAST_ACCURATE) * (1.0 - contraction)
     return method_for(max(_LEAST_ERROR, one_period), scene.cuts_tension)

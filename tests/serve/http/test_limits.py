@@ -20,7 +20,7 @@ from listening import SECRET, Listening
 
 from app import server
 from app.curve.sweep import CURVES_SHARED
-from app.dashboard.main_picture import PICTURES_SHARED
+from app.dashboard.picture_work import PICTURES_SHARED
 from app.pages.analysis import questions
 from app.serve.computing.worker_pools import LONG
 from app.serve.http import frame_rate, guarded_socket, message_rules

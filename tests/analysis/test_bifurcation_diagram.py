@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from granchain_core import BadInput, Scene, iter_curve, scene, strobe_diagram
+from granchain_core import BadInput, Scene, bifurcation_diagram, iter_curve, scene
 
 
 def test_there_are_as_many_strobes_as_periods() -> None:
     """Section 2's chain from rest: periods 1, 2, 3 and 4 near its first peaks."""
-    found = strobe_diagram(scene("sec2"), "f", [1130.0, 340.0, 1576.0, 615.0], start="rest", keep=24)
+    found = bifurcation_diagram(scene("sec2"), "f", [1130.0, 340.0, 1576.0, 615.0], start="rest", keep=24)
     assert [point.value for point in found.points] == [340.0, 615.0, 1130.0, 1576.0]
     assert [point.regime.period for point in found.points] == [1, 2, 3, 4]
     assert [point.distinct(bead) for point in found.points for bead in (1, 11)] == [1, 1, 2, 2, 3, 3, 4, 4]
@@ -19,13 +19,13 @@ def test_there_are_as_many_strobes_as_periods() -> None:
 @pytest.mark.parametrize("start", ["up", "down"])
 def test_a_sweep_finds_the_regimes_of_the_curve(start: str) -> None:
     frequencies = np.linspace(1560.0, 1600.0, 5)
-    found = strobe_diagram(scene("sec2"), "f", frequencies, start=start, keep=8)
+    found = bifurcation_diagram(scene("sec2"), "f", frequencies, start=start, keep=8)
     curve = sorted(iter_curve(scene("sec2"), frequencies, start=start), key=lambda point: point.frequency)
     assert [point.regime.period for point in found.points] == [point.regime.period for point in curve]
 
 
 def test_the_cloud_has_every_strobe_in_si() -> None:
-    found = strobe_diagram(scene("sec2").evolve(N=2), "A0", [4e-7, 5e-7], keep=6)
+    found = bifurcation_diagram(scene("sec2").evolve(N=2), "A0", [4e-7, 5e-7], keep=6)
     values, states = found.cloud(2, velocity=True)
     assert values.tolist() == [4e-7] * 6 + [5e-7] * 6
     np.testing.assert_array_equal(states, np.concatenate([point.strobes[:, 1, 1] for point in found.points]))
@@ -38,7 +38,7 @@ def test_what_is_no_diagram_is_refused() -> None:
                            (("f", [-1.0]), "outside"), (("f", [340.0], "sideways"), "start 'sideways'"),
                            (("f", [340.0], "up", 0), "outside 1 to")):
         with pytest.raises(BadInput, match=message):
-            strobe_diagram(chain, *words)  # type: ignore[arg-type]
+            bifurcation_diagram(chain, *words)  # type: ignore[arg-type]
 
 
 CUT = scene("sec2").evolve(N=3, tension="cut", k=2e5)
@@ -46,7 +46,7 @@ CUT = scene("sec2").evolve(N=3, tension="cut", k=2e5)
 
 def test_strobes_of_a_cut_chain_show_no_structure_that_is_not_there() -> None:
     """Period 1 at all of them. Fixed steps, of order 1 with the cut, gave 58 strobes at 1500 Hz that were distinct."""
-    for point in strobe_diagram(CUT, "f", [1250.0, 1500.0], start="rest").points:
+    for point in bifurcation_diagram(CUT, "f", [1250.0, 1500.0], start="rest").points:
         assert point.regime.period == 1 and [point.distinct(bead) for bead in (1, 2, 3)] == [1, 1, 1]
 
 
@@ -60,7 +60,7 @@ def apart(strobes: np.ndarray, exact: np.ndarray, period: int) -> float:
 @pytest.mark.parametrize("chain", [scene("sec2").evolve(N=3), CUT], ids=["tension allowed", "tension cut"])
 def test_strobes_of_an_orbit_are_known_to_the_error_stated_which_follows_the_accuracy(chain: Scene) -> None:
     frequencies = np.linspace(800.0, 1900.0, 6)
-    exact, rough, fine = (strobe_diagram(chain.evolve(accuracy=one), "f", frequencies, "rest", 30).points
+    exact, rough, fine = (bifurcation_diagram(chain.evolve(accuracy=one), "f", frequencies, "rest", 30).points
                           for one in (1e-11, 1e-4, 1e-7))
     compared = 0
     for true, *others in zip(exact, rough, fine, strict=True):
@@ -76,7 +76,7 @@ def test_strobes_of_an_orbit_are_known_to_the_error_stated_which_follows_the_acc
 
 
 def test_no_error_is_stated_for_a_motion_that_does_not_repeat() -> None:
-    found = strobe_diagram(scene("sec2"), "f", [1130.0, 1760.0], start="rest", keep=40)
+    found = bifurcation_diagram(scene("sec2"), "f", [1130.0, 1760.0], start="rest", keep=40)
     orbit, other = found.points
     assert other.regime.period is None and other.strobe_error is None and other.distinct(1) > 20
     assert found.attributes()["accuracy_reached"] == orbit.strobe_error
@@ -84,6 +84,6 @@ def test_no_error_is_stated_for_a_motion_that_does_not_repeat() -> None:
 
 
 def test_an_orbit_that_is_not_known_to_a_thousandth_is_not_repeated(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("granchain_core.analysis.strobe_diagram.refined_orbit", lambda settling, accuracy: (settling.engine, np.inf))
-    point, = strobe_diagram(scene("sec2").evolve(N=2), "f", [2000.0], start="rest", keep=5).points
+    monkeypatch.setattr("granchain_core.analysis.bifurcation_diagram.refined_orbit", lambda settling, accuracy: (settling.engine, np.inf))
+    point, = bifurcation_diagram(scene("sec2").evolve(N=2), "f", [2000.0], start="rest", keep=5).points
     assert point.regime.period == 1 and point.strobe_error is None and point.strobes.shape == (5, 2, 2)

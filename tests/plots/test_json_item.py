@@ -11,7 +11,7 @@ from bokeh.io import curdoc
 from bokeh.io.doc import _PATCHED_CURDOCS
 from bokeh.models import Plot
 
-from app.plots.item import figure_item
+from app.plots.json_item import figure_item
 
 
 @pytest.fixture

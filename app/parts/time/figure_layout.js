@@ -1,7 +1,7 @@
 // Where the figures over time are on the stage, and what is laid over and under them: titles, colour scale, largest
 // values and key.
 
-export class StageLayout {
+export class FigureLayout {
   constructor() {
     this.stage = document.getElementById("stage");
     this.energyMap = document.getElementById("map");

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 import param
 from bokeh.models import LayoutDOM
 
-from ...plots.item import figure_item
+from ...plots.json_item import figure_item
 from ...plots.theme import THEMES, Theme
 from ..toolkit.component import Component
 
@@ -18,7 +18,7 @@ def page_and_small(draw: Callable[[bool], LayoutDOM]) -> dict[str, Any]:
     return {"page": figure_item(draw(False)), "small": figure_item(draw(True))}
 
 
-class FigurePart(Component):
+class StreamedFigure(Component):
     """A component with figures. They are sent without data when first needed, and again when the theme changes.
 
     `figures` are Bokeh's JSON by name, kept out of `state` because each change sends all of that. Data come as

@@ -50,7 +50,7 @@ _CELL = ("left", "right", "bottom", "top", "x", "y", "force", "regime", "tooltip
          "number", "own_right", "own_top")
 
 
-def diagram(found: ParameterMap, theme: Theme, shown: str = "force", now: tuple[float, float] | None = None,
+def parameter_map(found: ParameterMap, theme: Theme, shown: str = "force", now: tuple[float, float] | None = None,
             curves: Sequence[BifurcationCurve] = ()) -> figure:
     """All computed cells of a parameter map over its two knobs; `shown` is "force" or "regime".
 

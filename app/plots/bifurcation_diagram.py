@@ -6,7 +6,7 @@ import numpy as np
 from bokeh.models import ColumnDataSource, HoverTool
 from bokeh.plotting import figure
 
-from granchain_core import StrobeDiagram
+from granchain_core import BifurcationDiagram
 
 from ..format import prefixed
 from .axes import knob_scale
@@ -15,7 +15,7 @@ from .theme import Theme
 from .themed import apply_theme, empty_figure
 
 
-def strobe_diagram(found: StrobeDiagram, bead: int, theme: Theme) -> figure:
+def bifurcation_diagram(found: BifurcationDiagram, bead: int, theme: Theme) -> figure:
     """Displacements of bead 1..N at drive phase 0, coloured by the regime of the motion."""
     values, states = found.cloud(bead)
     axis = knob_scale(found.knob, values.tolist())

@@ -9,7 +9,7 @@ import pytest
 from bokeh.models import LogScale
 
 from app.plots.branches import SPECIAL_STYLES
-from app.plots.diagram import CATEGORIES, category, cell_rows, cell_words, diagram, nothing, scale_models
+from app.plots.parameter_map import CATEGORIES, category, cell_rows, cell_words, nothing, parameter_map, scale_models
 from app.plots.theme import THEMES
 from granchain_core import scene
 from granchain_core.bifurcation_curves import BifurcationCurve, BifurcationPoint
@@ -20,7 +20,7 @@ GRID = Grid(scene("sec2").evolve(N=2), Axis.of("f", [1900.0, 2000.0, 2100.0]), A
 
 
 def filled(*numbers: int, regime: str = "periodic", period: int = 2, force: float = 0.5) -> ParameterMap:
-    """A diagram of which some cells are computed."""
+    """A parameter map of which some cells are computed."""
     found = nothing(GRID)
     for number in numbers:
         found.cells[number]["regime"], found.cells[number]["period"] = CELL_REGIMES.index(regime), period
@@ -34,7 +34,7 @@ def data(plot: Any, name: str) -> dict[str, list[Any]]:
 
 
 def test_cells_meet_half_way_and_coarse_ones_stand_for_those_around_them() -> None:
-    plot = diagram(filled(0, 4), THEMES["light"])
+    plot = parameter_map(filled(0, 4), THEMES["light"])
     cells = data(plot, "cells")
     assert cells["number"] == [0, 4] and cells["spacing"][0] > 1 == cells["spacing"][1]
     assert (cells["left"], cells["right"]) == ([1850.0, 1950.0], [2150.0, 2050.0])  # evenly spaced
@@ -47,17 +47,17 @@ def test_cells_meet_half_way_and_coarse_ones_stand_for_those_around_them() -> No
 
 def test_bifurcation_curves_are_drawn_over_the_map_in_its_units() -> None:
     points = [BifurcationPoint(1920.0, 1e-6, -1.0 + 0.0j, np.zeros(4)), BifurcationPoint(1980.0, 1e-5, -1.0 + 0.0j, np.zeros(4))]
-    plot = diagram(filled(0, 4), THEMES["light"], curves=[BifurcationCurve("period_doubling", 1, points)])
+    plot = parameter_map(filled(0, 4), THEMES["light"], curves=[BifurcationCurve("period_doubling", 1, points)])
     drawn = data(plot, "bifurcation curve")
     assert drawn["x"] == [1920.0, 1980.0] and drawn["y"] == pytest.approx([1.0, 10.0])  # Hz, µm
     assert drawn["tooltip"] == ["period doubling of period 1: f 1920 to 1980 Hz, A0 1e-06 to 1e-05 m, 2 points"] * 2
-    assert diagram(filled(0), THEMES["light"]).select_one({"name": "bifurcation curve"}) is None
+    assert parameter_map(filled(0), THEMES["light"]).select_one({"name": "bifurcation curve"}) is None
 
 
 def test_the_marks_on_bifurcation_curves_say_of_which_kind_they_are() -> None:
     """By the marks of the special points of a branch, with a key; a long curve has few of them."""
     points = [BifurcationPoint(1920.0 + i, 1e-6, -1.0 + 0.0j, np.zeros(4)) for i in range(60)]
-    plot = diagram(filled(0, 4), THEMES["light"], curves=[BifurcationCurve(kind, 1, points) for kind in ("fold", "neimark_sacker", "fold")])
+    plot = parameter_map(filled(0, 4), THEMES["light"], curves=[BifurcationCurve(kind, 1, points) for kind in ("fold", "neimark_sacker", "fold")])
     legend = plot.select_one({"name": "bifurcations"})
     assert [item.label.value for item in legend.items] == ["fold", "Neimark–Sacker (torus)"]
     for item, kind in zip(legend.items, ("fold", "neimark_sacker"), strict=True):
@@ -67,7 +67,7 @@ def test_the_marks_on_bifurcation_curves_say_of_which_kind_they_are() -> None:
 
 
 def test_only_what_is_computed_is_drawn() -> None:
-    plot = diagram(nothing(GRID), THEMES["dark"])
+    plot = parameter_map(nothing(GRID), THEMES["dark"])
     assert data(plot, "cells")["number"] == [] and data(plot, "now") == {"x": [], "y": []}
     assert scale_models(nothing(GRID).cells[:0]) == {}
     failed = filled(4, regime="failed", period=0)
@@ -108,7 +108,7 @@ def test_every_regime_and_period_has_its_category() -> None:
 
 @pytest.mark.parametrize("shown", ["force", "regime"])
 def test_forces_have_a_scale_and_regimes_a_legend_with_a_hatch_for_each(shown: str) -> None:
-    plot = diagram(filled(0, 4, 8), THEMES["projector"], shown, now=(1950.0, 2e-6))
+    plot = parameter_map(filled(0, 4, 8), THEMES["projector"], shown, now=(1950.0, 2e-6))
     seen = {name: plot.select_one({"name": name}).visible for name in ("force", "bar", "regime", "regimes")}
     assert seen == {"force": shown == "force", "bar": shown == "force", "regime": shown == "regime", "regimes": shown == "regime"}
     mapper = plot.select_one({"name": "force colours"})

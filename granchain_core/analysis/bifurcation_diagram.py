@@ -71,7 +71,7 @@ class StrobePoint:
 
 
 @dataclass(eq=False, repr=False)
-class StrobeDiagram(Labelled):
+class BifurcationDiagram(Labelled):
     """A bifurcation diagram: strobes over one knob.
 
     Attributes
@@ -87,8 +87,8 @@ class StrobeDiagram(Labelled):
 
     Examples
     --------
-    >>> from granchain_core import scene, strobe_diagram
-    >>> found = strobe_diagram(scene("sec2").evolve(N=2), "f", [1900.0, 2000.0], keep=8)
+    >>> from granchain_core import scene, bifurcation_diagram
+    >>> found = bifurcation_diagram(scene("sec2").evolve(N=2), "f", [1900.0, 2000.0], keep=8)
     >>> [point.regime.period for point in found.points], found.cloud(1)[0].shape
     ([1, 1], (16,))
     """
@@ -150,8 +150,9 @@ class StrobeDiagram(Labelled):
                 *([] if error is None else [f"relative error of periodic strobes: at most {error:.1e}"])]
 
 
-def strobe_diagram(scene: Scene, knob: str, values: Sequence[float] | np.ndarray, start: str = "up", keep: int = 60,
-                   stop: Stop | None = None, progress: Callable[[float], None] | None = None) -> StrobeDiagram:
+def bifurcation_diagram(scene: Scene, knob: str, values: Sequence[float] | np.ndarray, start: str = "up",
+                        keep: int = 60, stop: Stop | None = None,
+                        progress: Callable[[float], None] | None = None) -> BifurcationDiagram:
     """The bifurcation diagram: strobes over one knob.
 
     Parameters
@@ -173,7 +174,7 @@ def strobe_diagram(scene: Scene, knob: str, values: Sequence[float] | np.ndarray
 
     Returns
     -------
-    StrobeDiagram
+    BifurcationDiagram
         Strobes, regime, and the error of the strobes where it is periodic, at each value.
 
     Raises
@@ -183,8 +184,8 @@ def strobe_diagram(scene: Scene, knob: str, values: Sequence[float] | np.ndarray
 
     Examples
     --------
-    >>> from granchain_core import scene, strobe_diagram
-    >>> found = strobe_diagram(scene("sec2").evolve(N=2, f=2000.0), "A0", [4e-7, 5e-7], keep=4)
+    >>> from granchain_core import scene, bifurcation_diagram
+    >>> found = bifurcation_diagram(scene("sec2").evolve(N=2, f=2000.0), "A0", [4e-7, 5e-7], keep=4)
     >>> [point.distinct(bead=1) for point in found.points]
     [1, 1]
     """
@@ -199,13 +200,19 @@ def strobe_diagram(scene: Scene, knob: str, values: Sequence[float] | np.ndarray
         raise BadInput(f"A bifurcation diagram has 1 to {MOST_VALUES} values of its knob, not {len(numbers)}.")
     keep = whole_number("keep =", keep, 1, MOST_STROBES)
     chains = [(value, scene.evolve(**{knob: value})) for value in numbers]
-    diagram = StrobeDiagram(scene, knob, start)
+    diagram = BifurcationDiagram(scene, knob, start)
     for point in _points(chains, start, keep, stop):
         diagram.points.append(point)
         if progress is not None:
             progress(len(diagram.points) / len(chains))
     diagram.points.sort(key=lambda point: point.value)
     return diagram
+
+
+#: The older name of `bifurcation_diagram`.
+strobe_diagram = bifurcation_diagram
+#: The older name of `BifurcationDiagram`.
+StrobeDiagram = BifurcationDiagram
 
 
 def _points(chains: list[tuple[float, Scene]], start: str, keep: int, stop: Stop | None) -> Iterator[StrobePoint]:

@@ -1,4 +1,4 @@
-"""`granchain strobes`: the bifurcation diagram, a bead's states once a drive period over a knob."""
+"""`granchain bifurcation-diagram`: the bifurcation diagram, a bead's states once a drive period over a knob."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from .picture import add_option as add_picture
 from .picture import check_files, write_files
 
 if TYPE_CHECKING:
-    from granchain_core import StrobeDiagram
+    from granchain_core import BifurcationDiagram
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options of `strobes`."""
+    """Add the options of `bifurcation-diagram`."""
     add_scene(parser)
     parser.add_argument("--over", required=True, metavar="KNOB=a:b:n",
                         help="n values of a knob from a to b, evenly spaced or, with :log appended, logarithmically")
@@ -33,20 +33,20 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def do(arguments: argparse.Namespace) -> None:
     """Compute the bifurcation diagram of a scene."""
-    from granchain_core import strobe_diagram
-    from granchain_core.analysis.strobe_diagram import MOST_VALUES
+    from granchain_core import bifurcation_diagram
+    from granchain_core.analysis.bifurcation_diagram import MOST_VALUES
 
     chosen = chosen_scene(arguments)
     check_files(arguments)
     check_range("--bead", arguments.bead, 1, chosen.N)
     knob, ends, spaced = values_from("--over", arguments.over, MOST_VALUES)
     progress = show_percent if sys.stderr.isatty() else None
-    found = in_background(lambda stop: strobe_diagram(chosen, knob, spaced(*ends), arguments.start, arguments.keep,
-                                                      stop, progress), reports=True)
+    found = in_background(lambda stop: bifurcation_diagram(chosen, knob, spaced(*ends), arguments.start,
+                                                           arguments.keep, stop, progress), reports=True)
     for point in found.points:
         if point.failure:
             say(f"{knob} = {point.value:g}: {point.failure}")
-    write_files(arguments, f"Strobes of {chosen.name}", found, bead=arguments.bead)
+    write_files(arguments, f"Bifurcation diagram of {chosen.name}", found, bead=arguments.bead)
     if arguments.json:
         show_json(_json(found, arguments.bead))
         return
@@ -57,7 +57,7 @@ def do(arguments: argparse.Namespace) -> None:
               f"{point.failure or point.regime.sentence}")
 
 
-def _json(found: StrobeDiagram, bead: int) -> dict[str, Any]:
+def _json(found: BifurcationDiagram, bead: int) -> dict[str, Any]:
     return {"knob": found.knob, "start": found.start, "bead": bead, "values": [point.value for point in found.points],
             "regime": [point.regime.name for point in found.points],
             "period": [point.regime.period for point in found.points],

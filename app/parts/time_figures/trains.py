@@ -102,7 +102,7 @@ class ForceTrains:
         set_properties(self._axes[0], visible=driven)
         set_properties(self._lines[0], visible=driven)
         set_properties(self._zero_of_drive, visible=driven)
-        far = -1 if frames.time[-1] else 0  # of a live picture the last row is now, at 0
+        far = -1 if frames.time[-1] else 0  # in a live picture the last row is the present, time 0
         scale = float(time[far] / frames.time[far]) if frames.time[far] else 1.0
         moved = max(float(np.abs(frames.drive_displacement).max()), self._measured.largest_displacement)
         drive_high = round_up(moved)

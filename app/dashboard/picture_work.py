@@ -1,0 +1,143 @@
+"""The computation of the main picture: what its threads do. `main_picture.py` requests it and shows the results."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Iterator
+from contextlib import closing, contextmanager
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from granchain_core import Cancelled, OverBudget, Scene, Settled, State, settling
+from granchain_core.precompile.pieces import FIXED_STEP_KERNELS, MOTION_KERNELS
+
+from ..frames import samples_for
+from ..serve.compiling.compiler import COMPILER, PICTURE_PIECES, compiling_words
+from ..serve.computing.cpu_time import CpuTime
+from ..serve.computing.shared import Shared
+from ..serve.computing.turns import TurnFlag
+from ..serve.computing.worker_pools import PICTURES
+from ..session.budget import WHOLE_PICTURE, RefusedPicture, TooLong, check_first_picture
+from ..session.energy_account import with_account
+from ..session.host import Caller
+from ..session.live import LiveRun, LiveStep
+
+
+def size_of(settled: Settled) -> int:
+    """Memory of a picture [bytes]: its arrays, and a little more."""
+    arrays = [*vars(settled.run).values(), settled.state.displacement, settled.state.velocity]
+    return 4096 + sum(array.nbytes for array in arrays if isinstance(array, np.ndarray))
+
+
+#: Pictures of all sessions. The last picture of each scene is kept for the next session that asks, in at most 100 MB.
+PICTURES_SHARED: Shared[Settled] = Shared(PICTURES, 100_000_000, size_of, lambda pictures: pictures[-1:])
+
+
+def _computed(scene: Scene, initial_state: State | None, most: float, stop: TurnFlag) -> Iterator[Settled]:
+    """Pictures on the way to the steady state; `TooLong` after `most` seconds of computing."""
+    began = time.thread_time()
+    pictures = settling(scene, start=initial_state, samples=samples_for(scene), stop=stop)
+    yield next(pictures)
+    with stop.released():
+        compiled = all(COMPILER.await_piece(scene, piece, stop) for piece in PICTURE_PIECES)
+    if not compiled:
+        raise Cancelled
+    for settled in pictures:
+        yield settled
+        if time.thread_time() - began > most and not settled.final:
+            raise TooLong
+
+
+@dataclass(frozen=True)
+class SettledRequest:
+    """The values of a request for a settled picture. Workers do not read the session, so they are kept here."""
+
+    scene: Scene
+    #: Where the motion begins; None is rest.
+    initial_state: State | None
+    #: Whether the picture is computed however long it takes.
+    insisted: bool
+    #: Whether the energy residual is computed, too.
+    account: bool
+
+
+@contextmanager
+def _refusing(scene: Scene) -> Iterator[None]:
+    """Turn the failure of a picture that takes too long into a refusal of its scene."""
+    try:
+        yield
+    except (OverBudget, TooLong) as problem:
+        raise RefusedPicture(scene, str(problem)) from None
+
+
+class PictureWork:
+    """What a thread does for one session's pictures. It reads nothing of the session and writes nothing of the page.
+
+    `show_notice` and `begun_from` are called with the document locked: with a sentence, and with the state in which a
+    settled motion begins (None is rest).
+    """
+
+    def __init__(self, caller: Caller, cpu_time: CpuTime, show_notice: Callable[[str], None],
+                 begun_from: Callable[[State | None], None]) -> None:
+        self._caller = caller
+        self._cpu_time = cpu_time
+        self._show_notice = show_notice
+        self._begun_from = begun_from
+
+    def settled_pictures(self, request: SettledRequest, stop: TurnFlag) -> Iterator[Settled]:
+        """The pictures of a request; one that takes too long is refused."""
+        with _refusing(request.scene):
+            yield from self._pictures_of(request, stop)
+
+    def _pictures_of(self, request: SettledRequest, stop: TurnFlag) -> Iterator[Settled]:
+        """The pictures of a request, each better than the one before. The last may have an energy account.
+
+        Pictures from rest are shared with other sessions, unless the visitor has insisted on them.
+        """
+        scene, initial_state, insisted = request.scene, request.initial_state, request.insisted
+        if not insisted:
+            check_first_picture(scene)
+        self._await_first_kernels(scene, stop)
+        self._caller.next_tick(self._begun_from, initial_state)
+        key = None if initial_state is not None or insisted else scene
+        most = math.inf if insisted else WHOLE_PICTURE
+        with closing(PICTURES_SHARED.follow(key, partial(_computed, scene, initial_state, most), stop,
+                                            self._cpu_time)) as pictures:
+            for settled in pictures:
+                yield settled
+        if request.account:
+            with stop.held():
+                settled = with_account(settled, stop)
+            yield settled
+
+    def live_step(self, newest_run: Callable[[], LiveRun | None], samples: int | None, speed: float,
+                  insisted: Scene | None, stop: TurnFlag) -> Iterator[LiveStep]:
+        """The next step of the live run: `samples`, or as many as belong to the viewing time at `speed`."""
+        live = newest_run()  # another run may have begun while this step waited
+        if live is None:
+            return
+        scene = live.scene
+        with _refusing(scene):
+            if scene != insisted:
+                check_first_picture(scene)
+        self._await_first_kernels(scene, stop)
+        with live.flag.held(is_new=True):
+            result = live.advance(samples) if samples else live.step(speed)
+        yield result
+
+    def _await_first_kernels(self, scene: Scene, stop: TurnFlag) -> None:
+        """Wait for the kernels of the first picture. Raises `Cancelled`.
+
+        Another process compiles these kernels, and the other kernels of the picture and its curve.
+        """
+        needed = MOTION_KERNELS if scene.cuts_tension else (FIXED_STEP_KERNELS,)  # dop853 settles it then
+        if not COMPILER.has(scene, *needed):
+            words = compiling_words("the kernels for this set of effects", FIXED_STEP_KERNELS).capitalize()
+            self._caller.next_tick(self._show_notice, f"{words}; the picture then appears by itself.")
+            for piece in PICTURE_PIECES:
+                COMPILER.ask(scene, piece)
+            if not all(COMPILER.await_piece(scene, piece, stop) for piece in needed):
+                raise Cancelled

@@ -1,1 +1,0 @@
-"""The figures over time beside the chain: force trains and energy map."""

@@ -1,0 +1,1 @@
+"""The figures over time below the chain: force trains and energy map."""
