@@ -8,9 +8,12 @@ from __future__ import annotations
 
 import argparse
 import difflib
+import errno
+import os
 import re
 import sys
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from importlib import import_module
 from types import MappingProxyType, ModuleType
@@ -29,6 +32,8 @@ DONE = 0
 BAD_INPUT = 2
 #: Exit status of one whose computation failed (`ComputationError`).
 FAILED = 3
+#: Errors of a stream that takes no more.
+_CANNOT_BE_WRITTEN = (errno.ENOSPC, errno.EIO, errno.EFBIG, errno.EDQUOT)
 
 
 class _Parser(argparse.ArgumentParser):
@@ -169,7 +174,11 @@ def do(words: list[str]) -> int:
             raise unknown_name(*(("option", words[0], _HELP) if words[0].startswith("-") else
                                  ("command", words[0], COMMANDS)))
         parsed = parser_for(words).parse_args(words)
-        return parsed.do(parsed) or DONE
+        _refuse_empty_files(parsed)
+        status = parsed.do(parsed) or DONE
+        if sys.stdout is not None:
+            sys.stdout.flush()  # a full disk or a reader that has gone is noticed here, not when Python ends
+        return int(status)
     except (BadInput, ComputationError) as problem:
         say(problem)
         if "--json" in words and isinstance(problem, (ComputationError, OverBudget)):
@@ -178,6 +187,28 @@ def do(words: list[str]) -> int:
     except (KeyboardInterrupt, Cancelled) as end:
         say(f"{ending.word()}{f': {end}' if str(end) else ''}.")
         return ending.status()
-    except BrokenPipeError:
-        sys.stderr.close()
-        return DONE
+    except OSError as problem:  # of stdout: a file's has its name, and is a `BadInput` where the file is written
+        if isinstance(problem, BrokenPipeError):
+            status = DONE
+        elif problem.errno in _CANNOT_BE_WRITTEN and problem.filename is None:
+            say(f"Cannot write to standard output: {problem.strerror}.")
+            status = BAD_INPUT
+        else:
+            raise
+        _give_stdout_up()
+        return status
+
+
+def _refuse_empty_files(parsed: argparse.Namespace) -> None:
+    """Refuse --out "" and --picture "", as an unset variable of a shell gives: the result would be lost."""
+    for option in ("out", "picture"):
+        if getattr(parsed, option, None) == "":
+            raise BadInput(f"--{option} is empty; name a file.")
+
+
+def _give_stdout_up() -> None:
+    """Let what is still to be written go nowhere, since Python would try once more when it ends, and complain."""
+    with suppress(OSError, ValueError):
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, sys.stdout.fileno())
+        os.close(nowhere)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from granchain_core import BadInput, Orbit, Scene, Stop
+from granchain_core.inputs.checks import check_range
 from granchain_core.precompile.pieces import ORBIT_KERNELS
 from granchain_core.scene.state import State
 
@@ -109,6 +110,7 @@ def _start(chosen: Scene, name: str, seed: int) -> State | None:
     if name == "rest":
         return rest(chosen)
     if name == "random":
+        check_range("--seed", seed, 0, 2**63 - 1)
         return random_state(chosen, seed)
     run = load(name)
     if run.displacement.shape[1] != chosen.N:

@@ -6,7 +6,8 @@ Equation   Q_{p+1} R_{p+1} = M_p Q_p with M_p the derivative of the map over per
 Source     Benettin et al. 1980; Kaplan & Yorke 1979; standard errors from means of blocks
 Note       The sum of all exponents is the mean of ∫ trace along the motion (Liouville), which is computed too.
            Standard errors take the means of the blocks as independent. The blocks are plain ones, not those of
-           steady/lyapunov.py: on a closed curve their error covers the swing of the growth (docs/analysis.md).
+           steady/lyapunov.py: on a closed curve their error covers the swing of the growth (docs/analysis.md), and
+           where all blocks hold the same part of the swing, half of the swing over the periods is the error.
            A strong dashpot shrinks some directions by more than double precision resolves in a period: such
            exponents are bounds from above, and `resolved` says how many are more than that.
 """
@@ -48,7 +49,8 @@ class LyapunovSpectrum(Labelled):
     scene : Scene
         The chain.
     exponents, errors : numpy.ndarray, shape (2N,)
-        Per drive period, largest first, and their standard errors: of the means of 20 blocks taken as independent.
+        Per drive period, largest first, and their standard errors: of the means of 20 blocks taken as independent, at
+        least half the swing of the summed growth over the number of periods.
     dimension : float or None
         Kaplan–Yorke dimension of the section's attractor, from the exponents without their errors.
     dimension_range : tuple of float or None
@@ -211,7 +213,18 @@ def lyapunov_spectrum(scene: Scene, periods: int = 400, start: State | None = No
     blocks = np.array([part.mean(axis=0) for part in np.array_split(counted, _BLOCKS)])
     resolved = int(np.argmax(rounding)) if rounding.any() else size
     exponents, errors = counted.mean(axis=0), blocks.std(axis=0, ddof=1) / np.sqrt(_BLOCKS)
+    errors = np.maximum(errors, _swing(counted - exponents) / (2.0 * periods))
     # the factorization puts them in this order in the limit only: near ones may have changed places
     order = np.concatenate([np.argsort(-exponents[:resolved], kind="stable"), np.arange(resolved, size)])
     mean_trace = float(traces[_ALIGNMENT_PERIODS:].mean())
     return LyapunovSpectrum(scene, exponents[order], errors[order], resolved, periods, mean_trace)
+
+
+def _swing(deviations: np.ndarray) -> np.ndarray:
+    """Highest less lowest of the summed deviations from the mean growth (P, n), from before the first period on.
+
+    Complex multipliers turn the directions; if a block holds a whole number of half turns, all block means are alike,
+    and their scatter does not show what the unfinished half turn at the end of the record leaves in the mean.
+    """
+    sums = np.cumsum(deviations, axis=0)
+    return np.maximum(sums.max(axis=0), 0.0) - np.minimum(sums.min(axis=0), 0.0)

@@ -171,7 +171,8 @@ def pulse(run: Run) -> Pulse:
     Raises
     ------
     BadInput
-        There are fewer than three beads, or no pulse reaches some contact.
+        There are fewer than three beads, no pulse reaches some contact, or the pulse cannot be told from the wave
+        that comes back from the wall: it is long, as under a slow drive, or nearly damped out.
 
     Examples
     --------
@@ -190,6 +191,11 @@ def pulse(run: Run) -> Pulse:
     time, force, half, arrived = found[:, 0].T
     time_change, force_change, half_change, arrival_change = np.abs(found[:, 1] - found[:, 0]).T
     late = _OF_THE_CHANGE * arrival_change
+    if len(backwards := np.flatnonzero(time[:-2] >= time[2:])):
+        c = int(contacts[backwards[0]])
+        raise BadInput(f"The first pulse cannot be told from the wave that comes back from the wall: contact {c} has "
+                       f"its largest force at {time[backwards[0]]:.3g} s, after contact {c + 2}. A longer chain, less "
+                       "damping or a higher frequency keeps them apart.")
     speed = np.full(scene.N - 1, np.nan)
     speed[1:-1] = 2.0 / np.where(arrived[2:] > arrived[:-2], arrived[2:] - arrived[:-2], np.nan)
     passed = np.searchsorted(run.time, [*time, 2.0 * time[-1] - time[-2]]) + 1  # a bead is fastest before this contact

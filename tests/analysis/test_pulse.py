@@ -175,6 +175,15 @@ def test_the_wave_from_the_wall_is_not_the_pulse(name: str, knobs: dict[str, flo
     assert found.speed_beads_s[1:-1].min() > 0.0 and found.width[1:-1].min() > 0.0
 
 
+@pytest.mark.parametrize(("name", "knobs"), [
+    ("sec2", {}), ("sec2", {"f": 100.0}), ("impact", {"dissipation": "linear", "D": 1000.0}),
+])
+def test_a_pulse_that_the_wave_from_the_wall_covers_is_refused(name: str, knobs: dict[str, float | str]) -> None:
+    """Contact 8 of sec2 was said to have its pulse at 1.57 ms, after contact 9 at 1.06 ms."""
+    with pytest.raises(BadInput, match=r"cannot be told from the wave .* contact \d+ has its largest force at .* s, after contact"):
+        pulse(run(scene(name).evolve(**knobs), periods=0, record=1, samples=SAMPLES))
+
+
 def test_a_ripple_before_the_pulse_of_a_pressed_chain_is_not_the_pulse() -> None:
     """A bead that is thrown with 1 m/s at beads that 0.1 N presses: the pulse is nearly the solitary wave."""
     chain = scene("impact").evolve(F0=0.1, strike=1.0, N=20)

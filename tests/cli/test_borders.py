@@ -202,3 +202,37 @@ def test_a_harmed_file_is_bad_input(harm, about, stored, tmp_path):
     seal(path)  # h5py removed it
     with pytest.raises(BadInput, match=f"b.h5 is not a run written by granchain: .*{about}"):
         load(path)
+
+
+@pytest.mark.parametrize("option", ["--out", "--picture"])
+def test_an_empty_file_name_is_refused(option, capsys):
+    """What `--out "$FILE"` gives if the variable is not set: the result was computed and kept nowhere."""
+    assert main(["run", "sec2", *SHORT, option, ""]) == 2
+    assert capsys.readouterr().err == f"{option} is empty; name a file.\n"
+
+
+def test_a_negative_seed_of_an_orbit_is_bad_input(capsys):
+    """NumPy's own error was a traceback."""
+    assert main(["orbit", "sec2", "--start", "random", "--seed", "-1"]) == 2
+    assert capsys.readouterr().err == "--seed -1 is outside 0 to 9223372036854775807; the nearest valid value is 0.\n"
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no device that is always full")
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+def test_a_standard_output_that_takes_no_more_is_a_sentence(unbuffered):
+    """A disk that is full where stdout goes was a traceback, or Python's complaint with status 120."""
+    with open("/dev/full", "w") as full:
+        done = subprocess.run([sys.executable, "-m", "app.cli", "scenes", "--json"], stdout=full, stderr=subprocess.PIPE,
+                              text=True, env={**os.environ, "PYTHONUNBUFFERED": unbuffered}, check=False)
+    assert (done.returncode, done.stderr) == (2, "Cannot write to standard output: No space left on device.\n")
+
+
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+def test_a_reader_that_has_gone_ends_the_command_quietly(unbuffered):
+    """As `granchain scenes | head -1` does."""
+    reading, writing = os.pipe()
+    os.close(reading)
+    done = subprocess.run([sys.executable, "-m", "app.cli", "scenes"], stdout=writing, stderr=subprocess.PIPE, text=True,
+                          env={**os.environ, "PYTHONUNBUFFERED": unbuffered}, check=False)
+    os.close(writing)
+    assert (done.returncode, done.stderr) == (0, "")

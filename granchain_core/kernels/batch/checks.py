@@ -155,7 +155,7 @@ def go_back_and_wait(state, member):
     state.schedule.next_check[member] = periods[member] + periods_to_next_check(state.record, member)
 
 
-@inline_numba
+@internal
 def keep_state_before(search, strobe, member):
     """Keep a member's state, to which it returns if an extrapolation is undone or a disturbance has decayed."""
     copy(strobe[0], search.state_before[member, 0])
