@@ -44,7 +44,8 @@ class Problem:
     """Misfit of a target over the unit cube of the free parameters; all that was evaluated is kept.
 
     A point x (P,) has a number from 0 to 1 for each of the P parameters in `free`. `points` and `misfits` are those
-    that were evaluated, in that order; `tell` is called with their number after each; `scheduler` is a Dask client or None.
+    that were evaluated, in that order; `tell` is called with their number after each; `scheduler` is a Dask client or
+    None.
     """
 
     scene: Scene
