@@ -148,13 +148,15 @@ class Batch:
         alike = chain is example.slots.chain or self.members.unequal is not None or is_uniform(scaled)
         return alike and scaled.slot_types == example.slot_types
 
-    def put_fine(self, member: int, scaled: ScaledChain, y: np.ndarray, refine: float, period: int, decay: float,
+    def put_fine(self, member: int, scaled: ScaledChain, y: np.ndarray, refine: float, period: int, observed: float,
                  maxima: np.ndarray) -> None:
-        """Make a scene a member, on the orbit y of a coarser run, with its period, decay per orbit and largest forces.
+        """Make a scene a member, on the orbit y of a coarser run, with its period and largest forces.
+
+        `observed` is the contraction factor per orbit.
 
         It is checked once the difference from that orbit has decayed.
         """
-        contraction = coarse_contraction(decay)
+        contraction = coarse_contraction(observed)
         orbits = orbits_until_checked(contraction)
         self.put(member, scaled, y, refine, NEVER, orbits * period)
         self.state.fine_record[member] = period, contraction, *maxima, orbits, 0.0, 0.0
