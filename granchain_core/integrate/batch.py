@@ -152,7 +152,8 @@ class Batch:
                  maxima: np.ndarray) -> None:
         """Make a scene a member, on the orbit y of a coarser run, with its period and largest forces.
 
-        `observed` is the contraction factor per orbit. The scene is checked once the difference from that orbit has decayed.
+        `observed` is the contraction factor per orbit. The scene is checked once the difference from that orbit has
+        decayed.
         """
         contraction = coarse_contraction(observed)
         orbits = orbits_until_checked(contraction)
