@@ -1,4 +1,4 @@
-"""Scenes that several tests need: the cases of the stored reference, and a chain scaled by its symmetry."""
+"""Scenes that several tests need: the cases of the stored reference."""
 
 from __future__ import annotations
 
@@ -39,14 +39,3 @@ def recorded_scene(given: dict) -> Scene:
                          kappa=given["kappa"], wall=given["wall"], dissipation=given["law"],
                          tension=given["tension"], F0=given["preload"])
     return replace(chosen, reference_overlap=given["delta_ref"])
-
-
-def scaled(shown: Scene, s: float) -> Scene:
-    """The chain with s times the amplitude that moves alike (docs/model.md, "Scaled variables").
-
-    (A0, f, D, F0) → (s A0, s^{1/4} f, s^{1/4 − a} D, s^{3/2} F0) at fixed κ, with the exponent a of the damping law.
-    Displacements are s times as large, velocities s^{5/4}, forces s^{3/2}; multipliers are the same.
-    """
-    a = DAMPING_LAWS[shown.dissipation].exponent if shown.dissipation in DAMPING_LAWS else 0.0
-    return shown.evolve(A0=s * shown.A0, f=s**0.25 * shown.f, D=s ** (0.25 - a) * shown.D, F0=s**1.5 * shown.F0,
-                        kappa=shown.kappa)

@@ -63,3 +63,9 @@ def with_answers(arguments: argparse.Namespace, read: Callable[[Answers], Found]
     except Unclear as unclear:
         say(unclear.question.table)
         raise
+
+
+def add_tip_mass(parser: argparse.ArgumentParser, use: str) -> None:
+    """Add the mass of the tip before the input sensor; `use` says what is done with it."""
+    parser.add_argument("--tip-mass", type=number, default=0.0, metavar="KG",
+                        help=f"mass between the input sensor and bead 1, which moves with the shaker{use}")

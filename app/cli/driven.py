@@ -34,7 +34,7 @@ def do_driven(arguments: argparse.Namespace, chosen: Scene) -> None:
             raise BadInput(f"--{option} is for a harmonic drive; with --drive the motion goes from the start to the "
                            "end of the signal, by the method with split steps.")
     signal, series = chosen_signal(arguments, chosen)
-    sensors = Sensors(bandwidth=arguments.bandwidth)
+    sensors = Sensors(bandwidth=arguments.bandwidth, tip_mass=arguments.tip_mass)
     if arguments.out:
         check_writable(arguments.out)
     begin = None if series is None else _beginning(arguments.start, chosen, series, sensors)
@@ -58,7 +58,7 @@ def do_driven(arguments: argparse.Namespace, chosen: Scene) -> None:
     differences = {} if series is None else compared_forces(series, found, sensors)
     if arguments.json:
         show_json({**_json(found, series, differences), "start": "rest" if begin is None else begin.words,
-                   "bandwidth": sensors.bandwidth if sensors.filters else None})
+                   "bandwidth": sensors.bandwidth if sensors.filters else None, "tip_mass": sensors.tip_mass})
     else:
         _show(found, differences)
 
@@ -99,11 +99,13 @@ def chosen_signal(arguments: argparse.Namespace, chosen: Scene) -> tuple[Signal,
 
 
 def check_no_samples(arguments: argparse.Namespace) -> None:
-    """Refuse --gap and --bandwidth where no samples are read."""
+    """Refuse --gap, --bandwidth and --tip-mass where no samples are read."""
     if arguments.gap != "refuse":
         raise BadInput("--gap is for --drive FILE, the samples of a measured motion.")
     if math.isfinite(arguments.bandwidth):
         raise BadInput("--bandwidth is for --drive FILE, with which measured forces are compared.")
+    if arguments.tip_mass:
+        raise BadInput("--tip-mass is for --drive FILE, with which measured forces are compared.")
 
 
 def _beginning(start: str, chosen: Scene, series: Series, sensors: Sensors) -> Beginning | None:

@@ -82,14 +82,15 @@ def do(arguments: argparse.Namespace) -> None:
                                                progress, client), reports=True)
     if sys.stderr.isatty():
         say()
+    result = {**found.to_json(), "bandwidth": arguments.bandwidth if math.isfinite(arguments.bandwidth) else None}
     if arguments.out:
         values, misfits = found.landscape
         landscape = {one.name: values[:, i].tolist() for i, one in enumerate(found.free)}
-        Path(arguments.out).write_text(json.dumps({**found.to_json(), "landscape": {
+        Path(arguments.out).write_text(json.dumps({**result, "landscape": {
             **landscape, "misfit": misfits.tolist()}}, indent=1), encoding="utf-8")
     write_picture(arguments.picture, f"A fit of {chosen.name}", found)
     if arguments.json:
-        show_json(found.to_json())
+        show_json(result)
     else:
         _show(found)
 

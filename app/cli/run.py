@@ -17,7 +17,7 @@ from granchain_core.run.budget import BUDGET
 
 from .common import chosen_scene, in_background, show_json, show_percent, unbroken
 from .compiling import compiling_beside
-from .data_options import add_answers, add_bandwidth
+from .data_options import add_answers, add_bandwidth, add_tip_mass
 from .driven import PERIODIC, check_no_samples, do_driven
 from .forces import errors_in_words, errors_json, forces_in_words, forces_json, scene_json, status_in_words, warn
 from .keeping import add_resume, finished, keeping
@@ -48,6 +48,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
                         help="where a motion under --drive begins: at rest; for --drive FILE also on the settled "
                              "motion at the phase of the file's first sample, or where the recorded run FILE ends")
     add_bandwidth(parser, ", which the computed forces pass before they are compared with those of --drive FILE")
+    add_tip_mass(parser, ", whose inertia is added to the computed input force before it is compared with that of "
+                         "--drive FILE")
     add_answers(parser)
     add_resume(parser, "run")
     add_picture(parser)

@@ -11,7 +11,7 @@ import numpy as np
 from granchain_core import BadInput
 
 from .common import check_points, chosen_scene, in_background, show_percent
-from .data_options import add_bandwidth
+from .data_options import add_bandwidth, add_tip_mass
 from .options import add_scene, number, whole
 
 
@@ -34,8 +34,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--noise", type=number, default=0.0, metavar="N", help="noise of a force sample, rms")
     parser.add_argument("--velocity-noise", type=number, default=0.0, metavar="M/S", help="noise of a velocity sample")
     add_bandwidth(parser, "")
-    parser.add_argument("--tip-mass", type=number, default=0.0, metavar="KG",
-                        help="mass between the input sensor and bead 1, which moves with the shaker")
+    add_tip_mass(parser, "")
     parser.add_argument("--seed", type=whole, default=0, help="seed of noise, phase and scatter")
 
 

@@ -35,7 +35,7 @@ _ROUNDING = 1e-12
 #: First periods, which are not counted: the directions align with those that grow at the rates of the exponents.
 _ALIGNMENT_PERIODS = 50
 #: Most periods of one measurement.
-MOST_PERIODS = 1_000_000
+MOST_SPECTRUM_PERIODS = 1_000_000
 #: Blocks over which the standard errors are taken.
 _BLOCKS = 20
 
@@ -192,7 +192,7 @@ def lyapunov_spectrum(scene: Scene, periods: int = 400, start: State | None = No
     True
     """
     require_scene(scene)
-    periods = whole_number("periods =", periods, _BLOCKS, MOST_PERIODS)
+    periods = whole_number("periods =", periods, _BLOCKS, MOST_SPECTRUM_PERIODS)
     check_range("N =", scene.N, 1, MOST_BEADS_WITH_MULTIPLIERS)
     stroboscopic_map = StroboscopicMap(scene, 1, stop)
     x = stroboscopic_map.inner(run_until_settled(scene, start, stop).engine.y)

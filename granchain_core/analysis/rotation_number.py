@@ -33,7 +33,7 @@ from .winding import LARGEST_DENOMINATOR, LENGTHS, Winding, folded, winding_of
 #: [rotation] Fewest drive periods in a first record.
 FEWEST_PERIODS = 1000
 #: [rotation] Most drive periods in a first record.
-MOST_PERIODS = 10_000
+MOST_ROTATION_PERIODS = 10_000
 #: [rotation] Steps in a drive period over the default ones, of the longer steps.
 _LONGER = 2.0
 #: [rotation] Steps in a drive period over the default ones, of the shorter steps. The difference of the two
@@ -214,7 +214,7 @@ def rotation_number(scene: Scene, periods: int = 4000, start: State | None = Non
     'the motion is periodic, not quasi-periodic'
     """
     require_scene(scene)
-    periods = whole_number("periods =", periods, FEWEST_PERIODS, MOST_PERIODS)
+    periods = whole_number("periods =", periods, FEWEST_PERIODS, MOST_ROTATION_PERIODS)
     settled = run_until_settled(scene, start, stop)
     if settled.regime.name != "quasi-periodic":
         return _result(scene, settled.regime, periods,

@@ -12,7 +12,8 @@ arclength s, on which Newton's method solves map(state, x) = state bordered by t
 need no special treatment; the root of the condition along s is found by secants. From one y to the next the curve is
 extrapolated, with steps that are halved where that fails.
 
-docs/parameter-map.md says why Newton's method here (`_Branch.solve`) is not that of orbits/branch.
+docs/parameter-map.md says why Newton's method is that of a single orbit (orbits/damped_newton.py), not that of
+orbits/branch.
 
 Source: Kuznetsov 2004, chapter 10.
 """
@@ -28,18 +29,16 @@ from ..errors import BadInput, Cancelled, ComputationError
 from ..execution.stop import Stop
 from ..inputs.checks import unknown_name
 from ..orbits.branch.special import BIFURCATIONS
-from ..orbits.stroboscopic_map import MULTIPLIER_ERROR, StroboscopicMap
+from ..orbits.damped_newton import iterate
+from ..orbits.stroboscopic_map import MULTIPLIER_ERROR, Flow, StroboscopicMap
 from ..parameter_map.grid import KNOBS
 from ..scene import Scene
 from ..scene.hertz import RATE_POWER
 from ..scene.quantities import QUANTITIES
 from ..scene.state import State
-from ..steady.residuals import ACCEPTED_RESIDUAL, RESIDUAL_GOAL
 
 #: How exactly the critical multiplier meets its condition: it is not known better.
 _CONDITION_ERROR = MULTIPLIER_ERROR
-#: Newton's iterations at most.
-_MOST_ITERATIONS = 8
 #: Relative change of a knob for its difference quotient; the map is smooth to 1e-12.
 _DIFFERENCE = 1e-6
 #: First step along a branch, relative to the state and the knob.
@@ -84,11 +83,13 @@ class _Branch:
         """The scene at a point's last entry, x / unit."""
         return self.scene.evolve(**{self.knob: float(ratio) * self.unit})
 
-    def map(self, X: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
-        """The map's end from X, its derivative (2N, 2N), and the residual."""
+    def map(self, X: np.ndarray) -> tuple[Flow, float]:
+        """The map from X with its derivative (2N, 2N), and the residual."""
+        if not np.isfinite(X).all() or X[-1] <= 0.0:
+            raise ComputationError("Newton's method left the range of the knob.", "no-convergence")
         stroboscopic_map = StroboscopicMap(self.at(X[-1]), self.periods, self.stop)
         flow = stroboscopic_map(X[:-1])
-        return flow.end, flow.derivative, stroboscopic_map.residual(flow.end, X[:-1])
+        return flow, stroboscopic_map.residual(flow.end, X[:-1])
 
     def slope(self, X: np.ndarray) -> np.ndarray:
         """Derivative of the map's end by the knob, (2N,)."""
@@ -101,24 +102,25 @@ class _Branch:
 
         `slope` may be that of a point near by: it only steers the iterations.
         """
-        X, before = guess.copy(), np.inf
-        for _ in range(_MOST_ITERATIONS):
-            end, derivative, residual = self.map(X)
-            if residual <= RESIDUAL_GOAL or (before <= ACCEPTED_RESIDUAL and residual <= ACCEPTED_RESIDUAL):
-                return X, derivative
-            before, off = residual, np.append(end - X[:-1], direction @ (X - guess))
-            matrix = np.block([[derivative - np.eye(len(end)), slope[:, None]], [direction[None, :]]])
-            X = X - np.linalg.solve(matrix, off)
-            if not np.isfinite(X).all() or X[-1] <= 0.0:
-                break
-        raise ComputationError("Newton's method lost the branch.", "no-convergence")
+        def step(X: np.ndarray, flow: Flow) -> np.ndarray:
+            off = np.append(flow.end - X[:-1], direction @ (X - guess))
+            return -np.linalg.solve(_bordered(flow.derivative, slope, direction), off)
+
+        found = iterate(self.map, step, guess)
+        if not found.converged:
+            raise ComputationError("Newton's method lost the branch.", "no-convergence")
+        return found.z, found.flow.derivative
 
     @staticmethod
     def tangent(derivative: np.ndarray, slope: np.ndarray, along: np.ndarray) -> np.ndarray:
         """Unit tangent of the branch, on the side of `along`."""
-        matrix = np.block([[derivative - np.eye(len(slope)), slope[:, None]], [along[None, :]]])
-        tangent = np.linalg.solve(matrix, np.append(np.zeros(len(slope)), 1.0))
+        tangent = np.linalg.solve(_bordered(derivative, slope, along), np.append(np.zeros(len(slope)), 1.0))
         return tangent / np.linalg.norm(tangent)
+
+
+def _bordered(derivative: np.ndarray, slope: np.ndarray, border: np.ndarray) -> np.ndarray:
+    """The matrix [[P_x − 1, P_p], [border]] (2N + 1, 2N + 1)."""
+    return np.block([[derivative - np.eye(len(slope)), slope[:, None]], [border[None, :]]])
 
 
 def critical(derivative: np.ndarray, kind: str, near: complex | None = None) -> tuple[float, complex]:
@@ -277,8 +279,8 @@ def _inwards(branch: _Branch, state: np.ndarray) -> np.ndarray:
 
     It is the null vector of the map's derivative less one; the knob does not change along it.
     """
-    _, derivative, _ = branch.map(np.append(state, 1.0))
-    _, _, rows = np.linalg.svd(derivative - np.eye(len(state)))
+    flow, _ = branch.map(np.append(state, 1.0))
+    _, _, rows = np.linalg.svd(flow.derivative - np.eye(len(state)))
     return np.append(rows[-1], 0.0)
 
 

@@ -19,7 +19,7 @@ from ..tables import Labelled, Table, or_nan, provenance
 from ..tables.provenance import Attribute
 from .intervals import LEVEL, BetterMinimum, Profile, limit, profile
 from .parameters import Free, with_values
-from .search import STEP, Problem, Target, descended, searched
+from .search import STEP, Problem, Target, descend, search
 from .tables import data_table, landscape_table, parameter_table, profile_table
 from .targets import Evaluation, FeatureTarget, SeriesTarget
 
@@ -27,7 +27,7 @@ from .targets import Evaluation, FeatureTarget, SeriesTarget
 CANNOT = 0.01
 #: Most parameters; every one has a profile, for which all others are searched again and again.
 MOST_FREE = 30
-#: Times that the search goes on from a better place that a profile found.
+#: Times that the search goes on from a better point that a profile found.
 _AGAIN = 4
 
 
@@ -196,7 +196,7 @@ def fit(scene: Scene, target: Target, free: Sequence[Free], design: int = 0, int
     progress : callable, optional
         Called with the number of sets of parameters evaluated.
     scheduler : distributed.Client, optional
-        Its workers evaluate the design and the derivatives, a set of parameters at a time.
+        Its workers evaluate the initial points and the derivatives, a set of parameters at a time.
 
     Returns
     -------
@@ -237,10 +237,10 @@ def fit(scene: Scene, target: Target, free: Sequence[Free], design: int = 0, int
         raise BadInput(f"{data} data and priors do not determine {len(free)} parameters; give priors or fewer of them.")
     known = target.sigma_known
 
-    def enough(place: np.ndarray) -> bool:
-        return _verdict(_probability(problem, place, data, freedom)) != "cannot"
+    def enough(x: np.ndarray) -> bool:
+        return _verdict(_probability(problem, x, data, freedom)) != "cannot"
 
-    best = searched(problem, design or (32 if len(free) <= 2 else 64 if len(free) == 3 else 128), enough)
+    best = search(problem, design or (32 if len(free) <= 2 else 64 if len(free) == 3 else 128), enough)
     profiles: tuple[Profile, ...] = ()
     for again in range(_AGAIN):
         scale = 1.0 if known else problem.chi_squared(best) / max(freedom, 1)
@@ -250,7 +250,7 @@ def fit(scene: Scene, target: Target, free: Sequence[Free], design: int = 0, int
                                  for j in range(len(free)))
             break
         except BetterMinimum as better:
-            best = descended(problem, better.place, range(len(free)))
+            best = descend(problem, better.x, range(len(free)))
     return _result(problem, best, profiles, data, freedom, scale, time.perf_counter() - began)
 
 
@@ -264,7 +264,7 @@ def _scale_freedom(target: Target, freedom: int) -> int | None:
     return target.error_freedom if target.sigma_known else freedom
 
 
-def _probability(problem: Problem, place: np.ndarray, data: int, freedom: int) -> float | None:
+def _probability(problem: Problem, x: np.ndarray, data: int, freedom: int) -> float | None:
     """Probability of a χ² as large as this if the model were true.
 
     None where no errors are known, or nothing is left free.
@@ -272,7 +272,7 @@ def _probability(problem: Problem, place: np.ndarray, data: int, freedom: int) -
     counted = _counted(problem, data, freedom)
     if not problem.target.sigma_known or counted == 0:
         return None
-    chi_squared, repeats = problem.chi_squared(place), problem.target.error_freedom
+    chi_squared, repeats = problem.chi_squared(x), problem.target.error_freedom
     if repeats is None:
         return float(chi2.sf(chi_squared, counted))
     return float(f.sf(chi_squared / counted, counted, repeats))
@@ -289,7 +289,7 @@ def _result(problem: Problem, best: np.ndarray, profiles: tuple[Profile, ...], d
     fitted, amplitude = with_values(problem.scene, problem.free, values)
     probability = _probability(problem, best, data, freedom)
     verdict = _verdict(probability)
-    landscape = (np.array([problem.values(place) for place in problem.places]), np.array(problem.misfits))
+    landscape = (np.array([problem.values(x) for x in problem.points]), np.array(problem.misfits))
     return Fit(fitted, amplitude, tuple(problem.free), values, profiles, misfit, data, freedom, probability, verdict,
                _sentence(problem, evaluation, best, _counted(problem, data, freedom), probability, verdict),
                evaluation, landscape, problem.target, scale, wall_s, _correlation(problem, best))

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import chi2, f
 
-from .search import Problem, descended
+from .search import Problem, descend
 
 #: The part of repetitions in which an interval holds the truth.
 LEVEL = 0.95
@@ -23,11 +23,11 @@ _BETTER_BY = 0.3
 
 
 class BetterMinimum(Exception):
-    """A profile found a place with a smaller misfit than the best one; the search goes on from there."""
+    """A profile found a point x with a smaller misfit than the best one; the search goes on from there."""
 
-    def __init__(self, place: np.ndarray) -> None:
+    def __init__(self, x: np.ndarray) -> None:
         super().__init__("a smaller misfit")
-        self.place = place
+        self.x = x
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ def limit(scale: float = 1.0, freedom: int | None = None) -> float:
 def profile(problem: Problem, best: np.ndarray, j: int, scale: float, freedom: int | None, last: bool) -> Profile:
     """The profile of parameter j; `scale` and `freedom` are those of `limit`.
 
-    Raises `BetterMinimum` where it finds a place that is better than `best`, unless it is the `last` try.
+    Raises `BetterMinimum` where it finds a point that is better than `best`, unless it is the `last` try.
     """
     least, top = problem.misfit(best), math.sqrt(limit(scale, freedom))
     others = [i for i in range(len(best)) if i != j]
@@ -75,15 +75,15 @@ def profile(problem: Problem, best: np.ndarray, j: int, scale: float, freedom: i
         lowest = -math.inf if last else -_BETTER_BY * scale
         ends.append(_end(problem, best, j, others, ridge, sign, reach, top, least, lowest, found))
     one = problem.free[j]
-    places = sorted(found)
+    along = sorted(found)
     (low, open_low), (high, open_high) = ends
-    return Profile(tuple(one.value(x) for x in places), tuple(found[x] for x in places), one.value(low),
+    return Profile(tuple(one.value(x) for x in along), tuple(found[x] for x in along), one.value(low),
                    one.value(high), open_low, open_high)
 
 
 def _end(problem: Problem, best: np.ndarray, j: int, others: list[int], ridge: np.ndarray, sign: float, reach: float,
          top: float, least: float, lowest: float, found: dict[float, float]) -> tuple[float, bool]:
-    """Where √Δχ² crosses its limit on one side: the root between places below and above it, by the secant."""
+    """Where √Δχ² crosses its limit on one side: the root between points below and above it, by the secant."""
     bound = 1.0 if sign > 0.0 else 0.0
     inside, root_inside = float(best[j]), 0.0
     outside, root_outside = math.nan, math.nan
@@ -92,16 +92,16 @@ def _end(problem: Problem, best: np.ndarray, j: int, others: list[int], ridge: n
         trial = min(max(trial, 0.0), 1.0)
         if abs(trial - inside) < 1e-9:
             break
-        place = np.clip(start + ridge * (trial - start[j]), 0.0, 1.0)
-        place[j] = trial
-        place = descended(problem, place, others, _DESCENT_CALLS)
-        rise = problem.misfit(place) - least
+        x = np.clip(start + ridge * (trial - start[j]), 0.0, 1.0)
+        x[j] = trial
+        x = descend(problem, x, others, _DESCENT_CALLS)
+        rise = problem.misfit(x) - least
         if rise < lowest:
-            raise BetterMinimum(place)
+            raise BetterMinimum(x)
         root = math.sqrt(max(rise, 0.0))
         found[float(trial)] = max(rise, 0.0)
         if root <= top:
-            inside, root_inside, start = trial, root, place
+            inside, root_inside, start = trial, root, x
         else:
             outside, root_outside = trial, root
         if abs(root - top) < _ROOT_TOLERANCE * top:

@@ -2,7 +2,8 @@
 
 Equation   late = argmin_s Σ_t (F_model(t + s) − F_measured(t))²,   rms_i = √⟨(F_model,i(t + late) − F_measured,i(t))²⟩
 Note       The start of a recording is not known, so it is moved to where the squares of all its forces are least; the
-           model's force is the mean over the series' sampling interval, as in a fit (trains.py).
+           model's force is the mean over the series' sampling interval or, where the bandwidth of the sensors is
+           known, the force after their low-pass, as in a fit (trains.py).
 """
 
 from __future__ import annotations
@@ -12,11 +13,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..experiment import Misfit, Series
+from ..experiment.sensors import Sensors
 from ..results.run import Run
 from .trains import Train, moved
 
 #: The forces that a series may have.
 _FORCES = ("input_force", "output_force")
+#: Sensors without a low-pass.
+_PERFECT = Sensors()
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,14 +29,15 @@ class Overlay:
 
     `time` (T,) is that of the run, so that the series begins less than an orbit before the run does; `forces` are the
     measured ones by name, `rms` the differences from the model [N], None of a motion that does not repeat, which the
-    series is not moved to. `displacement` is the shaker's less its mean, because a sensor's zero is arbitrary, None
-    where it was not measured.
+    series is not moved to. `sensors` are those whose low-pass the model's forces have passed. `displacement` is the
+    shaker's less its mean, because a sensor's zero is arbitrary, None where it was not measured.
     """
 
     time: np.ndarray
     forces: dict[str, np.ndarray]
     rms: dict[str, float] | None
     displacement: np.ndarray | None = None
+    sensors: Sensors = _PERFECT
 
     @property
     def sentence(self) -> str:
@@ -40,21 +45,22 @@ class Overlay:
         if self.rms is None:
             return "The present motion does not repeat: the series is drawn from its own start, and no misfit is given."
         left = " and ".join(f"{rms:.3g} N for the {name.replace('_', ' ')}" for name, rms in self.rms.items())
-        return f"Shifted in time to the least sum of squares; rms difference from the model {left}."
+        low_pass = f" after a low-pass of {self.sensors.bandwidth:g} Hz" if self.sensors.filters else ""
+        return f"Shifted in time to the least sum of squares; rms difference from the model{low_pass} {left}."
 
 
-def overlay(series: Series, run: Run) -> Overlay | None:
-    """The series over the run's orbit; None if no force was measured."""
+def overlay(series: Series, run: Run, sensors: Sensors = _PERFECT) -> Overlay | None:
+    """The series over the run's orbit, whose forces pass the low-pass of `sensors`; None if no force was measured."""
     forces = {name: values for name in _FORCES if (values := getattr(series, name)) is not None}
     if not forces:
         return None
     swing = None if series.displacement is None else series.displacement - series.displacement.mean()
     if run.regime.name != "periodic":
-        return Overlay(series.time, forces, None, swing)
+        return Overlay(series.time, forces, None, swing, sensors)
     trains = {name: Train.of(run, name) for name in forces}
     width = float(np.median(np.diff(series.time)))
-    late = moved(series.time, forces, trains, width, len(run.time) - 1)
-    rms = {name: Misfit.of(trains[name].mean_over(series.time + late, width), values).rms
+    late = moved(series.time, forces, trains, width, len(run.time) - 1, sensors)
+    rms = {name: Misfit.of(trains[name].recorded(series.time + late, width, sensors), values).rms
            for name, values in forces.items()}
     length = next(iter(trains.values())).length
-    return Overlay(series.time + late - np.ceil(late / length) * length, forces, rms, swing)
+    return Overlay(series.time + late - np.ceil(late / length) * length, forces, rms, swing, sensors)

@@ -62,17 +62,11 @@ class Free:
         """Its unit."""
         return UNITS[self.knob]
 
-    def value(self, place: float) -> float:
-        """Its value at a place from 0 (low) to 1 (high)."""
+    def value(self, part: float) -> float:
+        """Its value at this part of its range, from 0 (low) to 1 (high)."""
         if self.low > 0.0:
-            return float(self.low * (self.high / self.low) ** place)
-        return float(self.low + (self.high - self.low) * place)
-
-    def place(self, value: float) -> float:
-        """The place of a value."""
-        if self.low > 0.0:
-            return math.log(value / self.low) / math.log(self.high / self.low)
-        return (value - self.low) / (self.high - self.low)
+            return float(self.low * (self.high / self.low) ** part)
+        return float(self.low + (self.high - self.low) * part)
 
 
 def free_of(text: str, prior: str | None = None) -> Free:

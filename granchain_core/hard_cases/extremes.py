@@ -23,7 +23,7 @@ def scaled_difference(frequency: float, setting: MethodSetting, times: tuple[flo
     true = Engine(base, setting, 16).record(16).displacement
     worst = 0.0
     for s in times:
-        other = base.evolve(A0=s * base.A0, f=s**0.25 * base.f, D=s**0.25 * base.D, kappa=0.002)
+        other = base.scaled(s)
         worst = max(worst, float(np.abs(Engine(other, setting, 16).record(16).displacement - true).max()))
     return worst / float(np.abs(true).max())
 

@@ -176,14 +176,14 @@ class Batch:
         alike = chain is example.slots.chain or self.members.unequal is not None or is_uniform(scaled)
         return alike and scaled.slot_types == example.slot_types
 
-    def put_fine(self, member: int, scaled: ScaledChain, y: np.ndarray, refine: float, period: int, contraction: float,
+    def put_fine(self, member: int, scaled: ScaledChain, y: np.ndarray, refine: float, period: int, observed: float,
                  maxima: np.ndarray) -> None:
         """Make a scene a member, on the orbit y of a coarser run.
 
-        `contraction` is that run's observed contraction factor per orbit, `maxima` (3,) are its largest forces. The
-        member is checked once the difference from that orbit has decayed.
+        `observed` is that run's contraction factor per orbit, `maxima` (3,) are its largest forces. The member is
+        checked once the difference from that orbit has decayed.
         """
-        contraction = coarse_contraction(contraction)
+        contraction = coarse_contraction(observed)
         orbits = orbits_until_checked(contraction)
         self.put(member, scaled, y, refine, NEVER, orbits * period)
         self.state.search.fine_record[member] = period, contraction, *maxima, orbits, 0.0, 0.0

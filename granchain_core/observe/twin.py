@@ -34,7 +34,7 @@ LEAST_DISTANCE = 1e-11
 #: It is a tenth of `LEAST_DISTANCE`, so that no distance of the fit is missing.
 SYNCHRONISED = 1e-12
 #: Most periods of one twin: a minute or so.
-MOST_PERIODS = 20_000
+MOST_TWIN_PERIODS = 20_000
 #: Fraction of the usable periods after which fast multipliers count as decayed.
 _TRANSIENT = 1.0 / 3.0
 #: Fewest strobes from which a rate is taken.
@@ -183,7 +183,7 @@ def twin(scene: Scene, perturbation: float | State = 1e-6, periods: int = 60, sa
     one without any knowledge of the chain. Raises `BadInput`, `ComputationError`, `Cancelled`.
     """
     require_scene(scene)
-    periods = whole_number("periods =", periods, 1, MOST_PERIODS)
+    periods = whole_number("periods =", periods, 1, MOST_TWIN_PERIODS)
     samples = whole_number("samples =", samples, 1, 1000)
     spent = Stopwatch()
     settling = run_until_settled(scene, None, stop)

@@ -8,7 +8,8 @@ from .branch.normal_forms import NormalForm
 from .branch.point import BranchPoint
 from .branch.special import SpecialPoint
 from .branch.switch import switch_to_doubled
-from .orbit import Orbit, periodic_orbit, random_state
+from .find_orbit import periodic_orbit, random_state
+from .orbit import Orbit
 from .response import Response, response
 from .search import orbit_near_motion
 

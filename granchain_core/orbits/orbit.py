@@ -1,4 +1,4 @@
-"""Periodic orbits by Newton's method on the stroboscopic map, with their Floquet multipliers.
+"""A periodic orbit with its Floquet multipliers, and what is said of its stability.
 
 A fixed point of the n-period map is an orbit, stable or not: that is decided by its multipliers, the eigenvalues of
 the map's derivative. A forced orbit has no trivial multiplier 1. The observer of model (4), Zhang et al. 2016, is a
@@ -9,37 +9,22 @@ the first chain without the driver's contact, so its multipliers come from the s
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import ComputationError
 from ..execution.stop import Stop
-from ..inputs.checks import whole_number
-from ..integrate.scaling import scales_of
-from ..integrate.start import at_phase_0
-from ..results.regime import Regime, modulus_words
+from ..results.regime import modulus_words
 from ..scene import Scene
-from ..scene.refusals import require_scene
 from ..scene.state import State
-from ..steady.regime_criteria import LONGEST_LOCKED_PERIOD
-from ..steady.residuals import ACCEPTED_RESIDUAL, RESIDUAL_GOAL
-from ..steady.settling.advance import run_until_settled
-from ..steady.settling.nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS
 from ..tables import Column, Labelled, Table, axis, bead_axis, or_nan, provenance
 from ..tables.provenance import Attribute
 from ..tables.words import multiplier_columns, state_columns
 from .multiplier_errors import derivative_change, errors_of
-from .stroboscopic_map import FLOW_METHOD, Flow, StroboscopicMap, refuse_cut
+from .stroboscopic_map import FLOW_METHOD
 
-#: Why an orbit has period 1 where a start was given.
-NO_PERIOD_GIVEN = "period 1 was taken, because a start was given without a period"
-#: Newton's iterations at most.
-MOST_ITERATIONS = 12
 #: Multipliers smaller than this part of the largest are rounding.
 ROUNDING = 1e-13
-#: Most halvings of a Newton step before the iteration fails.
-_MOST_HALVINGS = 6
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -194,147 +179,6 @@ class Orbit(Labelled):
                 *([self.period_note] if self.period_note else [])]
 
 
-def periodic_orbit(scene: Scene, period: int | None = None, start: State | None = None, observer: bool = False,
-                   stop: Stop | None = None) -> Orbit:
-    """A periodic orbit, stable or not, by Newton's method.
-
-    Its Floquet multipliers are the eigenvalues of the map's derivative, computed with the orbit (docs/orbits.md).
-
-    Parameters
-    ----------
-    scene : Scene
-        The chain; its tension must not be cut.
-    period : int, optional
-        Period in drive periods. By default that of the steady state; 1 if the steady state is not periodic, or if
-        `start` is given. `Orbit.period_note` then says why.
-    start : State, optional
-        Where Newton's method begins; by default the steady state reached from rest.
-    observer : bool
-        Whether to compute the multipliers of the observer, model (4) of Zhang et al. 2016.
-    stop : Stop, optional
-        Ends the computation when another thread sets it.
-
-    Returns
-    -------
-    Orbit
-        The orbit that was found.
-
-    Raises
-    ------
-    BadInput
-        The period is out of range, or the scene cuts tension.
-    ComputationError
-        Newton's method did not converge; the message has its residuals.
-    Cancelled
-        `stop` was set.
-
-    Examples
-    --------
-    >>> from granchain_core import orbit, scene
-    >>> found = orbit(scene("sec2").evolve(N=2, f=2000.0))
-    >>> found.period, found.residual < 1e-10
-    (1, True)
-    >>> bool(abs(found.multipliers[0]) < 1.0)
-    True
-    """
-    require_scene(scene)
-    n = None if period is None else whole_number("period", period, 1, LONGEST_LOCKED_PERIOD)
-    refuse_cut(scene)
-    note = ""
-    if start is None:
-        settling = run_until_settled(scene, None, stop)
-        if n is None and settling.regime.period is None:
-            note = f"period 1 was taken, because the motion from rest is {_no_period(settling.regime)}"
-        n = n or settling.regime.period or 1
-        start = settling.engine.state
-    else:
-        if n is None:
-            note = NO_PERIOD_GIVEN
-        start = at_phase_0(scene, start, stop)
-    n = n or 1
-    stroboscopic_map = StroboscopicMap(scene, n, stop)
-    x = stroboscopic_map.inner(stroboscopic_map.engine.scaled.from_si(start))
-    x, flow, history = _newton(stroboscopic_map, x)
-    return replace(_orbit(scene, n, stroboscopic_map, x, flow, history, observer), period_note=note)
-
-
-def _no_period(regime: Regime) -> str:
-    """The regime of a motion without a period, in words."""
-    return f"not settled after {regime.periods_run} periods" if regime.name == "unsettled" else regime.name
-
-
-def random_state(scene: Scene, seed: int) -> State:
-    """A random start: normally distributed displacements and velocities in units of A0 and A0·φ."""
-    scales = scales_of(scene)
-    draw = np.random.default_rng(seed).standard_normal((2, scene.N))
-    return State(draw[0] * scales.length, draw[1] * scales.velocity)
-
-
-def _newton(stroboscopic_map: StroboscopicMap, x: np.ndarray) -> tuple[np.ndarray, Flow, list[float]]:
-    """Damped Newton iterations."""
-    flow = _flow(stroboscopic_map, x)
-    history = [stroboscopic_map.residual(flow.end, x)]
-    while history[-1] > RESIDUAL_GOAL and len(history) <= MOST_ITERATIONS:
-        step = _newton_step(stroboscopic_map, x, flow)
-        for halving in range(_MOST_HALVINGS):
-            trial = x + step / 2**halving
-            try:
-                after = _flow(stroboscopic_map, trial)
-            except ComputationError:  # a state too far away to be followed: a shorter step is nearer
-                continue
-            if stroboscopic_map.residual(after.end, trial) < history[-1]:
-                break
-        else:
-            break
-        x, flow = trial, after
-        history.append(stroboscopic_map.residual(flow.end, x))
-    if history[-1] > ACCEPTED_RESIDUAL:
-        residuals = ", ".join(f"{r:.1e}" for r in history)
-        raise ComputationError(f"Newton's method found no orbit of {stroboscopic_map.periods} drive periods near this "
-                               f"start: its residuals were {residuals}; give another period or start.",
-                               "no-convergence")
-    return x, flow, history
-
-
-def _dense(x: np.ndarray) -> bool:
-    return len(x) <= 2 * MOST_BEADS_WITH_MULTIPLIERS
-
-
-def _flow(stroboscopic_map: StroboscopicMap, x: np.ndarray) -> Flow:
-    """The flow from x, with the derivative where it is computed as a whole."""
-    return stroboscopic_map(x) if _dense(x) else stroboscopic_map(x, directions=np.zeros((len(x), 0)))
-
-
-def _newton_step(stroboscopic_map: StroboscopicMap, x: np.ndarray, flow: Flow) -> np.ndarray:
-    if not _dense(x):
-        from .krylov import newton_step  # scipy.sparse.linalg takes 0.2 s to load, which only long chains need
-
-        return newton_step(stroboscopic_map, x, flow.end)
-    try:
-        return np.linalg.solve(flow.derivative - np.eye(len(x)), x - flow.end)
-    except np.linalg.LinAlgError:
-        raise ComputationError("Newton's step does not exist: a multiplier is 1, as at a fold; move the knob a little.",
-                               "no-convergence") from None
-
-
-def _orbit(scene: Scene, n: int, stroboscopic_map: StroboscopicMap, x: np.ndarray, flow: Flow, history: list[float],
-           observer: bool) -> Orbit:
-    liouville = monodromy = observer_monodromy = None
-    if _dense(x):
-        monodromy, multipliers = flow.derivative, sorted_multipliers(flow.derivative)
-        liouville = _liouville(multipliers, flow.log_determinant)
-        observer_monodromy = stroboscopic_map(x, observer=True).derivative if observer else None
-        observer_multipliers = None if observer_monodromy is None else sorted_multipliers(observer_monodromy)
-    else:
-        from .krylov import leading_multipliers
-
-        multipliers = leading_multipliers(stroboscopic_map, x)
-        observer_multipliers = leading_multipliers(stroboscopic_map, x, observer=True) if observer else None
-    scaled = stroboscopic_map.engine.scaled
-    return Orbit(scene, n, scaled.to_si(scaled.embed(x)), history[-1], tuple(history), multipliers, liouville,
-                 flow.contact_events, observer_multipliers, monodromy, observer_monodromy)
-
-
 def _is_certain(multipliers: np.ndarray, errors: np.ndarray | None) -> bool:
     """Whether all multipliers are inside the unit circle by more than their errors, or at least one is outside."""
     sizes = np.abs(multipliers)
@@ -349,7 +193,7 @@ def _stability_words(multipliers: np.ndarray, errors: np.ndarray | None) -> str:
     return f"stability not decided (|μ| {modulus_words(sizes[nearest])} ± {errors[nearest]:.0e})"
 
 
-def _liouville(multipliers: np.ndarray, log_determinant: float) -> float | None:
+def liouville_if_known(multipliers: np.ndarray, log_determinant: float) -> float | None:
     """Error of Liouville's formula; None where the smallest multiplier is only rounding."""
     sizes = np.abs(multipliers)
     return None if sizes.min() < ROUNDING * sizes.max() else liouville_error(multipliers, log_determinant)

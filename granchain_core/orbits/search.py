@@ -25,7 +25,8 @@ from ..steady.regime_criteria import LONGEST_LOCKED_PERIOD
 from ..steady.residuals import least_displacement
 from ..steady.returns import least_period
 from ..steady.settling.advance import run_until_settled
-from .orbit import NO_PERIOD_GIVEN, Orbit, periodic_orbit
+from .find_orbit import NO_PERIOD_GIVEN, periodic_orbit
+from .orbit import Orbit
 from .stroboscopic_map import SAME_ORBIT_DISTANCE, StroboscopicMap, refuse_cut
 
 #: Closest returns from which Newton's method is started.

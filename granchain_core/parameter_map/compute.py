@@ -18,7 +18,7 @@ from ..steady.steady_state import SteadyState
 from .cells import ParameterMap, cell_of, empty_cells
 from .grid import Axis, Grid
 from .scheduled import iter_blocks
-from .starts import by_structure, starts_of
+from .starts import by_kernel, starts_of
 
 
 def iter_parameter_map(grid: Grid, missing: Sequence[int] | np.ndarray | None = None,
@@ -30,7 +30,7 @@ def iter_parameter_map(grid: Grid, missing: Sequence[int] | np.ndarray | None = 
     are then abandoned. `pause` is called before a cell is begun and may wait.
     """
     wanted = set(range(grid.size) if missing is None else (int(number) for number in missing))
-    groups = by_structure(grid, [int(number) for number in grid.coarse_first() if int(number) in wanted])
+    groups = by_kernel(grid, [int(number) for number in grid.coarse_first() if int(number) in wanted])
     for group in groups:
         yield from settle_on_all_cores(starts_of(grid, group), stop, workers, pause)
         if stop:

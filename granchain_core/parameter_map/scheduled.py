@@ -13,7 +13,7 @@ from ..scheduler import dealt, results
 from ..steady.batch.starts import settle_starts
 from .cells import cell_of
 from .grid import Axis, Grid
-from .starts import by_structure, starts_of
+from .starts import by_kernel, starts_of
 
 #: Cells of one block: some seconds of work, so that sending it costs nothing.
 CELLS_IN_TASK = 256
@@ -22,7 +22,7 @@ CELLS_IN_TASK = 256
 def block_cells(grid: Grid, numbers: Sequence[int], stop: Stop | None = None) -> np.ndarray:
     """The cells with these numbers, computed in this thread: the work that is handed to a scheduler as one block."""
     stop = Stop() if stop is None else stop
-    found = [cell_of(result) for group in by_structure(grid, numbers)
+    found = [cell_of(result) for group in by_kernel(grid, numbers)
              for result in settle_starts(starts_of(grid, group), stop)]
     return np.array(found)
 

@@ -13,8 +13,11 @@ def starts_of(grid: Grid, numbers: Iterable[int]) -> Iterator[Start]:
     return (Start(grid.cell(number), number=number) for number in numbers)
 
 
-def by_structure(grid: Grid, numbers: Iterable[int]) -> list[list[int]]:
-    """The cells in groups that share a kernel: an axis that reaches 0, or equal beads, switches its effect off."""
+def by_kernel(grid: Grid, numbers: Iterable[int]) -> list[list[int]]:
+    """The cells in groups that share a kernel: an axis that reaches 0, or equal beads, switches its effect off.
+
+    Effects by name and equal beads tell them apart, because a map has one N; `structure` (precompile/warm.py) has more.
+    """
     groups: dict[tuple[bool, tuple[str, ...]], list[int]] = {}
     for number in numbers:
         cell = grid.cell(number)

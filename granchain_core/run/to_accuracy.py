@@ -32,7 +32,7 @@ from .budget import BUDGET, check_budget
 from .run_checkpoints import Reached, RunCheckpoints
 
 #: [no threshold] Most drive periods of one run.
-MOST_PERIODS = 10_000_000
+MOST_RUN_PERIODS = 10_000_000
 #: [no threshold] Stated error above which a motion may be chaotic: finer computations do not help then.
 _CHAOS_SUSPECTED_ABOVE = 0.3
 #: [no threshold] Such a motion is refined until its energy residual is below this factor times the accuracy: energies
@@ -172,8 +172,8 @@ def _refined(attempt: Callable[[MethodSetting], _Attempt], scene: Scene, setting
 
 def _sizes(scene: Scene, periods: int, record: int, samples: int) -> tuple[int, int, int]:
     """The three numbers as ints, checked."""
-    periods = whole_number("periods =", periods, 0, MOST_PERIODS)
-    record = whole_number("record =", record, 1, MOST_PERIODS)
+    periods = whole_number("periods =", periods, 0, MOST_RUN_PERIODS)
+    record = whole_number("record =", record, 1, MOST_RUN_PERIODS)
     samples = whole_number("samples =", samples, 1, MOST_SAMPLES)
     rows = record * samples * scene.N
     if rows > MOST_RECORDED:

@@ -13,7 +13,8 @@ from .checked import checked_fields, checked_values
 from .description import Description
 from .docstring import with_knobs
 from .effects import effects_of, latex
-from .hertz import EXPONENT
+from .hertz import EXPONENT, RATE_POWER
+from .laws import LAWS
 from .quantities import QUANTITIES
 from .validity import warnings
 
@@ -119,6 +120,26 @@ class Scene(Description):
             k = float(kappa) * new.K * new.A0 ** (EXPONENT - 1.0)
             new = _with_values(new, {"k": QUANTITIES["k"].check(k)})
         return new
+
+    def scaled(self, s: float) -> Scene:
+        """The chain with s times the amplitude that moves alike (docs/model.md, "Scaled variables").
+
+        (A0, f, D, F0) → (s A0, s^{1/4} f, s^{1/4 − a} D, s^{3/2} F0) at fixed κ, with the exponent a of the damping
+        law. Displacements are s times as large, velocities s^{5/4}, forces s^{3/2}; multipliers are the same. Raises
+        `BadInput` where a value leaves its range.
+
+        Examples
+        --------
+        >>> from granchain_core import scene
+        >>> round(scene("sec2").scaled(2.0).f, 5)
+        404.33042
+        """
+        a = LAWS[self.dissipation].exponent if self.dissipation in LAWS else 0.0
+        speed = s ** (1.0 + RATE_POWER)
+        new = self.evolve(A0=s * self.A0, f=s**RATE_POWER * self.f, D=s ** (RATE_POWER - a) * self.D,
+                          F0=s**EXPONENT * self.F0, strike=speed * self.strike, kappa=self.kappa)
+        thrown = tuple((bead, speed * velocity) for bead, velocity in self.start_velocity)
+        return _with_values(new, {"start_velocity": thrown})
 
 
 def _with_values(scene: Scene, values: dict[str, Any]) -> Scene:

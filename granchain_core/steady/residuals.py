@@ -2,11 +2,12 @@
 
 An orbit's residual is the change of its state by the map, of displacements and of w, each relative to its size. Beads
 that follow a slow drive pass their rest positions at phase 0; their displacements there are rounding, and no size. So
-displacements have a least size: a part of the amplitude that w has at the scaled drive
-frequency β.
+displacements have a least size: a part of the amplitude that w has at the scaled drive frequency β.
 """
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -24,6 +25,11 @@ FIXED_STEP_RESIDUAL_GOAL = 1e-9
 ACCEPTED_FIXED_STEP_RESIDUAL = 1e-7
 #: [no threshold] Least size of displacements at phase 0, relative to the amplitude of w over β.
 _LEAST_DISPLACEMENT = 1e-3
+
+
+def formatted(residuals: Sequence[float]) -> str:
+    """Residuals in words."""
+    return ", ".join(f"{r:.1e}" for r in residuals)
 
 
 def least_displacement(x: np.ndarray, beta: float) -> float:

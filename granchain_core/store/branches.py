@@ -50,8 +50,8 @@ def write_branch(file: h5py.File, branch: Branch) -> None:
     """Write a branch with what its continuation needs to go on."""
     write_result(file, branch)
     turns = file.create_group("turns")
-    for place, arm in enumerate(branch.half_branches):
-        turns.create_dataset(str(place), data=arm.points[-1].turns)
+    for place, half in enumerate(branch.half_branches):
+        turns.create_dataset(str(place), data=half.points[-1].turns)
 
 
 def load_branch(path: str | Path) -> Branch:
@@ -76,40 +76,39 @@ def _read(file: File) -> Branch:
     place = _places(file, "branch/arm", len(points), len(header["arms"]))
     special = _read_special(file, axis)
     special_place = _places(file, "special/arm", len(special), len(header["arms"]))
-    arms = []
-    for number, arm in enumerate(header["arms"]):
+    half_branches = []
+    for number, half in enumerate(header["arms"]):
         mine = [p for p, where in zip(points, place, strict=True) if where == number]
         if not mine:
-            raise Refused(f"arm {number} has no orbits")
+            raise Refused(f"half-branch {number} has no orbits")
         turns = file.numbers(f"turns/{number}", (*file.shape(f"turns/{number}")[:1], _TURN))
         object.__setattr__(mine[-1], "turns", turns)
-        arms.append(HalfBranch(arm["direction"], mine,
-                        [s for s, where in zip(special, special_place, strict=True) if where == number],
-                        arm["step"], arm["ended"], arm["reason"]))
-    return Branch(axis, header["period"], tuple(arms))
+        here = [s for s, where in zip(special, special_place, strict=True) if where == number]
+        half_branches.append(HalfBranch(half["direction"], mine, here, half["step"], half["ended"], half["reason"]))
+    return Branch(axis, header["period"], tuple(half_branches))
 
 
 def _header(found: Any) -> dict[str, Any]:
     """The attribute `branch`, each entry of its kind; one half-branch or two."""
-    arms = found.pop("arms", None) if isinstance(found, dict) else None
+    half_branches = found.pop("arms", None) if isinstance(found, dict) else None
     header = entries("branch", found, {"knob": "text", "start": "number", "end": "number", "period": "whole"})
-    if not isinstance(arms, list) or not 1 <= len(arms) <= 2:
-        raise Refused("its attribute branch does not have one arm or two")
+    if not isinstance(half_branches, list) or not 1 <= len(half_branches) <= 2:
+        raise Refused("its attribute branch does not have one half-branch or two")
     if not 1 <= header["period"] <= LONGEST_LOCKED_PERIOD:
         raise Refused(f"its period {header['period']} is outside 1 to {LONGEST_LOCKED_PERIOD}")
-    header["arms"] = [entries("arm", arm, {"direction": "number", "step": "text", "ended": "text", "reason": "text"})
-                    for arm in arms]
-    for arm in header["arms"]:
-        arm["step"] = finite("step", float.fromhex(arm["step"]))
-        if arm["direction"] not in (-1, 1):
-            raise Refused(f"direction {arm['direction']} is neither 1 nor -1")
-        one_of("ended", arm["ended"], _ENDS)
+    header["arms"] = [entries("arm", half, {"direction": "number", "step": "text", "ended": "text", "reason": "text"})
+                      for half in half_branches]
+    for half in header["arms"]:
+        half["step"] = finite("step", float.fromhex(half["step"]))
+        if half["direction"] not in (-1, 1):
+            raise Refused(f"direction {half['direction']} is neither 1 nor -1")
+        one_of("ended", half["ended"], _ENDS)
     return header
 
 
-def _places(file: File, path: str, count: int, arms: int) -> np.ndarray:
+def _places(file: File, path: str, count: int, half_branches: int) -> np.ndarray:
     """The half-branch of each row."""
-    return within(f"/{path}", file.numbers(path, (count,), "i"), 0, arms - 1)
+    return within(f"/{path}", file.numbers(path, (count,), "i"), 0, half_branches - 1)
 
 
 def _read_orbits(file: File, group: str, axis: KnobAxis) -> list[BranchPoint]:

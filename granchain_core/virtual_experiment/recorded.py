@@ -48,7 +48,7 @@ MOST_RECORDS = 10_000
 #: Most values of the model's motion behind one record, beads times samples.
 MOST_VALUES = 20_000_000
 #: Most drive periods of a record.
-MOST_PERIODS = 10_000
+MOST_RECORD_PERIODS = 10_000
 #: Where a series may begin.
 STARTS = ("settled", "rest")
 #: Largest seed.
@@ -98,7 +98,7 @@ def virtual_series_csv(scene: Scene, periods: int, sensors: Sensors, seed: int =
     (True, 150)
     """
     refuse_undriven(scene)
-    periods = whole_number("periods =", periods, 1, MOST_PERIODS)
+    periods = whole_number("periods =", periods, 1, MOST_RECORD_PERIODS)
     count = round(periods * sensors.rate / scene.f)
     check_range("samples (periods · rate / f) =", count, 8, MOST_SAMPLES)
     random = np.random.default_rng(whole_number("seed =", seed, 0, _LARGEST_SEED))
@@ -164,7 +164,7 @@ def virtual_curve_csv(scene: Scene, frequencies: Sequence[float] | np.ndarray, s
     refuse_undriven(scene)
     repeats = whole_number("repeats =", repeats, 1, 100)
     check_range("scatter =", scatter, 0.0, 0.5)
-    periods = whole_number("periods =", periods, 1, MOST_PERIODS)
+    periods = whole_number("periods =", periods, 1, MOST_RECORD_PERIODS)
     count = len(frequencies) * repeats
     check_range("records (frequencies · repeats) =", count, 1, MOST_RECORDS)
     random, rows = np.random.default_rng(whole_number("seed =", seed, 0, _LARGEST_SEED)), []

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from chains import scaled
 
 import granchain_core
 from granchain_core import BadInput, ComputationError, Scene, State, scene, settle
@@ -74,7 +73,7 @@ def test_a_curve_goes_through_its_rows_and_scales(points: dict[str, BifurcationP
     assert curve[1].x == pytest.approx(points["neimark_sacker"].x, rel=1e-9)
     # the curve at another D, point by point
     s = 2.0
-    other = scaled(shown, s)
+    other = shown.scaled(s)
     again = points_of_curve(other, "neimark_sacker", granchain_core.orbit(other, 1).state, [s * row for row in rows], period)
     for a, b in zip(curve, again, strict=True):
         assert b.x == pytest.approx(s**0.25 * a.x, rel=1e-6)  # |μ| is met to 1e-6

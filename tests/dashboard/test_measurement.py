@@ -197,6 +197,28 @@ def test_a_series_goes_over_the_force_trains_and_moves_with_the_picture(dashboar
     assert all(len(one[0].data_source.data["time"]) == 0 for one in lines)
 
 
+def test_the_model_passes_the_low_pass_of_the_sensors(dashboard: Dashboard) -> None:
+    """A record of sensors of 2 kHz, of the same scene: only with their bandwidth is the difference the noise."""
+    chain = scene("sec2")
+
+    def differences(message: dict[str, Any]) -> list[float]:
+        dashboard.views.tabs.update_state(misfit=None)
+        dashboard.received(message)
+        dashboard.run_callbacks_until(lambda: "rms" in str(dashboard.views.tabs.state.get("misfit")))
+        return [float(one) for one in re.findall(r"([0-9.e-]+) N for the", dashboard.views.tabs.state["misfit"]["sentence"])]
+
+    show(dashboard)
+    record = virtual_series_csv(chain, 12, Sensors(rate=256.0 * chain.f, noise=0.003, bandwidth=2000.0)).encode()
+    without = differences(sent(record))
+    given = differences({"do": "measurement-bandwidth", "value": "2000"})
+    assert min(without) > 0.015 and all(0.002 < one < 0.004 for one in given)
+    assert "a low-pass of 2000 Hz" in dashboard.views.tabs.state["misfit"]["sentence"]
+    assert differences({"do": "measurement-bandwidth", "value": ""}) == without
+    for wrong in ("2 kHz", "0.5", None):
+        dashboard.received({"do": "measurement-bandwidth", "value": wrong})
+        assert "bandwidth" in dashboard.session.sentence
+
+
 def test_a_measured_displacement_goes_over_the_drive(dashboard: Dashboard) -> None:
     """Its zero is arbitrary; moved by the forces, it is the drive of the picture."""
     chain = scene("sec2")

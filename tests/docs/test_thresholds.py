@@ -23,7 +23,7 @@ from granchain_core.orbits.branch import ends, normal_forms, special, steps
 from granchain_core.parameter_map import scheduled
 from granchain_core.results.regime import Regime
 from granchain_core.steady import exponent_measurements, regime_criteria, residuals
-from granchain_core.steady.batch import job, threads
+from granchain_core.steady.batch import job, jobs_in_batch, threads
 from granchain_core.steady.curve import resonance_curve
 from granchain_core.steady.settling import nearby_orbit, regime_decisions, single_chain
 from tools.thresholds import _REGIMES, marked_constants, printed
@@ -106,7 +106,11 @@ NUMBERS = {2: "two", 3: "three", 4: "four"}
         r"The measurement begins after (\d+) periods": regime_decisions.EXAMINED_AFTER, r"with at least (\d+) strobes": regime_criteria.SLOW_RECORD,
         r"Its first (\d+) periods do not count": exponent_measurements.TURNING_PERIODS}),
     ("docs/regimes.md", {
-        r"not decided after (\d+) periods is settled alone": regime_decisions.MOST_PERIODS,
+        r"drive periods, at most \| (\d+); \d+ for a draft": regime_decisions.MOST_SETTLING_PERIODS, r"\| \d+; (\d+) for a draft": jobs_in_batch._DRAFT_PERIODS,
+        r"for a draft \| (\d+); [\d,]+ near an unstable": regime_decisions.MOST_SETTLING_PERIODS,
+        r"; ([\d,]+) near an unstable orbit \|": f"{regime_decisions.MOST_SETTLING_PERIODS * regime_decisions._DEPARTURE_FACTOR:,}",
+        r"The orbit near the motion\.\* After (\d+) periods Newton": regime_decisions.EXAMINED_AFTER,
+        r"not decided after (\d+) periods is settled alone": regime_decisions.MOST_SETTLING_PERIODS,
         r"above 0, below ([\d.]+) \| P would be above `_LONGEST_COMPARISON`": round(regime_criteria._BOUNDED_GROWTH / regime_criteria._LONGEST_COMPARISON, 4),
         r"computed it is r, at most ([\d.]+), and": Regime("periodic", 1, 1.0, None, 1).assumed_contraction, r"decay was seen it is ([\d.]+) \(": Regime("periodic", 1, None, None, 1).assumed_contraction,
         r"\| ([\d.]+) or more \| measured": round(regime_criteria._BOUNDED_GROWTH / regime_criteria._LONGEST_COMPARISON, 4),
@@ -117,7 +121,7 @@ NUMBERS = {2: "two", 3: "three", 4: "four"}
         r"multiplied a distance by ([\de]+)\.": float(f"{math.exp(regime_criteria.CLEAR_GROWTH * regime_decisions.EXAMINED_AFTER):.0e}")}),
     ("docs/cost.md", {
         r"such a cell runs (\d+) periods or more": regime_decisions.EXAMINED_AFTER, r"exponent, (\d+) periods at a time": exponent_measurements.MEASURED_PERIODS,
-        r"up to (\d+) periods for the coarse run": regime_decisions.MOST_PERIODS, r"from rest; (\d+) points are one task": resonance_curve.POINTS_IN_TASK,
+        r"up to (\d+) periods for the coarse run": regime_decisions.MOST_SETTLING_PERIODS, r"from rest; (\d+) points are one task": resonance_curve.POINTS_IN_TASK,
         r"blocks of (\d+) points": resonance_curve.POINTS_IN_TASK, r"blocks of (\d+) cells": scheduled.CELLS_IN_TASK}),
     ("docs/parameter-map.md", {r"sends blocks of (\d+) cells": scheduled.CELLS_IN_TASK}),
     ("docs/hard-cases.md", {r"irregular run \((\d+) periods of two": exponent_measurements.MEASURED_PERIODS}),

@@ -8,7 +8,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from chains import scaled
 
 from granchain_core import scene
 from tests.numerics.forces.draw import FEW
@@ -77,7 +76,7 @@ def test_the_computation_scales_and_agrees_with_itself_and_with_scipy(law: str, 
     """
     s = 3.0
     one = scene("sec2").evolve(dissipation=law, tension=tension, kappa=0.01)
-    found, nearly, other = located(one, 1, 2), located(one, 1, 2, tolerance=1e-10), located(scaled(one, s), 1, 2)
+    found, nearly, other = located(one, 1, 2), located(one, 1, 2, tolerance=1e-10), located(one.scaled(s), 1, 2)
     assert nearly.maxima == pytest.approx(found.maxima, rel=5e-9)
     assert other.maxima == pytest.approx(s**1.5 * found.maxima, rel=1e-9)
     true = oracle.located(one, 3, 16, 1e-11, 60.0)[16:]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import replace
 
 import numpy as np
@@ -14,6 +13,7 @@ from granchain_core.observe import Twin, observer_stability, twin
 from granchain_core.observe.drift import TRANSLATION, is_drift
 from granchain_core.observe.pair import Pair
 from granchain_core.observe.twin import multipliers_of, rate_of
+from granchain_core.orbits import damped_newton
 from granchain_core.scene.state import rest
 
 FREE, FOUNDED = scene("fig11-free"), scene("fig11-founded")
@@ -136,7 +136,7 @@ def test_how_much_foundation_makes_an_observer_stable() -> None:
 
 
 def test_a_value_without_an_orbit_says_why(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sys.modules[granchain_core.orbit.__module__], "MOST_ITERATIONS", 0)  # Newton's method ends before its first step
+    monkeypatch.setattr(damped_newton, "MOST_STEPS", 0)  # Newton's method ends before its first step
     (point,) = observer_stability(FREE, "f", [340.0], period=2).points
     assert np.isnan(point.observer_largest) and "Newton" in point.failure and point.period is None
 

@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from chains import scaled
 
 import granchain_core
 from granchain_core import BadInput, ComputationError, Scene, State, branch, orbit, run, scene, settle
@@ -153,7 +152,7 @@ def test_special_points_scale_with_the_chain(doubling: Branch) -> None:
     s, first = 7.0, doubling.points[0]
     state = doubling.state(first)
     start = State(s * state.displacement, s**1.25 * state.velocity)
-    other = granchain_core.branch(scaled(scene("sec2"), s), "f", s**0.25 * first.knob, s**0.25 * 250.0, 1, start)
+    other = granchain_core.branch(scene("sec2").scaled(s), "f", s**0.25 * first.knob, s**0.25 * 250.0, 1, start)
     mine, its = the(doubling, "period_doubling"), the(other, "period_doubling")
     assert its.knob / s**0.25 == pytest.approx(mine.knob, rel=1.1e-5)  # the half widths of both intervals
 

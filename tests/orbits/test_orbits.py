@@ -6,7 +6,6 @@ import json
 
 import numpy as np
 import pytest
-from chains import scaled
 from linear_chain import linear_multipliers
 
 import granchain_core
@@ -76,7 +75,7 @@ def test_an_orbit_is_found_again_with_twice_its_period_and_squared_multipliers()
 
 
 def test_scaled_chains_have_the_same_multipliers() -> None:
-    a, b = granchain_core.orbit(scene("sec2")), granchain_core.orbit(scaled(scene("sec2"), 7.0))
+    a, b = granchain_core.orbit(scene("sec2")), granchain_core.orbit(scene("sec2").scaled(7.0))
     assert np.abs(b.multipliers) == pytest.approx(np.abs(a.multipliers), abs=1e-8)
 
 

@@ -14,7 +14,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray
-from chains import scaled
 
 from app.cli import main
 from granchain_core import BadInput, resonance_curve, scene, settle
@@ -55,7 +54,7 @@ def test_every_cell_is_the_curves_point_at_its_amplitude(found: ParameterMap) ->
 def test_scaled_cells_are_the_same(found: ParameterMap) -> None:
     # along a tilted line of the map
     s = AMPLITUDES[1] / AMPLITUDES[0]
-    other = parameter_map(scaled(scene("sec2"), s), ("f", s**0.25 * FREQUENCIES), ("A0", s * AMPLITUDES))
+    other = parameter_map(scene("sec2").scaled(s), ("f", s**0.25 * FREQUENCIES), ("A0", s * AMPLITUDES))
     assert (other.cells["regime"] == found.cells["regime"]).mean() > 0.9  # chaos from rest amplifies rounding
     both = (other.cells["regime"] == 0) & (found.cells["regime"] == 0) & (other.cells["period"] == found.cells["period"])
     assert both.sum() >= 20

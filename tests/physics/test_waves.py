@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from chains import scaled
 
 from granchain_core import State, run, scene
 from granchain_core.hard_cases.chains import Bench
@@ -114,7 +113,7 @@ def test_weakly_driven_precompressed_chain_answers_as_the_linear_lattice_with_da
 def test_scaling_of_amplitude_frequency_and_damping_leaves_the_scaled_orbit_alone():
     one = scene("sec2").evolve(kappa=0.001, accuracy=1e-9)
     s = 7.0
-    a, b = (run(x, periods=0, record=5, samples=16) for x in (one, scaled(one, s)))
+    a, b = (run(x, periods=0, record=5, samples=16) for x in (one, one.scaled(s)))
     # equal up to rounding of the parameters, amplified by the motion's sensitivity of about 4 (reference) and by the
     # steps that rounding moves: far below the accuracy asked for
     np.testing.assert_allclose(b.displacement, s * a.displacement, atol=2e-9 * s * np.abs(a.displacement).max())

@@ -46,7 +46,7 @@ def test_a_computed_multiplier_is_kept_and_is_what_the_errors_rest_on(monkeypatc
     How slowly it seems to decay before that depends on the width of vectors; here any decay needs multipliers.
     One-sided differences are good to 1e-4 of the map, whose |μ| the coarse steps move by as much.
     """
-    monkeypatch.setattr("granchain_core.steady.batch.job._SLOW_DECAY", 0.5)
+    monkeypatch.setattr("granchain_core.steady.batch.job._SLOW_CONTRACTION", 0.5)
     found = results([400.0])[400.0]
     exact = settle(scene("sec2").evolve(f=400.0, accuracy=1e-6))
     assert found.regime.followed and found.regime.orbit_found_by == "extrapolation"

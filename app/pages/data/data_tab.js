@@ -135,6 +135,19 @@ function misfitTable({ sentence, rows, left }) {
   return [paragraph(sentence, "verdict"), ...(rows.length ? [table(titles, body)] : []), ...more];
 }
 
+// The bandwidth of the sensors with which a series was measured: the model's forces pass their low-pass.
+function bandwidthField(model) {
+  const field = element("input", {
+    type: "number",
+    min: 1,
+    value: model.state.bandwidth ?? "",
+    title: "empty if it is not known: the model's forces are then means over the sampling interval",
+    ariaLabel: "bandwidth of the force sensors in hertz",
+  });
+  field.addEventListener("change", () => model.send_msg({ do: "measurement-bandwidth", value: field.value }));
+  return element("label", { className: "row" }, "bandwidth of the force sensors ", field, " Hz");
+}
+
 export function dataTab(model) {
   const { understood, question, misfit, series, endings } = model.state;
   const ariaLabel = "your measured curve or series";
@@ -155,5 +168,6 @@ export function dataTab(model) {
   const asking = question ? questionForm(model, question) : [paragraph(understood || FORM, "soft")];
   const awaited = series ? "the picture is settled" : "the curve from rest is complete";
   const waits = understood && !misfit ? [paragraph(`The misfit appears once ${awaited}.`, "soft")] : [];
-  return { content: [choice, ...asking, ...(question ? [] : misfit ? misfitTable(misfit) : waits)] };
+  const sensors = series && !question ? [bandwidthField(model)] : [];
+  return { content: [choice, ...asking, ...sensors, ...(question ? [] : misfit ? misfitTable(misfit) : waits)] };
 }

@@ -25,7 +25,9 @@ from granchain_core.experiment import (
 )
 from granchain_core.experiment.formats import TEXT, format_of
 from granchain_core.experiment.reader import TABLE_KINDS
+from granchain_core.experiment.sensors import Sensors
 from granchain_core.experiment.units import QUANTITIES, UNITS
+from granchain_core.inputs.text import number_in
 from granchain_core.scene import ASSETS
 from granchain_core.scene.refusals import refuse_undriven
 
@@ -73,11 +75,14 @@ class DataPage(Page):
         self._reading = Task(host, FILES, report_nothing, "Reading the measurement", report_to_host=True)
         self._recording = Task(host, LONG, report_nothing, "The virtual experiment", report_to_host=True)
         self._name, self._answers = "", Answers()
+        #: The sensors of a series, whose low-pass the model's forces pass.
+        self._sensors = Sensors()
         #: The file, for as long as a question about it is open.
         self._content = b""
         self.actions: Actions = {UPLOAD: self._read, "measurement-answer": self._answer,
                                  "measurement-too-large": self._too_large, "measurement-remove": self._remove,
-                                 "measurement-sample": self._sample, "measurement-virtual": self._virtual}
+                                 "measurement-sample": self._sample, "measurement-virtual": self._virtual,
+                                 "measurement-bandwidth": self._set_bandwidth}
 
     def picture_ready(self, settled: Settled) -> None:
         """Lay the series over the new picture; over a preview, no difference is stated."""
@@ -85,7 +90,7 @@ class DataPage(Page):
         if not isinstance(series, Series):
             return
         if settled.final:
-            self._moving.start(partial(self._overlay_in_thread, series, settled.run))
+            self._moving.start(partial(self._overlay_in_thread, series, settled.run, self._sensors))
         else:
             self._tabs.update_state(misfit=None)
 
@@ -136,11 +141,24 @@ class DataPage(Page):
             "quantities": list(CHOICES.items()),
             "units": {name: list(UNITS[QUANTITIES[name]]) for name in CHOICES}})
 
-    def _overlay_in_thread(self, series: Series, run: Run, job: Job) -> None:
+    def _set_bandwidth(self, message: dict[str, Any]) -> None:
+        """Take the bandwidth of the force sensors [Hz], without one when the field is empty, and compare again."""
+        given = message.get("value")
+        text = given.strip() if isinstance(given, str) else "?"
+        value = number_in(text) if text else math.inf
+        if value is None:
+            raise BadInput(f"The bandwidth {text[:40]!r} is not a number of Hz; leave the field empty if it is not "
+                           "known.")
+        self._sensors = Sensors(bandwidth=value)
+        self._tabs.update_state(bandwidth=text)
+        if self._host.session.settled is not None:
+            self.picture_ready(self._host.session.settled)
+
+    def _overlay_in_thread(self, series: Series, run: Run, sensors: Sensors, job: Job) -> None:
         """In a worker thread: where the series lies over the run."""
         from granchain_core.fit.overlay import overlay  # imported late: only a fit needs it
 
-        job.next_tick(self._show_overlay, overlay(series, run))
+        job.next_tick(self._show_overlay, overlay(series, run, sensors))
 
     def _show_overlay(self, found: Overlay | None) -> None:
         self._host.show_measured_series(found)
@@ -176,7 +194,7 @@ class DataPage(Page):
         self._recording.start(partial(self._record_in_thread, self._host.session.scene))
 
     def _record_in_thread(self, scene: Scene, job: Job) -> None:
-        from granchain_core.virtual_experiment import Sensors, virtual_series_csv  # imported late: only a fit needs it
+        from granchain_core.virtual_experiment import virtual_series_csv  # imported late: only a fit needs it
 
         check_first_picture(scene)
         job.give_way()
@@ -201,7 +219,8 @@ class DataPage(Page):
         self._host.session.measured = None
         self._host.show_measured_curve(None)
         self._host.show_measured_series(None)
-        self._tabs.update_state(understood="", question=None, series="", misfit=None)
+        self._sensors = Sensors()
+        self._tabs.update_state(understood="", question=None, series="", misfit=None, bandwidth="")
 
 
 def _settled(scene: Scene, stop: Stop) -> Settled:

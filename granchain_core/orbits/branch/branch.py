@@ -23,7 +23,7 @@ from ...scene import Amplitude, Scene
 from ...scene.state import State
 from ...tables import Labelled, Table, amplitude_attribute, provenance
 from ...tables.provenance import Attribute
-from ..orbit import periodic_orbit
+from ..find_orbit import periodic_orbit
 from ..stroboscopic_map import FLOW_METHOD
 from .axis import STATIC_OVERLAP, KnobAxis
 from .equations import BranchEquations

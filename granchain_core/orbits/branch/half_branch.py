@@ -18,11 +18,12 @@ import numpy as np
 
 from ...errors import Cancelled, ComputationError
 from ...execution.cores import usable_cores
+from ...steady.residuals import formatted
 from .between import Between
 from .criticality import with_normal_forms
 from .ends import Ending, Ends
 from .equations import BranchEquations, Solved
-from .newton import Near, formatted
+from .newton import Near
 from .point import BranchPoint, recorded, unrecorded
 from .special import SpecialPoint, special_between
 from .steps import FIRST_STEP, LARGEST_CORRECTION, LEAST_COSINE, SHORTEST_STEP, next_step, predicted

@@ -19,7 +19,7 @@ from typing import Protocol
 import numpy as np
 
 from ...errors import ComputationError
-from ...steady.residuals import ACCEPTED_RESIDUAL, RESIDUAL_GOAL, orbit_change
+from ...steady.residuals import ACCEPTED_RESIDUAL, RESIDUAL_GOAL, formatted, orbit_change
 from ..stroboscopic_map import TOLERANCE, Flow, StroboscopicMap
 
 #: [branch] Tolerance of the rough map, the flow where exactness is not needed.
@@ -259,8 +259,3 @@ class Newton:
 
     def _failure(self) -> ComputationError:
         return ComputationError(f"Newton's residuals were {formatted(self.residuals)}.", "no-convergence")
-
-
-def formatted(residuals: list[float] | tuple[float, ...]) -> str:
-    """Residuals in words."""
-    return ", ".join(f"{r:.1e}" for r in residuals)

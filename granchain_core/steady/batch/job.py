@@ -32,15 +32,16 @@ from ..regime_criteria import SLOW_RECORD, converging
 from ..settling.advance import MOST_SETTLING_STEPS
 from ..settling.nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS, seen_modulus
 from ..settling.refine_orbit import FARTHEST_FROM_ORBIT
-from ..settling.regime_decisions import EXAMINED_AFTER, MOST_PERIODS
+from ..settling.regime_decisions import EXAMINED_AFTER, MOST_SETTLING_PERIODS
 from ..steady_state import IRREGULAR_PERIODS, SteadyState
 
 #: [no threshold] Steps of the fine run of a batch for one of the coarse run.
 FINE_STEPS_PER_COARSE = 3
 #: [no threshold] Setting for the largest forces of an orbit where they jump: finer than the batch that found the orbit.
 _LOCATED_SETTING = fixed_step_setting(8)
-#: [period n] A batch: an orbit found by extrapolation needs multipliers if its decay per orbit is above this.
-_SLOW_DECAY = 0.998
+#: [period n] A batch: an orbit found by extrapolation needs multipliers if its contraction factor per orbit is above
+#: this.
+_SLOW_CONTRACTION = 0.998
 #: [period n] A batch: such an orbit, or one near which changes grew in the fine run, is accepted if its largest |μ|,
 #: by one-sided differences, is below this, else settled alone.
 _LARGEST_SURE_MULTIPLIER = 0.995
@@ -149,7 +150,7 @@ class BatchJob:
         An extrapolation leads to an orbit whether it is stable or not, and one that is stable with coarse steps may be
         unstable with finer ones. None for other orbits, and for chains too long for multipliers. Raises `Cancelled`.
         """
-        slow = regime.followed and (regime.decay or 0.0) > _SLOW_DECAY
+        slow = regime.followed and (regime.observed_contraction or 0.0) > _SLOW_CONTRACTION
         if regime.period is None or not (slow or grew) or self.scene.N > MOST_BEADS_WITH_MULTIPLIERS:
             return None
         return seen_modulus(self.scene, regime.period, self.scaled.beads_of(y), stop, refine=FINE_STEPS_PER_COARSE)
@@ -212,10 +213,10 @@ def outcome_of_coarse_run(job: BatchJob, batch: Batch, member: int) -> SteadySta
     if periods_run >= job.affordable_periods:
         return unsettled(job, batch, member, periods_run)
     record = batch.strobes(member)
-    if periods_run >= MOST_PERIODS or (len(record) >= SLOW_RECORD and not converging(record)):
+    if periods_run >= MOST_SETTLING_PERIODS or (len(record) >= SLOW_RECORD and not converging(record)):
         return _to_measure(job, batch, member, periods_run, record.copy())
-    batch.state.schedule.return_at[member] = min(here + max(EXAMINED_AFTER // 4, SLOW_RECORD - len(record)),
-                                        job.affordable_periods - job.periods_run)
+    longer = max(EXAMINED_AFTER // 4, SLOW_RECORD - len(record))
+    batch.state.schedule.return_at[member] = min(here + longer, job.affordable_periods - job.periods_run)
     return None
 
 
@@ -231,14 +232,14 @@ def _with_period(regime: Regime, period: int) -> Regime:
     """A regime whose orbit has this period, which divides the one that the coarse run found."""
     if regime.period is None or period == regime.period:
         return regime
-    decay = None if regime.decay is None else regime.decay ** (period / regime.period)
-    return replace(regime, period=period, decay=decay)
+    seen = regime.observed_contraction
+    return replace(regime, period=period, decay=None if seen is None else seen ** (period / regime.period))
 
 
 def _periodic(check: np.ndarray, slowest_decay: float, periods_run: int) -> Regime:
     """The periodic regime of a coarse run, from its last check; `followed` where extrapolations led to it."""
-    period, decay, distance = check
-    return Regime(name="periodic", period=int(period), decay=float(decay) if decay >= 0.0 else None,
+    period, contraction, distance = check
+    return Regime(name="periodic", period=int(period), decay=float(contraction) if contraction >= 0.0 else None,
                   distance=float(distance), periods_run=periods_run, followed=bool(slowest_decay > 0.0),
                   followed_by="extrapolation" if slowest_decay > 0.0 else None)
 

@@ -5,7 +5,7 @@ steps, without a return from the kernel. Once its regime is decided, the next sc
 
 Coarse run: `check_coarse` (kernels/batch/checks.py) bounds the distance to the orbit; an orbit that was reached by
 extrapolation (kernels/strobes/extrapolation.py) must survive a disturbance. Finer run (kernels/batch/begin.py):
-`check_fine`, until the bound is small or six extrapolations are spent; the distance that is left goes into the stated
+`check_fine`, until the bound is small or no extrapolation is left; the distance that is left goes into the stated
 error, with the change of the forces. Motions that are not periodic are classified by their Lyapunov exponents
 (steady/exponent_measurements.py), measured beside a neighbouring trajectory in another lane. A scene that is then not
 decided is marked `undecided` and settled alone (settling/single_chain.py).
@@ -34,7 +34,7 @@ from ..exponent_measurements import MEASURED_PERIODS
 from ..lyapunov import growth_of, put_with_neighbour
 from ..regime_criteria import converging, find_period
 from ..settling.nearby_orbit import is_almost_periodic
-from ..settling.regime_decisions import EXAMINED_AFTER, MOST_MEASUREMENTS, MOST_PERIODS, REMEMBERED
+from ..settling.regime_decisions import EXAMINED_AFTER, MOST_MEASUREMENTS, MOST_SETTLING_PERIODS, REMEMBERED
 from ..steady_state import SteadyState
 from .job import (
     FINE_STEPS_PER_COARSE,
@@ -146,8 +146,8 @@ class _JobsInBatch:
         assert job.coarse is not None
         regime, maxima = job.coarse
         assert regime.period is not None
-        self.batch.put_fine(member, job.scaled, job.y, FINE_STEPS_PER_COARSE, regime.period, regime.decay or 0.0,
-                            maxima)
+        self.batch.put_fine(member, job.scaled, job.y, FINE_STEPS_PER_COARSE, regime.period,
+                            regime.observed_contraction or 0.0, maxima)
 
     def step(self) -> SteadyState | None:
         """Run until a member is due; returns its result, or None if the job goes on."""
@@ -197,7 +197,7 @@ class _JobsInBatch:
             job.stage, job.coarse = Stage.FINE, (regime, seen.maxima[-regime.period :].max(axis=0))
             self.waiting.append(job)
             return None
-        goes_on = job.periods_run < MOST_PERIODS and job.affordable
+        goes_on = job.periods_run < MOST_SETTLING_PERIODS and job.affordable
         decided = job.measurements.add(seen.growth, seen.offset, job.record, job.periods_run, last=not goes_on)
         latest = job.measurements.latest
         if decided is not None:
@@ -207,7 +207,7 @@ class _JobsInBatch:
             self._measure(job)
             return None
         approach_rate = job.measurements.approach_rate
-        comes_in_time = approach_rate * (MOST_PERIODS - job.periods_run) > -math.log(SETTLED_DISTANCE)
+        comes_in_time = approach_rate * (MOST_SETTLING_PERIODS - job.periods_run) > -math.log(SETTLED_DISTANCE)
         if goes_on and (comes_in_time or converging(job.record)):
             job.measurements.interrupted()
             self.waiting.append(job)  # the motion comes to its orbit, or to its closed curve, within the budget

@@ -2,8 +2,8 @@
 
 Reduced rank extrapolation (kernels/strobes/extrapolation.py) takes out the slowest modes. It is used only where changes
 are already small and shrinking. An extrapolation is accepted only if the change after it is smaller and if it goes at
-most three times as far as change/(1 − decay), the distance before the last change: so the orbit is the one
-that the chain approaches.
+most three times as far as change/(1 − r) with the contraction factor r, the distance before the last change: so the
+orbit is the one that the chain approaches.
 """
 
 from __future__ import annotations

@@ -23,7 +23,7 @@ from .nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS, NEAR_AN_ORBIT, NearbyOrbi
 #: [followed] Drive periods after which the orbit near an unsettled motion is examined.
 EXAMINED_AFTER = 400
 #: [unsettled] Most drive periods.
-MOST_PERIODS = 4000
+MOST_SETTLING_PERIODS = 4000
 #: [quasi-periodic] Strobes on which the decision is based. A batch keeps a few more (`STROBES_KEPT` in
 #: kernels/batch/record.py).
 REMEMBERED = 420
@@ -35,9 +35,9 @@ _MOST_PARTS = 8
 #: [period n] A chain alone: up to this many beads multipliers confirm every claim of `settled`, in longer chains only
 #: unconfirmed ones.
 _CONFIRMED_BEADS = 30
-#: [period n] A chain alone: a claim is unconfirmed if the decay per drive period is above this, or if the motion began
-#: from another state. A slowly unstable orbit may look like it.
-CLEAR_DECAY = 0.9
+#: [period n] A chain alone: a claim is unconfirmed if the contraction factor per drive period is above this, or if the
+#: motion began from another state. A slowly unstable orbit may look like it.
+CLEAR_CONTRACTION = 0.9
 #: [unsettled] Factor on the most drive periods for a motion that leaves an unstable orbit. Departures are slow too.
 _DEPARTURE_FACTOR = 4
 #: [period n] A chain alone: with a larger |μ| at the motion's own state, by differences, Newton's method finds the
@@ -73,7 +73,7 @@ class Decisions:
             if found is not None:
                 return found
         leaves = self._leaves and self._measurements.approach_rate == 0.0
-        if regime.periods_run >= MOST_PERIODS * (_DEPARTURE_FACTOR if leaves else 1):
+        if regime.periods_run >= MOST_SETTLING_PERIODS * (_DEPARTURE_FACTOR if leaves else 1):
             return Decision(regime)
         if converging(strobes) or departing(strobes):
             return Decision()
@@ -86,8 +86,8 @@ class Decisions:
         and may be taken for one of twice the period: where a part of the period almost repeats it, Newton's method
         finds the orbit and its least period.
 
-        Where Newton's method finds no orbit near the motion, an unconfirmed claim is withdrawn, and a clear decay from
-        rest is accepted.
+        Where Newton's method finds no orbit near the motion, an unconfirmed claim is withdrawn, and a clear contraction
+        from rest is accepted.
         """
         assert regime.period is not None
         unconfirmed = self._carried or not _decays_clearly(regime)
@@ -135,7 +135,7 @@ def _may_repeat_sooner(strobes: np.ndarray, period: int) -> bool:
 def _decays_clearly(regime: Regime) -> bool:
     """Whether the observed contraction leaves no doubt of a periodic regime where the motion began at rest."""
     assert regime.period is not None
-    return (regime.observed_contraction or 0.0) ** (1.0 / regime.period) <= CLEAR_DECAY
+    return (regime.observed_contraction or 0.0) ** (1.0 / regime.period) <= CLEAR_CONTRACTION
 
 
 def _on(orbit: NearbyOrbit, regime: Regime) -> Regime:
