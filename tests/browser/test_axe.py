@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 from axe_playwright_python.sync_playwright import Axe
 from knobs import COMPILED, Visit
@@ -10,51 +12,8 @@ from playwright.sync_api import Page
 from app.plots.theme import THEMES
 
 POPOVERS = ("Help and keys (?)", "Export: pictures, tables, a program", "Link to this picture")
-
-
-# What axe-core finds within an element in the light theme, and which words have too little contrast in the others. Only
-# colours and sizes depend on the theme, and axe takes as long for one rule in another theme as for all rules in the
-# first. So it is asked about another theme only where its colours are not simply those of a word and of the nearest
-# background behind it; for all other words these are read in every theme, and in light they must be what axe has
-# measured.
-RUN = """async ([within, themes]) => {
-  const root = document.documentElement.dataset, chosen = root.theme, place = within ?? document;
-  const report = await axe.run(place, { resultTypes: ["violations", "passes"], selectors: false, elementRef: true,
-    preload: !within }); // only two rules read the style sheets anew, both of the page as a whole
-  const found = { [chosen]: report.violations.flatMap(({ id, nodes }) => nodes.map(({ html }) => `${id}: ${html.slice(0, 120)}`)) };
-  const numbers = (colour) => colour.match(/[0-9.]+/g).map(Number);
-  // The colour of the words of an element and that of the background behind them, of which none is transparent.
-  const colours = (element) => {
-    const { color } = getComputedStyle(element);
-    let opacity = 1;
-    for (let at = element; at; at = at.assignedSlot ?? at.parentElement ?? at.getRootNode().host ?? null) {
-      const style = getComputedStyle(at), behind = numbers(style.backgroundColor);
-      opacity *= at === element || behind[3] === 0 ? style.opacity : 1;
-      if (behind[3] !== 0) return [numbers(color).slice(0, 3).map((one, i) => Math.round(opacity * one + (1 - opacity) * behind[i])), behind.slice(0, 3)];
-    }
-    return [];
-  };
-  const hex = (colour) => colour && `#${colour.map((one) => one.toString(16).padStart(2, "0")).join("")}`;
-  const light = (colour) => colour.map((one) => one / 255).map((one) => (one <= 0.03928 ? one / 12.92 : ((one + 0.055) / 1.055) ** 2.4))
-    .reduce((sum, one, i) => sum + one * [0.2126, 0.7152, 0.0722][i], 0.05);
-  const texts = [...report.passes, ...report.violations].filter(({ id }) => id === "color-contrast").flatMap(({ nodes }) => nodes)
-    .filter(({ element, any: [{ data }] }) => data.fgColor && element.isConnected).map(({ element, html, any: [{ data }] }) => ({ element, html, data }));
-  const simple = texts.filter(({ element, data: { fgColor, bgColor } }) => colours(element).map(hex).join() === [fgColor, bgColor].join());
-  const others = texts.filter((one) => !simple.includes(one)).map(({ element }) => element);
-  for (const theme of themes) {
-    root.theme = theme;
-    found[theme] = simple.flatMap(({ element, html, data: { expectedContrastRatio } }) => {
-      const [words, behind] = colours(element), [low, high] = [light(words), light(behind)].sort((a, b) => a - b);
-      return high / low < parseFloat(expectedContrastRatio) ? [`color-contrast: ${hex(words)} on ${hex(behind)}, ${html.slice(0, 120)}`] : [];
-    });
-    if (others.length) {
-      const { violations } = await axe.run({ include: others }, { resultTypes: ["violations"], runOnly: ["color-contrast"] });
-      found[theme].push(...violations.flatMap(({ id, nodes }) => nodes.map(({ html }) => `${id}: ${html.slice(0, 120)}`)));
-    }
-  }
-  root.theme = chosen;
-  return found;
-}"""
+#: Its `granchainViolations` is what axe-core finds within an element, and words that are too faint in other themes.
+SCRIPT = Path(__file__).with_name("violations.js").read_text(encoding="utf-8")
 
 
 def violations(page: Page, within: str | None = None) -> dict[str, list[str]]:
@@ -63,7 +22,8 @@ def violations(page: Page, within: str | None = None) -> dict[str, list[str]]:
     """
     if not page.evaluate("'axe' in window"):
         page.evaluate(Axe().axe_script)  # once: it is half a megabyte, and many places are looked at
-    found = page.evaluate(RUN, [within, list(THEMES)[1:]])
+        page.evaluate(SCRIPT)
+    found = page.evaluate("(given) => granchainViolations(given)", [within, list(THEMES)[1:]])
     return {theme: what for theme, what in found.items() if what}
 
 

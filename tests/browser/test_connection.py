@@ -45,17 +45,17 @@ def opened(chromium: Browser, server: Server, node: pytest.Item) -> Iterator[Pag
     context.close()
 
 
-@pytest.fixture
-def server(tmp_path: Path) -> Iterator[Server]:
-    """A dashboard of this test's own."""
-    with running(tmp_path) as one:
+@pytest.fixture(scope="module")
+def living(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+    """A dashboard for several tests, none of which ends it: stopped by one of them, it goes on."""
+    with running(tmp_path_factory.mktemp("living")) as one:
         yield one
 
 
 @pytest.fixture
-def page(chromium: Browser, server: Server, request: pytest.FixtureRequest) -> Iterator[Page]:
-    """The page of this test's own dashboard."""
-    with opened(chromium, server, request.node) as one:
+def page(chromium: Browser, living: Server, request: pytest.FixtureRequest) -> Iterator[Page]:
+    """A page of the dashboard that goes on."""
+    with opened(chromium, living, request.node) as one:
         yield one
 
 
@@ -176,12 +176,14 @@ def test_the_page_goes_on_after_the_restart(restarted: Restarted) -> None:
         restarted.page.wait_for_function(BELONGS, arg=frequency)
 
 
-def test_a_page_whose_server_was_silent_goes_on(server: Server, page: Page) -> None:
+def test_a_page_whose_server_was_silent_goes_on(living: Server, page: Page) -> None:
     page.evaluate("window.same = true")
-    server.process.send_signal(signal.SIGSTOP)
-    looks_lost(page)
-    drag_slider(page)
-    server.process.send_signal(signal.SIGCONT)
+    living.process.send_signal(signal.SIGSTOP)
+    try:
+        looks_lost(page)
+        drag_slider(page)
+    finally:
+        living.process.send_signal(signal.SIGCONT)
     expect(page.locator("#lost")).to_be_hidden()
     assert page.locator("[data-knob] input:disabled").count() == 0 and value(page) == "1130"
     type_into(page, "f", "700")
@@ -199,29 +201,30 @@ def test_a_silent_socket_is_given_up_while_the_server_answers(page: Page) -> Non
     assert (value(page), value(page, "D")) == ("1130", "90")
 
 
-def test_what_the_server_never_heard_of_comes_back_too(server: Server, page: Page) -> None:
+def test_what_the_server_never_heard_of_comes_back_too(chromium: Browser, tmp_path: Path, request: pytest.FixtureRequest) -> None:
     """The knobs are what the visitor saw last, not what the server was told last."""
     moved = {"f": "700", "kappa": "0.002"}
-    type_into(page, "k", "100")
-    expect(page.locator("#knobs .aside")).to_contain_text("Hz")
-    server.process.send_signal(signal.SIGSTOP)
-    for name, typed in moved.items():
-        type_into(page, name, typed)
-    looks_lost(page)
-    assert {name: value(page, name) for name in moved} == moved
-    server.kill()
-    starts_again(server, page)
-    for name, typed in moved.items():
-        expect(field(page, name)).to_have_value(typed)
-    page.wait_for_function(BELONGS, arg=float(value(page)))
+    with running(tmp_path) as server, opened(chromium, server, request.node) as page:
+        type_into(page, "k", "100")
+        expect(page.locator("#knobs .aside")).to_contain_text("Hz")
+        server.process.send_signal(signal.SIGSTOP)
+        for name, typed in moved.items():
+            type_into(page, name, typed)
+        looks_lost(page)
+        assert {name: value(page, name) for name in moved} == moved
+        server.kill()
+        starts_again(server, page)
+        for name, typed in moved.items():
+            expect(field(page, name)).to_have_value(typed)
+        page.wait_for_function(BELONGS, arg=float(value(page)))
 
 
-def test_a_page_that_has_lost_its_place_before_it_connects_comes_back(chromium: Browser, server: Server, request: pytest.FixtureRequest) -> None:
+def test_a_page_that_has_lost_its_place_before_it_connects_comes_back(chromium: Browser, living: Server, request: pytest.FixtureRequest) -> None:
     """Its token is used up here, so its websocket is refused as that of a page that made room for a newer one."""
     context = chromium.new_context(viewport={"width": 1280, "height": 800})
     page = context.new_page()
-    watch(request.node, page, server.log)
-    place, used = urlsplit(server.address), list[HTTPConnection]()
+    watch(request.node, page, living.log)
+    place, used = urlsplit(living.address), list[HTTPConnection]()
 
     def use_token(route: Route) -> None:
         if used:
@@ -239,7 +242,7 @@ def test_a_page_that_has_lost_its_place_before_it_connects_comes_back(chromium: 
 
     page.route(lambda address: urlsplit(address).path == "/", use_token)
     page.add_init_script(FIRST + FIGURES)
-    page.goto(f"{server.address}?v=1&scene=sec2&f=1130&D=90&start=previous")
+    page.goto(f"{living.address}?v=1&scene=sec2&f=1130&D=90&start=previous")
     page.wait_for_function(BELONGS, arg=1130, timeout=COMPILED)
     assert len(used) == 1 and (value(page), value(page, "D")) == ("1130", "90")
     expect(page.locator("#lost")).to_be_hidden()

@@ -14,8 +14,8 @@ pytestmark = pytest.mark.quick
 def test_a_batch_leaves_long_orbits_to_a_chain_alone() -> None:
     """1087 Hz has an orbit of 18 periods with |μ| 0.3: both ways find it, though a batch looks for 16 at most."""
     chain = scene("sec2").evolve(f=1087.0)
-    alone_, (together,) = settle(chain).regime, resonance_curve(chain, [1087.0]).points
-    assert (alone_.name, alone_.period) == (together.regime.name, together.regime.period) == ("periodic", 18)
+    alone, (together,) = settle(chain).regime, resonance_curve(chain, [1087.0]).points
+    assert (alone.name, alone.period) == (together.regime.name, together.regime.period) == ("periodic", 18)
 
 
 def test_an_approach_slower_than_the_bias_of_a_torus_is_measured_until_it_shows() -> None:
@@ -39,9 +39,9 @@ def test_a_slow_approach_with_a_zero_exponent_is_left_to_a_chain_alone(monkeypat
 def test_one_chain_and_a_batch_have_the_same_evidence() -> None:
     """1700 Hz, quasi-periodic: the two ways judge records of the same length, up to the end of the exponent."""
     chain = scene("sec2").evolve(f=1700.0)
-    alone_, (together,) = settle(chain).regime, resonance_curve(chain, [1700.0]).points
-    assert alone_.name == together.regime.name == "quasi-periodic"
-    assert alone_.return_limit == together.regime.return_limit == pytest.approx(10.0 * np.pi / 210.0)
-    for one in (alone_, together.regime):
+    alone, (together,) = settle(chain).regime, resonance_curve(chain, [1700.0]).points
+    assert alone.name == together.regime.name == "quasi-periodic"
+    assert alone.return_limit == together.regime.return_limit == pytest.approx(10.0 * np.pi / 210.0)
+    for one in (alone, together.regime):
         assert one.return_distance is not None and one.return_distance < one.return_limit
         assert one.window_ratios is not None and one.window_ratios[0] <= 1.02 and one.window_ratios[1] >= 0.98

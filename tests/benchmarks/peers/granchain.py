@@ -86,7 +86,7 @@ def _returns(strobes: np.ndarray, near: float = 1e-6) -> bool:
 
 
 def batch_peaks(frequencies: np.ndarray, refine: float) -> Peaks:
-    """Exactly 100 + 20 periods of every point in batches on this thread: longest first, places filled as they end."""
+    """Exactly 100 + 20 periods of every point in batches on this thread: longest first, lanes filled as they end."""
     scaled = [scale_chain(_scene(f)) for f in sorted(frequencies)]
     total = problem.PASSED + problem.WATCHED
     values, rest = np.zeros(len(scaled)), np.zeros(2 * scaled[0].bodies)

@@ -16,6 +16,8 @@ from granchain_core.kernels.batch_size import BATCH_SIZE
 from granchain_core.scene.state import rest
 
 FREQUENCIES = (200.0, 340.0, 615.0, 1130.0, 1576.0, 2000.0, 2500.0, 3000.0)
+#: Scenes of a case; not the width of a batch, which is BATCH_SIZE and depends on the processor.
+SCENES = len(FREQUENCIES)
 PERIODS = 3
 #: A decade of steps.
 REFINED = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0)
@@ -27,7 +29,7 @@ CHAINS = {
 
 
 def scenes_of(case: str):
-    """The eight scenes of a case."""
+    """The scenes of a case, one a frequency."""
     return [scene("sec2").evolve(f=f, **CHAINS[case]) for f in FREQUENCIES]
 
 
@@ -38,13 +40,14 @@ def put(batch: Batch, member: int, one, refine: float) -> None:
 
 
 def run_all(scenes, refine: float) -> tuple[np.ndarray, np.ndarray]:
-    """Displacements at the strobes (8, PERIODS + 1, N) and largest forces of all periods (8, 3), batch after batch."""
+    """Displacements at the strobes (SCENES, PERIODS + 1, N) and largest forces of all periods (SCENES, 3), batch after
+    batch."""
     parts = [run_batch(scenes[i : i + BATCH_SIZE], refine) for i in range(0, len(scenes), BATCH_SIZE)]
     return np.concatenate([strobes for strobes, _ in parts]), np.concatenate([maxima for _, maxima in parts])
 
 
 def run_batch(scenes, refine: float) -> tuple[np.ndarray, np.ndarray]:
-    """Strobes and largest forces, as from `run_all`, of no more scenes than a batch has members."""
+    """Strobes and largest forces, as from `run_all`, of no more scenes than a batch has lanes."""
     batch = Batch(scenes[0], Stop())
     for member, one in enumerate(scenes):
         put(batch, member, one, refine)
@@ -60,7 +63,7 @@ def run_batch(scenes, refine: float) -> tuple[np.ndarray, np.ndarray]:
 @functools.cache
 def true(case: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The same by rk4-split at a 32nd of the step, whose error is 1e-9 (tests/numerics/test_orders.py), and the
-    elastic output force at the very end (8,)."""
+    elastic output force at the very end (SCENES,)."""
     engines = [Engine(one, MethodSetting("rk4-split", refine=32), 1) for one in scenes_of(case)]
     found = [engine.periods(PERIODS) for engine in engines]
     return (np.array([s[:, 0] for s, _ in found]), np.array([t.max(axis=0) for _, t in found]),
@@ -69,7 +72,7 @@ def true(case: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 @functools.cache
 def errors(case: str) -> np.ndarray:
-    """(refinements, 8): largest displacement error of each member over its largest displacement."""
+    """(refinements, SCENES): largest displacement error of each scene over its largest displacement."""
     exact = true(case)[0]
     largest = np.abs(exact).max(axis=(1, 2))
     return np.array([np.abs(run_all(scenes_of(case), r)[0] - exact).max(axis=(1, 2)) / largest for r in REFINED])
@@ -79,7 +82,7 @@ def errors(case: str) -> np.ndarray:
 def test_batches_converge_with_order_three_over_a_decade_of_steps(case):
     """The kink of opening and closing contacts is corrected to order 3; where no contact opens RK4 keeps its 4.
 
-    Fit through the geometric mean of the eight members. The kink's next term falls with the power 5/2 for one contact
+    Fit through the geometric mean of the scenes. The kink's next term falls with the power 5/2 for one contact
     and is seen with the smallest steps: within 0.3 of 3 from below. Where contacts seldom change the 4 is still seen.
     """
     order = -np.polyfit(np.log(REFINED), np.log(errors(case)).mean(axis=1), 1)[0]
@@ -116,12 +119,12 @@ def test_batches_follow_the_largest_forces(case):
 
 @pytest.mark.parametrize("case", ["sec2", "Kuwabara–Kono"])
 def test_a_member_does_not_know_of_the_others(case):
-    """Alone, in other company, and in another member a scene gives the same numbers to the last bit."""
+    """Alone, in other company, and in another lane a scene gives the same numbers to the last bit."""
     scenes = scenes_of(case)
     together = run_all(scenes, 1.0)[0]
     turned = run_all(scenes[3:] + scenes[:3], 1.0)[0]
     assert (np.roll(turned, 3, axis=0) == together).all()
-    same = run_all([scenes[3]] * 8, 1.0)[0]
+    same = run_all([scenes[3]] * SCENES, 1.0)[0]
     assert (same == together[3]).all()
     batch = Batch(scenes[0], Stop())
     last = BATCH_SIZE - 1

@@ -1,4 +1,4 @@
-"""A place in a batch that has become free takes the next scene, and nothing of the one before is left in it."""
+"""A lane of a batch that has become free takes the next scene, and nothing of the one before is left in it."""
 
 from __future__ import annotations
 
@@ -33,14 +33,14 @@ def scene_of(number: int, structure: str) -> Scene:
     return found
 
 
-#: Periods of each: members end at different times, so that places are filled while others are inside a period.
+#: Periods of each: members end at different times, so that lanes are filled while others are inside a period.
 PERIODS = [3 + (5 * i) % 7 for i in range(COUNT)]
 
 Found = dict[int, list[np.ndarray]]
 
 
 def seen(scenes: list[Scene], numbers: Sequence[int]) -> Found:
-    """Strobes, largest forces and jumps of each scene; a member that has ended makes room for the next, as in
+    """Strobes, largest forces and jumps of each scene; the lane of a member that has ended takes the next, as in
     steady/batch/jobs_in_batch.py."""
     waiting, batch = iter(numbers), Batch(scenes[numbers[0]], Stop())
     found: Found = {}
@@ -69,7 +69,7 @@ def seen(scenes: list[Scene], numbers: Sequence[int]) -> Found:
 
 
 @pytest.mark.parametrize("structure", ["founded", "pressed", "unlike"])
-def test_more_scenes_than_places_give_what_each_gives_alone(structure: str) -> None:
+def test_more_scenes_than_lanes_give_what_each_gives_alone(structure: str) -> None:
     """To the last bit: strobes, largest forces and jumps."""
     scenes = [scene_of(number, structure) for number in range(COUNT)]
     together = seen(scenes, range(COUNT))
@@ -87,8 +87,8 @@ def fingerprint(found: SteadyState) -> tuple[object, ...]:
 
 
 @pytest.mark.parametrize("draft", [False, True])
-def test_steady_states_of_more_scenes_than_places_are_those_of_each_alone(draft: bool) -> None:
-    """A place is filled by the next scene once the fine run of the one before has ended: to the last bit."""
+def test_steady_states_of_more_scenes_than_lanes_are_those_of_each_alone(draft: bool) -> None:
+    """A lane is filled by the next scene once the fine run of the one before has ended: to the last bit."""
     scenes = [scene_of(number, "founded") for number in range(COUNT)]
     together = {found.scene.f: found for found in batch_results(iter(scenes), Stop(), draft)}
     assert sorted(together) == [one.f for one in scenes]

@@ -34,9 +34,29 @@ def computes(slot: TurnFlag, seconds: float) -> Iterator[int]:
     yield niceness()
 
 
+def is_lowered() -> bool:
+    """Whether this thread has a lower priority once it has asked for that."""
+    lower_priority()
+    return has_lower_priority()
+
+
 def in_turns(seconds: float) -> int:
     slot = TurnFlag(CpuTime(), Turns(2))
     return next(slot.in_turns(computes(slot, seconds)))
+
+
+def busy_until_told(pool: WorkerPool) -> threading.Event:
+    """Occupy a thread of the pool; once the event is set, that thread lowers its priority and ends."""
+    begun, go = threading.Event(), threading.Event()
+
+    def work() -> None:
+        begun.set()
+        assert go.wait(60.0)
+        lower_priority()
+
+    pool.submit(work)
+    assert begun.wait(60.0)
+    return go
 
 
 @linux
@@ -54,15 +74,7 @@ def test_only_what_takes_long_gives_way_and_its_thread_does_nothing_more() -> No
 @linux
 def test_work_waiting_for_a_thread_that_ends_is_done_in_its_order() -> None:
     pool, done = WorkerPool("test", 1), list[int]()
-    begun, go = threading.Event(), threading.Event()
-
-    def long() -> None:
-        begun.set()
-        assert go.wait(60.0)
-        lower_priority()
-
-    pool.submit(long)
-    assert begun.wait(60.0)
+    go = busy_until_told(pool)
     given = [pool.submit(done.append, number) for number in range(5)]
     last = pool.submit(niceness)
     assert pool.queued == 6
@@ -133,21 +145,14 @@ def test_the_priority_stays_where_nothing_could_start_threads_of_usual_priority(
     assert pool.submit(int).result(60.0) == 0
     with monkeypatch.context() as full:
         full.setattr(threading.Thread, "start", Failing.start)
-        assert pool.submit(lambda: (lower_priority(), has_lower_priority())[1]).result(60.0) is False
-    assert pool.submit(lambda: (lower_priority(), has_lower_priority())[1]).result(60.0) is True
+        assert pool.submit(is_lowered).result(60.0) is False
+    assert pool.submit(is_lowered).result(60.0) is True
 
 
 @linux
 def test_work_behind_a_thread_of_lower_priority_is_done_by_it_where_no_other_can_be_started(monkeypatch: pytest.MonkeyPatch) -> None:
-    pool, begun, go = WorkerPool("test", 1), threading.Event(), threading.Event()
-
-    def long() -> None:
-        begun.set()
-        assert go.wait(60.0)
-        lower_priority()
-
-    pool.submit(long)
-    assert begun.wait(60.0)
+    pool = WorkerPool("test", 1)
+    go = busy_until_told(pool)
     last = pool.submit(threading.get_native_id)
     monkeypatch.setattr("app.serve.computing.worker_pools.begin", lambda thread: Failing().start())
     go.set()
