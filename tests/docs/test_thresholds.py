@@ -83,7 +83,7 @@ def test_docstrings_and_pages_say_up_to_how_many_beads_there_are_multipliers() -
     for page, words in (("orbits", f"Up to {most} beads the whole derivative"), ("stability", f"of more than {most} beads only"),
                         ("regimes", f"up to {most} beads if the claim"), ("regimes", f"*Run:* up to {most} beads")):
         assert words in " ".join((ROOT / "docs" / f"{page}.md").read_text(encoding="utf-8").split()), page
-    assert f"20 to {lyapunov_spectrum.MOST_PERIODS:,}." in str(lyapunov_spectrum.lyapunov_spectrum.__doc__) and lyapunov_spectrum._BLOCKS == 20
+    assert f"20 to {lyapunov_spectrum.MOST_SPECTRUM_PERIODS:,}." in str(lyapunov_spectrum.lyapunov_spectrum.__doc__) and lyapunov_spectrum._BLOCKS == 20
 
 
 PARTS = {2: "half", 3: "a third", 4: "a quarter"}
