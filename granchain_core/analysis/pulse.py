@@ -240,6 +240,8 @@ def _passing(run: Run, contact: int, firsts: list[int | None]) -> tuple[tuple[fl
     """
     force, time, first = run.force[:, contact], run.time, firsts[contact - 1]
     if first is None:
+        if not run.velocity.any():
+            raise BadInput("No pulse runs along a chain that nothing moves; let it be driven, or struck (strike > 0).")
         raise BadInput(f"No pulse reaches contact {contact} in this record; record longer.")
     end = first + max(1, _PASSED * ((firsts[min(contact + 2, run.scene.N) - 1] or len(force)) - first))
     gone = np.flatnonzero(force[first:] < _PART * force[first])

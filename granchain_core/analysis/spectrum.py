@@ -79,7 +79,10 @@ class Spectrum(Labelled):
 
     @property
     def resolution(self) -> float:
-        """Frequency resolution [Hz]."""
+        """Frequency resolution [Hz]: lines nearer to each other are not told apart.
+
+        It is the spacing of the frequencies for a Fourier series, and twice the spacing with Hann's window.
+        """
         return float(self.frequency[1]) * (1.0 if self.period else 2.0)
 
     @property
@@ -103,7 +106,7 @@ class Spectrum(Labelled):
         """Which force it belongs to, and its largest lines."""
         top = [i for i in np.argsort(-self.amplitude) if self.frequency[i] > 0.0][:3]
         kind = f"lines of a motion of period {self.period}" if self.period else "windowed record, no period"
-        return [f"{self.force} force, {kind}; {self.resolution:.4g} Hz apart",
+        return [f"{self.force} force, {kind}; resolution {self.resolution:.4g} Hz",
                 *(f"{self.amplitude[i]:.4g} N at {self.frequency[i]:.6g} Hz" for i in top),
                 f"folded back from above half the sampling frequency: at most about {self.aliasing:.1e} N"]
 

@@ -53,8 +53,10 @@ class Amplitude:
             raise BadInput("A table of drive amplitudes has as many amplitudes as frequencies, which ascend.")
         if self.formula != "table" and (len(self.values) != 1 or self.frequencies):
             raise BadInput(f"A drive of {self.formula.replace('-', ' ')} has one value.")
-        if not all(math.isfinite(value) and value > 0.0 for value in self.values):
-            raise BadInput("A drive amplitude must be a number above 0.")
+        if wrong := [value for value in self.values if not (math.isfinite(value) and value > 0.0)]:
+            unit = FORMULAS.get(self.formula, ("m", 0))[0]
+            raise BadInput(f"The drive amplitude ({self.formula.replace('-', ' ')}) is {wrong[0]:g} {unit}; it must be a "
+                           "number above 0, and any such number is valid.")
 
     @classmethod
     def table(cls, frequencies: Sequence[float] | np.ndarray, amplitudes: Sequence[float] | np.ndarray,

@@ -219,3 +219,8 @@ def test_a_scene_without_a_drive_has_a_picture_and_no_steady_state() -> None:
         resonance_curve(chain, [300.0])
     with pytest.raises(BadInput, match="at least three beads"):
         pulse(run(chain.evolve(N=2), periods=0, record=1, samples=96))
+
+
+def test_a_chain_that_nothing_moves_is_not_asked_for_a_longer_record() -> None:
+    with pytest.raises(BadInput, match="that nothing moves"):
+        pulse(run(scene("impact").evolve(strike=0.0), periods=0, record=2))

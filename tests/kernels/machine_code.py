@@ -110,7 +110,7 @@ def argument_types(knobs: dict) -> dict[str, tuple]:
     e, block = Engine(chain, MethodSetting("rk4-split"), 1), Batch(chain, Stop())
     stepper = e.stepper
     one = (stepper.work.simd, stepper.trajectory(e.y), 0, 4, KernelIO(e.log, e.counts.array, e.stop.flag))
-    return {"chain": tuple(map(numba.typeof, one)), "batch": tuple(map(numba.typeof, (block.members, block.state, 4)))}
+    return {"chain": tuple(map(numba.typeof, one)), "batch": tuple(map(numba.typeof, (block.members, block.state.motion, 4)))}
 
 
 def with_effect(knobs: dict) -> dict:

@@ -43,7 +43,7 @@ def test_a_table_is_straight_between_and_ends_where_it_ends(tmp_path: Path) -> N
 
 @pytest.mark.parametrize(("text", "sentence"), [
     ("constant-speed=1", "Unknown drive 'constant-speed'"), ("constant-velocity=fast", "is not a number in m/s"),
-    ("constant-velocity=0", "above 0"), ("none.csv", "Cannot read")])
+    ("constant-velocity=0", "is 0 m/s; it must be a number above 0"), ("none.csv", "Cannot read")])
 def test_a_malformed_amplitude_is_refused(text: str, sentence: str) -> None:
     with pytest.raises(BadInput, match=sentence):
         read_amplitude(text)
