@@ -28,7 +28,7 @@ CHECK_PERIOD, CHECK_CONTRACTION, CHECK_DISTANCE, CHECK_COLUMNS = range(4)
 #: Columns of `fine_record`: the orbit's period and contraction factor, the coarse run's three largest forces (from
 #: FINE_FORCES on), orbits between two extrapolations, extrapolations so far, 1 if changes grew before one.
 FINE_PERIOD, FINE_CONTRACTION, FINE_FORCES, FINE_ORBITS_BETWEEN, FINE_EXTRAPOLATIONS, FINE_GREW = 0, 1, 2, 5, 6, 7
-#: [no threshold] Their number.
+#: [no threshold] Number of columns of `fine_record`.
 FINE_COLUMNS = 8
 #: Columns of `coarse_orbit`: those of `last_check`, slowest contraction before an extrapolation (0 without one), drive
 #: periods run; and their number.
@@ -37,7 +37,12 @@ ORBIT_SLOWEST_CONTRACTION, ORBIT_PERIODS, ORBIT_COLUMNS = CHECK_COLUMNS, CHECK_C
 
 @internal
 def begin_member(state, member):
-    """Begin at the member's `y`, at phase 0, with `steps` steps a period and an empty record."""
+    """Begin at the member's `y`, at phase 0, with `steps` steps a period and an empty record.
+
+    Not cleared is what is always written before it is read: `record.maxima`, `record.strobes`, `search.state_before`,
+    `search.coarse_orbit`, `pairs.distance`, `pairs.growth`. The caller, `Batch.put`, sets the rest of `schedule`, y and
+    the overlaps at rest, `search.fine_record` and `pairs.neighbour`.
+    """
     motion, schedule, record, search = state.motion, state.schedule, state.record, state.search
     half = pi / schedule.steps[member]
     motion.half_step[0, member], motion.half_step[1, member] = sin(half), cos(half)

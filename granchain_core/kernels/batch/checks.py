@@ -72,8 +72,8 @@ _ORBITS_BETWEEN_QUARTERS = _TEST_ORBITS // 2
 _PART_LEFT = 0.97
 #: [period n] A batch: drive periods without extrapolation after a disturbance that did not decay.
 _PAUSE_AFTER_FAILED_TEST = 400
-#: [period n] A batch: largest contraction factor per orbit that is reported for a disturbance that shrank. Up to 100
-#: beads, multipliers are then computed.
+#: [period n] A batch: upper limit of the contraction factor per orbit that is reported for a disturbance that shrank.
+#: Up to 100 beads, multipliers are then computed.
 _LARGEST_REPORTED_CONTRACTION = 0.9999
 #: [period n] A batch: largest contraction factor per drive period that is assumed after an extrapolation. Larger ones
 #: are not measured well enough.

@@ -30,6 +30,8 @@ class Members(NamedTuple):
 class Motion(NamedTuple):
     """What a step reads and changes (step.py, contact_correction.py).
 
+    Written by the steps, by begin.py and record.py where a member begins or is moved, and by `Batch.put`.
+
     y (2(N+2), L)            state
     h (1, L)                 step
     phase (2, L)             sine and cosine of the drive phase
@@ -56,6 +58,8 @@ class Motion(NamedTuple):
 class Schedule(NamedTuple):
     """When each member begins, is checked, and is returned to the caller; arrays (L,).
 
+    Written by `Batch.put`, begin.py, checks.py, run.py and period_end.py.
+
     begins        1 for a new member, which begins at the kernel's next call (begin.py)
     drive_period  scaled period of the drive
     steps         steps in a period
@@ -77,7 +81,9 @@ class Schedule(NamedTuple):
 
 
 class Record(NamedTuple):
-    """What is kept of each member's periods (record.py).
+    """What is kept of each member's periods.
+
+    Written by record.py and period_end.py.
 
     periods (L,)             periods run
     strobes (L, 2R, 2, N+2)  states at the ends of periods
@@ -96,7 +102,9 @@ class Record(NamedTuple):
 
 
 class Search(NamedTuple):
-    """How far the search for each member's orbit has come (checks.py).
+    """How far the search for each member's orbit has come.
+
+    Written by checks.py and begin.py; `fine_record` also by `Batch.put` and `Batch.put_fine`.
 
     extrapolate_from (L,)    period from which a transient may be extrapolated
     wait_after_undo (L,)     periods without extrapolation after the next one that is undone
@@ -125,6 +133,8 @@ class Search(NamedTuple):
 
 class Pairs(NamedTuple):
     """Members whose neighbouring trajectory, in another lane, measures an exponent (steady/lyapunov.py).
+
+    Written by `Batch.put_pair`; growth by `bring_back` (run.py).
 
     neighbour (L,)  lane of the member's neighbouring trajectory; NO_NEIGHBOUR, or IS_NEIGHBOUR
     distance (L,)   distance to which the neighbour is brought back after each period

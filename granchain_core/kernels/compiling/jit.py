@@ -11,8 +11,9 @@ Functions that choose their code by a type are in dispatch.py.
 Options:
 
 * `nogil`, so that threads really run kernels side by side; not for brief kernels (`brief_kernel`).
-* No `nnan`/`ninf`: a NaN must stay visible. With the flags of `FAST_MATH` sums are vectorised and `x + 0.0`
-  folds away. `x * 0.0` does not, so the code for an absent effect must not multiply by zero.
+* No `nnan`/`ninf`: comparisons and selects see a NaN. With the flags of `FAST_MATH` sums are vectorised and `x + 0.0`
+  folds away. `x * 0.0` does not, so the code for an absent effect must not multiply by zero. `reassoc` with `nsz` may
+  still cancel a NaN, as in (x + y) − y; so what is checked for being finite is the state itself.
 * Numba does not notice edits in *imported* kernels; the folder of compiled code is named so that it does (sources.py).
 """
 
@@ -29,7 +30,7 @@ from .cache import keep_on_disk
 from .function_types import FunctionType
 from .link_only import compiler_options
 
-#: What the compiler may do with floating-point numbers: not assume that none is NaN or infinite.
+#: What the compiler may do with floating-point numbers. It may not assume that none is NaN or infinite.
 FAST_MATH = ("nsz", "arcp", "contract", "reassoc")
 #: Kernels allocate nothing, so reference counting is off. Nothing calls them by C's convention, not even a kernel that
 #: calls another by its address, so they need no C entry. Both leave less code to compile and to run.

@@ -46,7 +46,7 @@ from .forces import end_forces, in_xi, may_exceed, search_forces
 from .inside import fraction_at, time_inside
 from .step import point_inside
 
-#: [step size] dop853-root: largest factor between two steps. By measurement it hardly matters: with 2 for this and the
+#: [step size] dop853-root: largest factor between two steps. By measurement it hardly matters: raised to 2, as the
 #: next, 24 motions of section 2 and the rig take 0.3 % more evaluations for errors of 1e-8 and 1e-10.
 _MAX_FACTOR = 1.3
 #: [step size] dop853-root: largest factor between two steps after an error below `_SMALL_ERROR` tolerances.
