@@ -47,7 +47,7 @@ def write_sample(slots, row, y, dy, e, samples):
 
 @by_slot
 def write_account(account, slots, row, y, dy, samples):
-    """Write stored energy, work and loss of one sample. Absent: there is no account and no array for it."""
+    """Write stored energy, work and loss of one sample. Effect absent: there is no account and no array for it."""
 
 
 @write_account.of(EnergyAccount)

@@ -47,7 +47,7 @@ def three_halves_by_series(s):
 
 @by_slot
 def displacement_error(law, r, r_mid, moved, h):
-    """c (vh)^p h B_p(r), v h = `moved`, in all members; `r_mid` is [r − 1/2]_+. Absent: nothing."""
+    """c (vh)^p h B_p(r), v h = `moved`, in all members; `r_mid` is [r − 1/2]_+. Effect absent: nothing."""
     return None
 
 
@@ -60,7 +60,7 @@ def _(law, r, r_mid, moved, h):
 
 @by_slot
 def correct_displacement(law, values, y, c, changed, shift):
-    """Correct the displacements on both sides of contact c. Absent: they have no such error."""
+    """Correct the displacements on both sides of contact c. Effect absent: they have no such error."""
 
 
 @correct_displacement.of(*LAWS)

@@ -24,7 +24,7 @@ class Unequal(NamedTuple):
 
 @by_slot
 def over_mass(unequal, i, force):
-    """A force on bead i over its mass. Absent: the force itself."""
+    """A force on bead i over its mass. Effect absent: the force itself."""
     return force
 
 
@@ -35,7 +35,10 @@ def _(unequal, i, force):
 
 @by_slot
 def times_stiffness(unequal, wall, i, is_wall, elastic):
-    """The elastic force of contact i from d^{3/2}; `wall` is the last contact's stiffness. Absent: all others are 1."""
+    """The elastic force of contact i from d^{3/2}; `wall` is the last contact's stiffness.
+
+    Effect absent: all others are 1.
+    """
     return wall * elastic if is_wall else elastic
 
 

@@ -120,7 +120,7 @@ def signed_primitive(law, power, q):
 
 @by_slot
 def pull_of_damping(law, damping_over_mass, pull):
-    """λ/m times the signs with which a contact acts on its beads. Absent: None."""
+    """λ/m times the signs with which a contact acts on its beads. Effect absent: None."""
     return None
 
 

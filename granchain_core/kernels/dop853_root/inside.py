@@ -25,7 +25,7 @@ class Polynomial(NamedTuple):
 
 @internal
 def take_distance(slots, work, contact, chosen, sign):
-    """Make the overlap of a contact, or q if it is the one that is `chosen`, times a sign, the polynomial."""
+    """Load the overlap of a contact, or q if the contact is `chosen`, times a sign, into the polynomial."""
     p, begin, dense = work.polynomial, work.begin, work.dense
     if chosen:
         p[7] = sign * begin.q[0, 0]
@@ -39,7 +39,7 @@ def take_distance(slots, work, contact, chosen, sign):
 
 @internal
 def take_time(work, instant):
-    """Make the time since an instant the polynomial."""
+    """Load the time since an instant into the polynomial."""
     work.polynomial[7] = work.begin.t[0, 0] - instant
     for k in range(7):
         work.polynomial[k] = work.dense.t[k, 0]
@@ -94,7 +94,7 @@ def time_inside(work, x):
 
 @internal
 def fraction_at(work, instant, high):
-    """Fraction of the step, up to `high`, at which it is `instant`."""
+    """Fraction of the step, up to `high`, at which the time is `instant`."""
     take_time(work, instant)
     first, last = work.polynomial[7], polynomial_at(work.polynomial, high)
     if first >= 0.0:

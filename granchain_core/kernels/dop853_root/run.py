@@ -1,4 +1,4 @@
-"""Runs along a short chain: attempts with error control that may go past contact events, which are roots inside them.
+"""Runs along a short chain with error control. An attempt may pass a contact event, a root of its dense output.
 
 An attempt is made from `StepBegin` until one is accepted (accepted_step.py). The step is the part of it up to the first
 change of a contact, or up to the last point of the grid (`end_of_step`), where the state is that of the dense output.

@@ -16,8 +16,8 @@ from .chain import Point, powers, rates_at
 class Units(NamedTuple):
     """1/(tolerance · scale) of displacements and of w, by which errors are multiplied, and how many components count.
 
-    The error of t is measured as one of w. That of q is not measured: q^p is the overlap of one contact, whose
-    displacements are.
+    The error of t is measured as one of w. The error of q is not measured: q^p is the overlap of a contact, and the
+    displacements on both of its sides are measured already.
     """
 
     u: float

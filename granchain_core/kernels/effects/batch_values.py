@@ -12,5 +12,5 @@ from ..compiling.dispatch import by_slot
 
 @by_slot
 def batch_values(slot):
-    """The slot with its numbers as vectors of all members, read once for many steps. Absent: None."""
+    """The slot with its numbers as vectors of all members, read once for many steps. Effect absent: None."""
     return None

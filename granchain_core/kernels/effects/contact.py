@@ -41,7 +41,10 @@ def positive_part(overlap):
 
 @by_slot
 def closed_overlap(frozen, c, overlap):
-    """[δ]_+ of contact c, 0 where `frozen` keeps it open. Absent: the overlap's sign says whether it is closed."""
+    """[δ]_+ of contact c, 0 where `frozen` keeps it open.
+
+    Effect absent: the overlap's sign says whether it is closed.
+    """
     return positive_part(overlap)
 
 

@@ -56,7 +56,7 @@ def _(account, slots, y, dy, e):
 
 @by_slot
 def force_free_loss(account, slots, y, end):
-    """Energy that force-free contacts lose from y to `end`. Absent: there is no account."""
+    """Energy that force-free contacts lose from y to `end`. Effect absent: there is no account."""
     return 0.0
 
 
@@ -67,7 +67,7 @@ def _(account, slots, y, end):
 
 @by_slot
 def add_to_account(account, y, work, lost):
-    """Add to the work and to the energy lost in y. Absent: there is no account."""
+    """Add to the work and to the energy lost in y. Effect absent: there is no account."""
 
 
 @add_to_account.of(EnergyAccount)
@@ -94,7 +94,7 @@ def account_ends(slots, y, dy):
 
 @by_slot
 def ends_of(account, slots, y, dy):
-    """`account_ends` where there is an account. Absent: zero."""
+    """`account_ends` where there is an account. Effect absent: zero."""
     return 0.0, 0.0
 
 

@@ -24,7 +24,7 @@ class Foundation(NamedTuple):
 
 @by_slot
 def add_foundation_force(foundation, force, u):
-    """Force on a bead, `force` with −k u added. Absent: `force` itself."""
+    """Force on a bead, `force` with −k u added. Effect absent: `force` itself."""
     return force
 
 
@@ -51,7 +51,7 @@ def _(foundation):
 
 @by_slot
 def add_foundation_slope(foundation, slope, du, factor):
-    """A tangent's slope with the change of the force, −k δu, times `factor` added. Absent: the slope itself."""
+    """A tangent's slope with the change of the force, −k δu, times `factor` added. Effect absent: the slope itself."""
     return slope
 
 

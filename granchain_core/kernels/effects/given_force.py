@@ -72,7 +72,7 @@ driver_acceleration.of(ObserverCoupling)(harmonic_acceleration)
 
 @by_slot
 def prescribe_primitive(driver, slots, y, G):
-    """Copy the input force's G to the contact of the observer. Absent: nothing."""
+    """Copy the input force's G to the contact of the observer. Effect absent: nothing."""
 
 
 prescribe_primitive.absent_for(Harmonic, PrescribedMotion, Sampled)
@@ -85,7 +85,7 @@ def _(driver, slots, y, G):
 
 @by_slot
 def prescribe_force(driver, dy, e):
-    """Put the given force into the contact it acts in. Absent: nothing."""
+    """Put the given force into the contact it acts in. Effect absent: nothing."""
 
 
 prescribe_force.absent_for(Harmonic, PrescribedMotion)

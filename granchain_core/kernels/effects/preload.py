@@ -25,7 +25,7 @@ class Preload(NamedTuple):
 
 @by_slot
 def overlap(preload, y, c):
-    """δ_c from the displacements at the front of y. Absent: u_c − u_{c+1}, there is no static overlap."""
+    """δ_c from the displacements at the front of y. Effect absent: u_c − u_{c+1}, there is no static overlap."""
     return y[c] - y[c + 1]
 
 

@@ -48,7 +48,7 @@ def hold_force_free(tension, slots, y, c):
 
 @by_slot
 def contact_primitive(tension, slots, y, c, d):
-    """G of contact c, whose overlap is d if it touches. Absent: the law's."""
+    """G of contact c, whose overlap is d if it touches. Effect absent: the law's."""
     return primitive(slots.dissipation, d)
 
 
@@ -61,7 +61,7 @@ def _(tension, slots, y, c, d):
 
 @by_slot
 def write_force_free_primitive(tension, slots, y, G):
-    """Continue G of force-free contacts linearly, also below δ = 0. Absent: no contact is force-free."""
+    """Continue G of force-free contacts linearly, also below δ = 0. Effect absent: no contact is force-free."""
 
 
 @write_force_free_primitive.of(TensionCut)
@@ -73,7 +73,7 @@ def _(tension, slots, y, G):
 
 @by_slot
 def cut_tension(tension, slots, y, dy, e):
-    """Raise e[c] so that e[c] + g δ̇ ≥ 0; needs the velocities in dy. Absent: tension is allowed."""
+    """Raise e[c] so that e[c] + g δ̇ ≥ 0; needs the velocities in dy. Effect absent: tension is allowed."""
 
 
 @cut_tension.of(TensionCut)
@@ -90,7 +90,7 @@ def _(tension, slots, y, dy, e):
 
 @by_slot
 def cut_at_zero(tension, force):
-    """A contact's force as it acts. Absent: tension is allowed."""
+    """A contact's force as it acts. Effect absent: tension is allowed."""
     return force
 
 
@@ -101,7 +101,7 @@ def _(tension, force):
 
 @by_slot
 def unless_force_free(tension, c, force):
-    """The force of contact c, or 0 where it is force-free. Absent: none is."""
+    """The force of contact c, or 0 where it is force-free. Effect absent: none is."""
     return force
 
 
@@ -112,7 +112,7 @@ def _(tension, c, force):
 
 @by_slot
 def lost_in(tension, slots, y, end):
-    """Energy that force-free contacts lose from y to `end`: their elastic energy, no quadrature. Absent: 0."""
+    """Energy that force-free contacts lose from y to `end`: their elastic energy, no quadrature. Effect absent: 0."""
     return 0.0
 
 

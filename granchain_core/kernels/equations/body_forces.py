@@ -56,7 +56,7 @@ def add_force_trace(slots, i, trace, u, v, weight):
 
 @by_slot
 def account_for_bodies(account, slots, y, dy):
-    """Add the power lost by all beads to the integrand of Q; needs the velocities in dy. Absent: nothing is
+    """Add the power lost by all beads to the integrand of Q; needs the velocities in dy. Effect absent: nothing is
     integrated."""
 
 

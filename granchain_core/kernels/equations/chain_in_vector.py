@@ -73,7 +73,7 @@ def _(width, array, row):
 
 @by_slot
 def over_masses(law, inverse_mass):
-    """The damping coefficient over the masses, by which differences of G/λ are multiplied. Absent: None."""
+    """The damping coefficient over the masses, by which differences of G/λ are multiplied. Effect absent: None."""
     return None
 
 

@@ -39,7 +39,7 @@ class ScaledForce(NamedTuple):
 
 @by_slot
 def scaled_force(law, stiffness, d, rate):
-    """F/g for d = [δ]_+ and δ̇ = rate. Absent: positive, an elastic contact never pulls."""
+    """F/g for d = [δ]_+ and δ̇ = rate. Effect absent: positive, an elastic contact never pulls."""
     return 1.0
 
 
@@ -62,7 +62,10 @@ def _(quantity, step, x):
 
 @by_slot
 def enter_force_free(tension, trajectory, t):
-    """Mark the contacts that are force-free at the start of a step and evaluate the slope anew. Absent: none is."""
+    """Mark the contacts that are force-free at the start of a step and evaluate the slope anew.
+
+    Effect absent: none is.
+    """
 
 
 @enter_force_free.of(TensionCut)
@@ -83,7 +86,7 @@ def _(tension, trajectory, t):
 def leave_force_free(tension, trajectory):
     """End a step's force-free contacts: velocities stay, w and the account use the law's own G again.
 
-    Returns whether anything changed, and the slope with it. Absent: no contact is force-free.
+    Returns whether anything changed, and the slope with it. Effect absent: no contact is force-free.
     """
     return False
 
@@ -109,7 +112,7 @@ def first_kink(tension, step, until, counts, skip_wrong_side):
     """Look for the first point of the accepted step, up to `until`, at which the force of a contact reaches F = 0.
 
     Returns (outcome, fraction):
-        NO_KINK        there is none. Absent: always
+        NO_KINK        there is none. Effect absent: always
         KINK           a contact stops pushing, or pushes again, at the fraction
         WRONG_SIDE     rounding put a contact on the wrong side of F = 0 at the start. All such contacts have changed
                        sides together, to keep a symmetric motion symmetric, and the step is to be repeated; once a step

@@ -71,7 +71,7 @@ def first_event(step, counts):
 
 @by_slot
 def event_tolerance(tension):
-    """Target overlap past an event and the accepted factor. Absent: the smallest that rounding allows."""
+    """Target overlap past an event and the accepted factor. Effect absent: the smallest that rounding allows."""
     return _OVERLAP_AIM, _ACCEPTED_FACTOR
 
 

@@ -69,7 +69,10 @@ def _(step, x):
 
 @by_slot
 def record_stage(tangent, state, slope, stage):
-    """Keep what tangents need of one stage: displacements, and velocities from `slope`. Absent: there are none."""
+    """Keep what tangents need of one stage: displacements, and velocities from `slope`.
+
+    Effect absent: there are none.
+    """
 
 
 @internal

@@ -29,7 +29,7 @@ _PERIOD_END = 1e-14
 
 @by_slot
 def apply_saltation(tangent, slots, c, closes):
-    """Let tangents jump where contact c opens or closes. Absent: there are none, or they are continuous in w."""
+    """Let tangents jump where contact c opens or closes. Effect absent: there are none, or they are continuous in w."""
 
 
 apply_saltation.absent_for(Tangent)

@@ -97,7 +97,7 @@ def _(tangent, state, slope, stage):
 def propagate(tangent, slots, time, h, contacts):
     """Take the tangents through the accepted step of size h; returns its share of ∫ trace, 0 without columns.
 
-    Absent: there are none.
+    Effect absent: there are none.
     """
     return 0.0
 
@@ -137,7 +137,7 @@ def linearise(slots, time, h, contacts, tangent):
 
 @by_slot_inlined
 def linearise_dashpot(law, dampings, c, d, rate, weight):
-    """Store the damping g of contact c, times |dt/ds|, 0 where it is open; returns it times `weight`. Absent: 0.
+    """Store the damping g of contact c, times |dt/ds|, 0 where it is open; returns it times `weight`. Effect absent: 0.
 
     A closed contact stays damped even if rounding makes its overlap negative.
     """
@@ -162,7 +162,7 @@ def stage_value(tangent, stage, i, first):
 
 @by_slot_inlined
 def add_dashpot_slope(law, slope, left, right, inverse_mass, g, i):
-    """The slope of bead i's δu with the share of its two dashpots added. Absent: the slope itself."""
+    """The slope of bead i's δu with the share of its two dashpots added. Effect absent: the slope itself."""
     return slope
 
 

@@ -75,7 +75,7 @@ def approach_of(slots, instant, c):
 
 @by_slot
 def end_approaches(law, slots, instant):
-    """First and last contact at the start of a step. Absent: no force jumps there."""
+    """First and last contact at the start of a step. Effect absent: no force jumps there."""
     return 0.0
 
 

@@ -212,7 +212,7 @@ def _(law, rate, c, last, theta, log):
 
 @by_slot
 def record_closings(law, slots, start, end, span, log):
-    """Record the contacts that closed in a located step between two instants. Absent: no force jumps there.
+    """Record the contacts that closed in a located step between two instants. Effect absent: no force jumps there.
 
     The step ends just past an event; an event too near to the step's start to be distinguished from it belongs to
     the start.

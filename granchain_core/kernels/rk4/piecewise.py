@@ -38,7 +38,10 @@ class DrivePieces(NamedTuple):
 
 @by_slot
 def begin_piece(driver, slots, y, workspace):
-    """Evaluate the slope again where the driver's acceleration jumps, for the energy account. Absent: nothing jumps."""
+    """Evaluate the slope again where the driver's acceleration jumps, for the energy account.
+
+    Effect absent: nothing jumps.
+    """
 
 
 @begin_piece.of(Sampled)

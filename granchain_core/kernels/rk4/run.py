@@ -23,7 +23,7 @@ from .step import step, tabulated_displacement, tabulated_velocity
 
 @by_slot_inlined
 def advance(simd, method, trajectory, j, count, out):
-    """Take `count` steps from step index j of the period. Absent: without SIMD along the chain, one by one.
+    """Take `count` steps from step index j of the period. Without a vector along the chain: one by one.
 
     The stop flag is read often enough for a run to end within milliseconds; fewer steps are then taken.
     """

@@ -139,7 +139,10 @@ def correct_state(slots, ends, v0, y):
 
 @by_slot
 def correct_work(account, excess, y):
-    """Subtract the error of contact 0's impulse, times v_0, from the driver's work. Absent: no work is recorded."""
+    """Subtract the error of contact 0's impulse, times v_0, from the driver's work.
+
+    Effect absent: no work is recorded.
+    """
 
 
 @correct_work.of(EnergyAccount)
