@@ -47,7 +47,7 @@ def test_the_focus_stays_at_a_button_that_is_drawn_again(overlaid: bool, at: Vis
         expect(page.locator("[data-overlay=analysis] h2").first).to_be_focused()
     page.locator("#tabs button.open").evaluate("button => { button.old = true; }")
     page.evaluate("""() => {
-        const [tabs] = [...Bokeh.documents[0]._all_models.values()].filter(({ data }) => data?.attributes?.state?.tabs);
+        const [tabs] = figures.models().filter(({ data }) => data?.attributes?.state?.tabs);
         tabs.data.setv({ state: { ...tabs.data.attributes.state, validity: [`At ${performance.now()} ms.`] } }, { sync: false });
     }""")
     until(page, lambda: page.locator("#tabs button.open").evaluate("button => !button.old"))

@@ -15,8 +15,7 @@ from granchain_core.integrate import Engine, dop853_setting
 from granchain_core.kernels.error_control.orbit_record import OrbitRecord, record_orbit
 from granchain_core.kernels.forces.peaks import PEAKS
 from granchain_core.kernels.status import CANCELLED
-from granchain_core.orbits import krylov
-from granchain_core.orbits import orbit as orbits
+from granchain_core.orbits import find_orbit, krylov
 from granchain_core.orbits.orbit import sorted_multipliers
 from granchain_core.orbits.stroboscopic_map import StroboscopicMap
 from granchain_core.scene.state import rest
@@ -94,7 +93,7 @@ def test_a_long_chain_has_the_leading_multipliers_of_its_linear_modes() -> None:
 
 def test_krylov_and_dense_multipliers_agree(monkeypatch: pytest.MonkeyPatch) -> None:
     dense = granchain_core.orbit(scene("sec2"), observer=True)
-    monkeypatch.setattr(orbits, "MOST_BEADS_WITH_MULTIPLIERS", 5)
+    monkeypatch.setattr(find_orbit, "MOST_BEADS_WITH_MULTIPLIERS", 5)
     monkeypatch.setattr(krylov, "leading_multipliers", partial(krylov.leading_multipliers, count=6))
     sparse = granchain_core.orbit(scene("sec2"), period=1, start=dense.state, observer=True)
     assert np.abs(sparse.multipliers) == pytest.approx(np.abs(dense.multipliers[:6]), abs=1e-8)
