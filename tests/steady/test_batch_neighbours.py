@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from granchain_core import Scene, scene
+from granchain_core import Scene, parameter_map, resonance_curve, scene
 from granchain_core.execution.stop import Stop
 from granchain_core.integrate import batch as integrate_batch
 from granchain_core.integrate.batch import NEVER, Batch, _empty_state
@@ -61,6 +61,24 @@ def test_a_scene_alone_and_among_others_is_the_same() -> None:
     assert len({found.regime.name for found in together.values()}) > 1
 
 
+def test_a_curve_does_not_depend_on_how_many_threads_compute_it() -> None:
+    """Bit by bit; some of its points are quasi-periodic."""
+    one, three = (resonance_curve(scene("sec2"), np.linspace(1100.0, 2000.0, 25), workers=count) for count in (1, 3))
+    for name in ("frequency", "max_input_force", "max_output_force", "max_output_force_elastic"):
+        assert one.column(name).tobytes() == three.column(name).tobytes(), name
+    for mine, other in zip(one.points, three.points, strict=True):
+        assert (mine.regime, mine.force_errors, mine.status) == (other.regime, other.force_errors, other.status)
+        for part in ("displacement", "velocity"):
+            assert getattr(mine.state, part).tobytes() == getattr(other.state, part).tobytes()
+    assert len({point.regime.name for point in one.points}) > 1
+
+
+def test_a_map_does_not_depend_on_how_many_threads_compute_it() -> None:
+    axes = ("f", np.linspace(1100.0, 2000.0, 6)), ("A0", np.geomspace(3e-7, 8e-7, 5))
+    one, three = (parameter_map(scene("sec2"), *axes, workers=count) for count in (1, 3))
+    assert one.complete and one.cells.tobytes() == three.cells.tobytes()
+
+
 def test_members_that_are_due_together_are_all_returned_before_one_goes_on() -> None:
     chain = scene("sec2").evolve(f=1130.0)
     scaled, batch = scale_chain(chain), Batch(chain, Stop())
@@ -74,9 +92,9 @@ def test_an_empty_lane_that_is_not_finite_is_never_returned() -> None:
     """It holds no scene: the others go on beside it, as beside any other, and it may take a scene later."""
     chain = scene("sec2").evolve(f=1130.0)
     scaled, batch = scale_chain(chain), Batch(chain, Stop())
-    rest, last = np.zeros(2 * scaled.bodies), BATCH_SIZE - 1
+    rest = np.zeros(2 * scaled.bodies)
     batch.put(1, scaled, rest, 1, return_at=3, earliest=NEVER)
-    batch.state.motion.y[1, 0] = batch.state.motion.y[1, last] = np.nan
+    batch.state.motion.y[1, [lane for lane in range(BATCH_SIZE) if lane != 1]] = np.nan
     assert batch.run() == (1, True)
     alone = batch.strobes(1).copy()
     batch.empty(1)
