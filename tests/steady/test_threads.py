@@ -26,7 +26,7 @@ def test_every_result_arrives_once(workers: int) -> None:
 
 @pytest.mark.parametrize("kind", [ValueError, SystemExit, KeyboardInterrupt, Cancelled])
 def test_an_exception_of_a_thread_is_raised_by_the_caller(kind: type[BaseException]) -> None:
-    """Also one that is no `Exception`, and `Cancelled` that nobody asked for: no one waits for a thread that has ended."""
+    """Also one that is no `Exception`, and `Cancelled` unasked: nobody waits for a thread that has ended."""
     def work(items: Iterator[int]) -> Iterator[int]:
         for item in items:
             if item == 3:
