@@ -112,6 +112,10 @@ def _empty_state(beads: int) -> BatchState:
     )
 
 
+#: `Pairs.neighbour` of an empty lane. The kernels never return a neighbouring trajectory, so they return no empty lane.
+_EMPTY = IS_NEIGHBOUR
+
+
 def _no_check(*arguments: object) -> None:
     """What stands for a check of types until the kernel is known."""
 
@@ -135,8 +139,9 @@ class Batch:
             self.empty(member)
 
     def empty(self, member: int) -> None:
-        """Leave a lane empty: it holds the example at rest, which is never checked."""
+        """Leave a lane empty: it runs the example from rest, and is never returned, not even if it is not finite."""
         self.put(member, self.example, np.zeros(len(self.state.motion.y)), 1, NEVER, NEVER)
+        self.state.pairs.neighbour[member] = _EMPTY
 
     def put(self, member: int, scaled: ScaledChain, y: np.ndarray, refine: float, return_at: int,
             earliest: int = 0, fine: int = 0) -> None:

@@ -83,50 +83,62 @@ def test_docstrings_and_pages_say_up_to_how_many_beads_there_are_multipliers() -
     for page, words in (("orbits", f"Up to {most} beads the whole derivative"), ("stability", f"of more than {most} beads only"),
                         ("regimes", f"up to {most} beads if the claim"), ("regimes", f"*Run:* up to {most} beads")):
         assert words in " ".join((ROOT / "docs" / f"{page}.md").read_text(encoding="utf-8").split()), page
-    assert f"20 to {lyapunov_spectrum.MOST_SPECTRUM_PERIODS:,}." in str(lyapunov_spectrum.lyapunov_spectrum.__doc__) and lyapunov_spectrum._BLOCKS == 20
+    assert f"20 to {lyapunov_spectrum.MOST_SPECTRUM_PERIODS:,}." in str(lyapunov_spectrum.lyapunov_spectrum.__doc__)
+    assert lyapunov_spectrum._BLOCKS == 20
 
 
 PARTS = {2: "half", 3: "a third", 4: "a quarter"}
 NUMBERS = {2: "two", 3: "three", 4: "four"}
+#: The exponent below which P would be above `_LONGEST_COMPARISON`, as it is printed.
+SMALLEST_EXPONENT = round(regime_criteria._BOUNDED_GROWTH / regime_criteria._LONGEST_COMPARISON, 4)
 
 
 @pytest.mark.parametrize(("file", "said"), [
     ("docs/design.md", {
-        r"empties every ([\d.]+) ms": 1e3 * threads._INTERVAL, r"each task is a block of (\d+) points": resonance_curve.POINTS_IN_TASK,
+        r"empties every ([\d.]+) ms": 1e3 * threads._INTERVAL,
+        r"each task is a block of (\d+) points": resonance_curve.POINTS_IN_TASK,
         r"at most (\d+) periods before Python looks": regime_decisions.EXAMINED_AFTER,
         r"motion continues with (a \w+) of the step": PARTS[job.FINE_STEPS_PER_COARSE],
-        r"coarse steps for (\d+) periods beside": exponent_measurements.MEASURED_PERIODS, r"at best to ([\de-]+) \(`CURVE_ACCURACY`": single_chain.CURVE_ACCURACY}),
-    ("docs/cost.md", {r"blocks of (\d+) cells": scheduled.CELLS_IN_TASK, r"; (\d+) cells are one task": scheduled.CELLS_IN_TASK,
-                      r"blocks of (\d+) points": resonance_curve.POINTS_IN_TASK, r"; (\d+) points are one task": resonance_curve.POINTS_IN_TASK}),
-    ("docs/orbits.md", {r"stops at a residual of ([\de-]+),": residuals.RESIDUAL_GOAL, r"If it ends above ([\de-]+), it fails": residuals.ACCEPTED_RESIDUAL,
-                        r"is less exact, has ([\de-]+) and": residuals.FIXED_STEP_RESIDUAL_GOAL,
-                        r"is less exact, has 1e-9 and ([\de-]+)\.": residuals.ACCEPTED_FIXED_STEP_RESIDUAL}),
+        r"coarse steps for (\d+) periods beside": exponent_measurements.MEASURED_PERIODS,
+        r"at best to ([\de-]+) \(`CURVE_ACCURACY`": single_chain.CURVE_ACCURACY}),
+    ("docs/orbits.md", {
+        r"stops at a residual of ([\de-]+),": residuals.RESIDUAL_GOAL,
+        r"If it ends above ([\de-]+), it fails": residuals.ACCEPTED_RESIDUAL,
+        r"is less exact, has ([\de-]+) and": residuals.FIXED_STEP_RESIDUAL_GOAL,
+        r"is less exact, has 1e-9 and ([\de-]+)\.": residuals.ACCEPTED_FIXED_STEP_RESIDUAL}),
     ("docs/parameter-map.md", {r"sends blocks of (\d+) cells": scheduled.CELLS_IN_TASK}),
     ("docs/regime-evidence.md", {
-        r"The measurement begins after (\d+) periods": regime_decisions.EXAMINED_AFTER, r"with at least (\d+) strobes": regime_criteria.SLOW_RECORD,
+        r"The measurement begins after (\d+) periods": regime_decisions.EXAMINED_AFTER,
+        r"with at least (\d+) strobes": regime_criteria.SLOW_RECORD,
         r"Its first (\d+) periods do not count": exponent_measurements.TURNING_PERIODS}),
     ("docs/regimes.md", {
-        r"drive periods, at most \| (\d+); \d+ for a draft": regime_decisions.MOST_SETTLING_PERIODS, r"\| \d+; (\d+) for a draft": jobs_in_batch._DRAFT_PERIODS,
+        r"drive periods, at most \| (\d+); \d+ for a draft": regime_decisions.MOST_SETTLING_PERIODS,
+        r"\| \d+; (\d+) for a draft": jobs_in_batch._DRAFT_PERIODS,
         r"for a draft \| (\d+); [\d,]+ near an unstable": regime_decisions.MOST_SETTLING_PERIODS,
         r"; ([\d,]+) near an unstable orbit \|": f"{regime_decisions.MOST_SETTLING_PERIODS * regime_decisions._DEPARTURE_FACTOR:,}",
         r"The orbit near the motion\.\* After (\d+) periods Newton": regime_decisions.EXAMINED_AFTER,
         r"not decided after (\d+) periods is settled alone": regime_decisions.MOST_SETTLING_PERIODS,
-        r"above 0, below ([\d.]+) \| P would be above `_LONGEST_COMPARISON`": round(regime_criteria._BOUNDED_GROWTH / regime_criteria._LONGEST_COMPARISON, 4),
-        r"computed it is r, at most ([\d.]+), and": Regime("periodic", 1, 1.0, None, 1).assumed_contraction, r"decay was seen it is ([\d.]+) \(": Regime("periodic", 1, None, None, 1).assumed_contraction,
-        r"\| ([\d.]+) or more \| measured": round(regime_criteria._BOUNDED_GROWTH / regime_criteria._LONGEST_COMPARISON, 4),
-        r"below ([\d.]+) \+ 3σ": round(regime_criteria._BOUNDED_GROWTH / regime_criteria._LONGEST_COMPARISON, 4),
+        r"above 0, below ([\d.]+) \| P would be above `_LONGEST_COMPARISON`": SMALLEST_EXPONENT,
+        r"computed it is r, at most ([\d.]+), and": Regime("periodic", 1, 1.0, None, 1).assumed_contraction,
+        r"decay was seen it is ([\d.]+) \(": Regime("periodic", 1, None, None, 1).assumed_contraction,
+        r"\| ([\d.]+) or more \| measured": SMALLEST_EXPONENT,
+        r"below ([\d.]+) \+ 3σ": SMALLEST_EXPONENT,
         r"Up to (\d+) periods the limit": regime_criteria._BOUNDED_GROWTH / regime_criteria._LARGEST_NEUTRAL_EXPONENT}),
     ("granchain_core/steady/regime_criteria.py", {
-        r"After (\d+) periods a growth": regime_decisions.EXAMINED_AFTER, r"a growth of ([\d.]+) a period": regime_criteria.CLEAR_GROWTH,
+        r"After (\d+) periods a growth": regime_decisions.EXAMINED_AFTER,
+        r"a growth of ([\d.]+) a period": regime_criteria.CLEAR_GROWTH,
         r"multiplied a distance by ([\de]+)\.": float(f"{math.exp(regime_criteria.CLEAR_GROWTH * regime_decisions.EXAMINED_AFTER):.0e}")}),
     ("docs/cost.md", {
-        r"such a cell runs (\d+) periods or more": regime_decisions.EXAMINED_AFTER, r"exponent, (\d+) periods at a time": exponent_measurements.MEASURED_PERIODS,
-        r"up to (\d+) periods for the coarse run": regime_decisions.MOST_SETTLING_PERIODS, r"from rest; (\d+) points are one task": resonance_curve.POINTS_IN_TASK,
-        r"blocks of (\d+) points": resonance_curve.POINTS_IN_TASK, r"blocks of (\d+) cells": scheduled.CELLS_IN_TASK}),
-    ("docs/parameter-map.md", {r"sends blocks of (\d+) cells": scheduled.CELLS_IN_TASK}),
+        r"such a cell runs (\d+) periods or more": regime_decisions.EXAMINED_AFTER,
+        r"exponent, (\d+) periods at a time": exponent_measurements.MEASURED_PERIODS,
+        r"up to (\d+) periods for the coarse run": regime_decisions.MOST_SETTLING_PERIODS,
+        r"from rest; (\d+) points are one task": resonance_curve.POINTS_IN_TASK,
+        r"blocks of (\d+) points": resonance_curve.POINTS_IN_TASK,
+        r"blocks of (\d+) cells": scheduled.CELLS_IN_TASK, r"; (\d+) cells are one task": scheduled.CELLS_IN_TASK}),
     ("docs/hard-cases.md", {r"irregular run \((\d+) periods of two": exponent_measurements.MEASURED_PERIODS}),
     ("docs/glossary.md", {r"up to (\d+) beads in one vector": SHORT_CHAIN}),
-    ("granchain_core/kernels/batch/checks.py", {r"at most (\w+) times the distance that the contraction factor": NUMBERS[int(checks.FARTHEST_EXTRAPOLATION)]}),
+    ("granchain_core/kernels/batch/checks.py", {
+        r"at most (\w+) times the distance that the contraction factor": NUMBERS[int(checks.FARTHEST_EXTRAPOLATION)]}),
 ], ids=lambda given: given if isinstance(given, str) else "")
 def test_prose_has_the_values_of_the_constants(file: str, said: dict[str, float | str]) -> None:
     """Numbers in sentences of the docs and of docstrings, where a name in their place would not be read."""
@@ -134,7 +146,10 @@ def test_prose_has_the_values_of_the_constants(file: str, said: dict[str, float 
     for pattern, value in said.items():
         found = re.findall(pattern, text)
         assert len(found) == 1, pattern
-        assert found[0] == value if isinstance(value, str) else float(found[0]) == pytest.approx(value, rel=1e-12), pattern
+        if isinstance(value, str):
+            assert found[0] == value, pattern
+        else:
+            assert float(found[0]) == pytest.approx(value, rel=1e-12), pattern
 
 
 def test_the_definitions_have_the_values_of_the_constants_they_name() -> None:

@@ -40,7 +40,8 @@ def assert_same(one: Branch, other: Branch) -> None:
         for name in ("knob", "arclength", "residuals", "liouville", "max_input_force", "max_output_force",
                      "max_output_force_elastic"):
             assert getattr(mine, name) == getattr(its, name)
-    special = [[(s.kind, s.knob, s.interval, s.multiplier, s.contact, s.event, str(s.normal_form)) for s in b.special] for b in (one, other)]
+    special = [[(s.kind, s.knob, s.interval, s.multiplier, s.contact, s.event, str(s.normal_form)) for s in b.special]
+               for b in (one, other)]
     assert special[0] == special[1]
 
 

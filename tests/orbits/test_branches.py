@@ -210,7 +210,8 @@ def test_the_threads_do_not_decide_which_arm_of_an_isola_is_kept(slow: int, monk
     """
     shown, frequency, period = closed_loop()
     begun = begin_branch(shown.evolve(f=frequency), "f", 100.0, 3000.0, period, both=True)
-    copies = [replace(begun, half_branches=tuple(HalfBranch(half.direction, list(half.points)) for half in begun.half_branches)) for _ in range(2)]
+    copies = [replace(begun, half_branches=tuple(HalfBranch(half.direction, list(half.points))
+                                                 for half in begun.half_branches)) for _ in range(2)]
     alternately = Continuation(copies[0])
     for _ in alternately:
         pass

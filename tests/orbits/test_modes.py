@@ -29,7 +29,9 @@ def section(name: str, periods: int, **knobs: float) -> Section:
     return last
 
 
-@pytest.mark.parametrize(("name", "knobs"), [("sec2", {}), ("sec2", {"f": 1130.0}), ("rig", {}), ("fig11-free", {}), ("sec2", {"dissipation": "tsuji"})])
+@pytest.mark.parametrize(("name", "knobs"), [
+    ("sec2", {}), ("sec2", {"f": 1130.0}), ("rig", {}), ("fig11-free", {}), ("sec2", {"dissipation": "tsuji"}),
+])
 @pytest.mark.parametrize("rank", [0, 3])
 def test_a_mode_comes_back_as_its_multiplier_says(name: str, knobs: dict[str, float], rank: int) -> None:
     orbit = orbit_of(name, **knobs)

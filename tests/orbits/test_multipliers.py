@@ -8,8 +8,9 @@ v_i = w_i + (G_{i−1} − G_i)/m_i and B = ∂v/∂u at fixed w they are the sa
 
 from __future__ import annotations
 
+import importlib
 import json
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import numpy as np
@@ -24,8 +25,9 @@ from granchain_core.kernels.effects.driver import Harmonic
 from granchain_core.kernels.effects.preload import Preload
 from granchain_core.orbits.stroboscopic_map import StroboscopicMap
 
-_STORED = np.load(Path(__file__).parents[1] / "reference" / "monodromy.npz")
-CASES = ("founded", "kuwabara-kono", "preload", "rig-60", "sec2-340", "sec2-615", "tsuji")
+REFERENCE = Path(__file__).parents[1] / "reference"
+_STORED = np.load(REFERENCE / "monodromy.npz")
+CASES = sorted({key.split("/")[0] for key in _STORED})
 _EXPONENT = {"linear": 0.0, "none": 0.0, "tsuji": 0.25, "kuwabara-kono": 0.5}
 
 
@@ -70,6 +72,15 @@ def multiplier_error(found: np.ndarray, exact: np.ndarray) -> float:
     """Largest distance between eigenvalues that are paired one to one."""
     distance = np.abs(np.linalg.eigvals(found)[:, None] - np.linalg.eigvals(exact)[None, :])
     return float(distance[linear_sum_assignment(distance)].max())
+
+
+def test_the_file_has_the_cases_of_its_generator(monkeypatch: pytest.MonkeyPatch) -> None:
+    """So that making the file again makes no case that nothing reads, and loses none."""
+    monkeypatch.syspath_prepend(str(REFERENCE))
+    generator = importlib.import_module("make_monodromy")
+    assert sorted(case.scene.name for case in generator.stored_cases()) == CASES
+    for case in generator.stored_cases():
+        assert record(case.scene.name)["scene"] == asdict(case.scene)
 
 
 @pytest.mark.parametrize("name", CASES)

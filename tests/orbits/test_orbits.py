@@ -6,6 +6,7 @@ import json
 
 import numpy as np
 import pytest
+from chains import LAWS
 from linear_chain import linear_multipliers
 
 import granchain_core
@@ -17,6 +18,11 @@ from granchain_core.orbits.stroboscopic_map import StroboscopicMap
 from granchain_core.steady.settling.nearby_orbit import orbit_of
 
 pytestmark = pytest.mark.quick
+
+#: Changes of sec2: each damping law and none, and what else may be in the equations.
+CHAINS: dict[str, dict[str, object]] = {
+    **{law: {"dissipation": law} for law in LAWS}, "founded": {"kappa": 0.001}, "pressed": {"F0": 0.5},
+}
 
 #: A chain whose beads are at rest positions at phase 0, to 3e-8 of their amplitude.
 VANISHING = scene("sec2").evolve(N=3, A0=9.787e-8, D=2.0578, kappa=1.835e-3, F0=0.79338, f=84.05)
@@ -31,10 +37,9 @@ def test_newton_ends_at_the_maps_own_rounding_in_a_few_iterations(frequency: flo
     assert orbit.stable
 
 
-@pytest.mark.parametrize("changes", [{}, {"kappa": 0.001}, {"dissipation": "tsuji"}, {"dissipation": "kuwabara-kono"},
-                                     {"F0": 0.5}, {"wall": "rigid", "N": 3}])
-def test_the_determinant_of_the_derivative_is_liouvilles(changes: dict[str, object]) -> None:
-    shown = scene("sec2").evolve(**changes)
+@pytest.mark.parametrize("name", [*CHAINS, "rigid"])
+def test_the_determinant_of_the_derivative_is_liouvilles(name: str) -> None:
+    shown = scene("sec2").evolve(**(CHAINS | {"rigid": {"wall": "rigid", "N": 3}})[name])
     stroboscopic_map = StroboscopicMap(shown, 1)
     flow = stroboscopic_map(0.1 * np.random.default_rng(1).standard_normal(2 * shown.N))
     sign, logarithm = np.linalg.slogdet(flow.derivative)
@@ -43,10 +48,10 @@ def test_the_determinant_of_the_derivative_is_liouvilles(changes: dict[str, obje
     assert logarithm == pytest.approx(flow.log_determinant, rel=1e-6, abs=1e-8)
 
 
-@pytest.mark.parametrize("changes", [{}, {"kappa": 0.001}, {"dissipation": "tsuji"}, {"F0": 0.5}])
-def test_every_column_of_the_derivative_is_a_finite_difference_of_the_map(changes: dict[str, object]) -> None:
+@pytest.mark.parametrize("name", CHAINS)
+def test_every_column_of_the_derivative_is_a_finite_difference_of_the_map(name: str) -> None:
     # Contacts open and close on the way; a missing saltation would show here and not in the determinant.
-    shown = scene("sec2").evolve(f=615.0, N=4, **changes)
+    shown = scene("sec2").evolve(f=615.0, N=4, **CHAINS[name])
     stroboscopic_map = StroboscopicMap(shown, 1)
     x = 0.3 * np.random.default_rng(2).standard_normal(2 * shown.N)
     exact = stroboscopic_map(x).derivative

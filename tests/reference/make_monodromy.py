@@ -54,7 +54,6 @@ def stored_cases() -> list[Case]:
         replace(small, name="tsuji", law="tsuji"),
         replace(small, name="kuwabara-kono", law="kuwabara-kono"),
         replace(small, name="preload", preload=0.5),
-        replace(small, name="none", law="none", damping=0.0),
     ]
     return [Case(s, seed=i + 1) for i, s in enumerate(varied)] + [
         Case(replace(SEC2, name="sec2-340", periods=1), settle=20),

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import random
+from collections.abc import Iterator
 
 import numpy as np
 import pytest
 
-from granchain_core import Scene, scene
+from granchain_core import Scene, parameter_map, resonance_curve, scene
 from granchain_core.execution.stop import Stop
-from granchain_core.integrate.batch import NEVER, Batch
+from granchain_core.integrate import batch as integrate_batch
+from granchain_core.integrate.batch import NEVER, Batch, _empty_state
 from granchain_core.integrate.scaling import scale_chain
 from granchain_core.kernels.batch.record import STROBES_KEPT
+from granchain_core.kernels.batch.state import BatchState
 from granchain_core.kernels.batch_size import BATCH_SIZE
 from granchain_core.steady.batch.jobs_in_batch import batch_results
 from granchain_core.steady.steady_state import SteadyState
@@ -19,6 +22,9 @@ from granchain_core.steady.steady_state import SteadyState
 #: Rows of a map: with one frequency all members end their periods at once, and several are due for a check together.
 #: Among them are periodic, quasi-periodic and chaotic motions.
 SCENES = [scene("sec2").evolve(f=f, A0=a) for f in (130.0, 340.0, 700.0, 1130.0) for a in (3e-7, 4e-7, 5e-7, 8e-7)]
+
+#: Lanes of members that have their neighbours in the next lanes: as many pairs as a batch can hold.
+MEMBERS_OF_PAIRS = range(0, BATCH_SIZE - 1, 2)
 
 
 def results(scenes: list[Scene]) -> dict[tuple[float, float], SteadyState]:
@@ -34,6 +40,15 @@ def fingerprint(found: SteadyState) -> tuple[object, ...]:
             [float(top).hex() for top in found.maxima], errors)
 
 
+def arrays_of(group: tuple) -> Iterator[np.ndarray]:
+    """All arrays of a named tuple and of those in it."""
+    for one in group:
+        if isinstance(one, tuple):
+            yield from arrays_of(one)
+        else:
+            yield one
+
+
 def test_a_scene_alone_and_among_others_is_the_same() -> None:
     together = results(SCENES)
     shuffled = SCENES.copy()
@@ -46,6 +61,24 @@ def test_a_scene_alone_and_among_others_is_the_same() -> None:
     assert len({found.regime.name for found in together.values()}) > 1
 
 
+def test_a_curve_does_not_depend_on_how_many_threads_compute_it() -> None:
+    """Bit by bit; some of its points are quasi-periodic."""
+    one, three = (resonance_curve(scene("sec2"), np.linspace(1100.0, 2000.0, 25), workers=count) for count in (1, 3))
+    for name in ("frequency", "max_input_force", "max_output_force", "max_output_force_elastic"):
+        assert one.column(name).tobytes() == three.column(name).tobytes(), name
+    for mine, other in zip(one.points, three.points, strict=True):
+        assert (mine.regime, mine.force_errors, mine.status) == (other.regime, other.force_errors, other.status)
+        for part in ("displacement", "velocity"):
+            assert getattr(mine.state, part).tobytes() == getattr(other.state, part).tobytes()
+    assert len({point.regime.name for point in one.points}) > 1
+
+
+def test_a_map_does_not_depend_on_how_many_threads_compute_it() -> None:
+    axes = ("f", np.linspace(1100.0, 2000.0, 6)), ("A0", np.geomspace(3e-7, 8e-7, 5))
+    one, three = (parameter_map(scene("sec2"), *axes, workers=count) for count in (1, 3))
+    assert one.complete and one.cells.tobytes() == three.cells.tobytes()
+
+
 def test_members_that_are_due_together_are_all_returned_before_one_goes_on() -> None:
     chain = scene("sec2").evolve(f=1130.0)
     scaled, batch = scale_chain(chain), Batch(chain, Stop())
@@ -55,25 +88,41 @@ def test_members_that_are_due_together_are_all_returned_before_one_goes_on() -> 
     assert list(batch.state.record.periods) == [3] * BATCH_SIZE
 
 
+def test_an_empty_lane_that_is_not_finite_is_never_returned() -> None:
+    """It holds no scene: the others go on beside it, as beside any other, and it may take a scene later."""
+    chain = scene("sec2").evolve(f=1130.0)
+    scaled, batch = scale_chain(chain), Batch(chain, Stop())
+    rest = np.zeros(2 * scaled.bodies)
+    batch.put(1, scaled, rest, 1, return_at=3, earliest=NEVER)
+    batch.state.motion.y[1, [lane for lane in range(BATCH_SIZE) if lane != 1]] = np.nan
+    assert batch.run() == (1, True)
+    alone = batch.strobes(1).copy()
+    batch.empty(1)
+    batch.put(0, scaled, rest, 1, return_at=3, earliest=NEVER)
+    assert batch.run() == (0, True)
+    np.testing.assert_array_equal(batch.strobes(0), alone)
+
+
 @pytest.mark.parametrize("lost", ["chain", "neighbour"])
-@pytest.mark.parametrize("wrong", [0, 2])
+@pytest.mark.parametrize("wrong", MEMBERS_OF_PAIRS)
 def test_a_pair_that_is_not_finite_leaves_the_others_theirs(wrong: int, lost: str) -> None:
     chain = scene("sec2").evolve(f=1130.0)
     scaled, batch = scale_chain(chain), Batch(chain, Stop())
     rest = np.zeros(2 * scaled.bodies)
     offset = np.where(scaled.embed(np.ones(2 * scaled.beads)) > 0.0, 1e-9, 0.0)
-    for member in (0, 2):
+    for member in MEMBERS_OF_PAIRS:
         broken = np.full_like(rest, np.nan) if member == wrong else rest
         batch.put_pair(member, member + 1, scaled, broken if lost == "chain" else rest,
                        offset if lost == "chain" else offset + broken, float(np.linalg.norm(offset)), 4)
     finite, growth = {}, {}
-    for _ in range(2):
+    for _ in MEMBERS_OF_PAIRS:
         member, finite[member] = batch.run()
         growth[member] = batch.growth(member).copy()
         batch.empty(member)
         batch.empty(member + 1)
-    assert finite == {wrong: lost == "neighbour", 2 - wrong: True}
-    assert np.isfinite(growth[2 - wrong]).all() and len(growth[2 - wrong]) == 4
+    assert finite == {member: member != wrong or lost == "neighbour" for member in MEMBERS_OF_PAIRS}
+    for member in MEMBERS_OF_PAIRS:
+        assert member == wrong or (np.isfinite(growth[member]).all() and len(growth[member]) == 4)
     assert np.isnan(growth[wrong]).all() and len(growth[wrong]) == 1  # it is given back at once
 
 
@@ -89,18 +138,44 @@ def test_a_pair_runs_for_as_many_periods_as_there_are_places_for() -> None:
 
 def test_the_lanes_of_a_pair_are_free_for_any_scene_afterwards() -> None:
     chain = scene("sec2").evolve(f=1130.0)
-    scaled, batch = scale_chain(chain), Batch(chain, Stop())
+    scaled = scale_chain(chain)
     rest, offset = np.zeros(2 * scaled.bodies), scaled.embed(np.full(2 * scaled.beads, 1e-9))
-    batch.put(2, scaled, rest, 1, return_at=3, earliest=NEVER)
+    never_paired, batch = Batch(chain, Stop()), Batch(chain, Stop())
+    never_paired.put(0, scaled, rest, 1, return_at=3, earliest=NEVER)
+    assert never_paired.run() == (0, True)
     batch.put_pair(0, 1, scaled, rest, offset, float(np.linalg.norm(offset)), 2)
     assert batch.run() == (0, True)
     for lane in (0, 1):
         batch.put(lane, scaled, rest, 1, return_at=3, earliest=NEVER)
-    found = {}
-    for _ in range(3):
+    for _ in (0, 1):
         lane, finite = batch.run()
-        found[lane] = batch.strobes(lane).copy()
         assert finite
+        np.testing.assert_array_equal(batch.strobes(lane), never_paired.strobes(0))
         batch.empty(lane)
-    for lane in (0, 1):  # as the scene in lane 2, which was never one of a pair
-        np.testing.assert_array_equal(found[lane], found[2])
+
+
+@pytest.mark.parametrize("sentinel", [np.nan, 12345.0])
+@pytest.mark.parametrize("preload", [0.0, 0.5])
+def test_nothing_that_was_in_the_arrays_before_a_scene_is_read(preload: float, sentinel: float,
+                                                             monkeypatch: pytest.MonkeyPatch) -> None:
+    """With all arrays filled before the first scene, coarse and fine runs, disturbances and pairs are the same bits.
+
+    Only what no scene writes stays as it was built.
+    """
+    scenes = [one.evolve(F0=preload) for one in SCENES[: BATCH_SIZE + 3]]
+
+    def filled(beads: int) -> BatchState:
+        state = _empty_state(beads)
+        for array in arrays_of(state):
+            array[...] = sentinel if array.dtype.kind == "f" else 12345
+        for stage in state.motion.stages:  # driver and wall, which no step writes there
+            stage[[0, beads + 1, beads + 2, -1]] = 0.0
+        if not preload:
+            state.motion.static_overlap[:] = 0.0  # chains without preload have none, and never write it
+        return state
+
+    as_built = results(scenes)
+    assert preload or len({found.regime.name for found in as_built.values()}) > 1  # exponents were measured
+    monkeypatch.setattr(integrate_batch, "_empty_state", filled)
+    for knobs, found in results(scenes).items():
+        assert fingerprint(found) == fingerprint(as_built[knobs]), knobs

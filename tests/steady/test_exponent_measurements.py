@@ -125,7 +125,10 @@ def test_a_neutral_mean_is_compared_for_as_long_as_a_chain_alone_measures() -> N
 #: Largest swing of the logarithm of a distance that was seen on a torus (`_BOUNDED_GROWTH`).
 SEEN_SWING = 4.0
 @pytest.mark.parametrize("periods", [200, 420])
-@pytest.mark.parametrize(("length", "left"), [(0.25, 0.0), (0.4, 0.148), (0.5, 0.0), (0.75, 0.617), (0.9, 0.807), (1.0, 0.0), (1.5, 0.863), (2.0, 1.045), (4.0, 0.772)])
+@pytest.mark.parametrize(("length", "left"), [
+    (0.25, 0.0), (0.4, 0.148), (0.5, 0.0), (0.75, 0.617), (0.9, 0.807), (1.0, 0.0), (1.5, 0.863), (2.0, 1.045),
+    (4.0, 0.772),
+])
 def test_the_bias_of_a_bounded_swing_by_its_period(periods: int, length: float, left: float) -> None:
     """The mean's bias at the worst phase, over the swing/P of a plain mean; the swing's period in blocks. Zeros of the
     window are at 1, 1/2, 1/4 block. Swings that are short against half a block are averaged out, and longer ones are

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 import pytest
 
+from granchain_core.errors import Cancelled
 from granchain_core.execution.stop import Stop
 from granchain_core.steady.batch.threads import on_all_cores
 
@@ -23,9 +24,9 @@ def test_every_result_arrives_once(workers: int) -> None:
     assert sorted(found) == [item * item for item in range(100)]
 
 
-@pytest.mark.parametrize("kind", [ValueError, SystemExit, KeyboardInterrupt])
+@pytest.mark.parametrize("kind", [ValueError, SystemExit, KeyboardInterrupt, Cancelled])
 def test_an_exception_of_a_thread_is_raised_by_the_caller(kind: type[BaseException]) -> None:
-    """Also one that is no `Exception`: nobody waits for a thread that has ended."""
+    """Also one that is no `Exception`, and `Cancelled` unasked: nobody waits for a thread that has ended."""
     def work(items: Iterator[int]) -> Iterator[int]:
         for item in items:
             if item == 3:
@@ -45,3 +46,19 @@ def test_an_exception_of_a_thread_is_raised_by_the_caller(kind: type[BaseExcepti
     reader.join(60.0)
     assert not reader.is_alive()
     assert [(type(one), one.args) for one in raised] == [(kind, ("three",))] and ended
+
+
+@pytest.mark.parametrize("asked", ["stop", "ended"])
+def test_what_was_asked_to_end_ends_without_an_exception(asked: str) -> None:
+    """The work sees the flag before the caller does, and leaves with `Cancelled`."""
+    ended, stop = Stop(), Stop()
+
+    def work(items: Iterator[int]) -> Iterator[int]:
+        for item in items:
+            if item == 3:
+                (stop if asked == "stop" else ended).set()
+                raise Cancelled
+            yield item
+
+    found = list(on_all_cores(work, range(6), ended, stop, workers=1))
+    assert found == [0, 1, 2][: len(found)] and ended

@@ -45,14 +45,14 @@ def on_all_cores(work: Callable[[Iterator[Item]], Iterable[Result]], items: Iter
 
     `stop` is read between results and ends the iteration, as closing the generator does; `ended`, which the kernels of
     `work` poll, is then set. `pause` is called before an item is drawn and may wait. Whatever exception ends a thread
-    is raised here.
+    is raised here, and the first one if there are several; so is `Cancelled`, unless `ended` or `stop` asked for it.
     """
     shared: _Shared[Item] = _Shared(items, pause)
     found: queue.SimpleQueue[Any] = queue.SimpleQueue()
     a_thread_ended = threading.Event()
     count = workers or usable_cores()
-    threads = [threading.Thread(target=_share, args=(work, shared, found, a_thread_ended), daemon=True,
-                                name=f"core-{i}") for i in range(count)]
+    threads = [threading.Thread(target=_share, args=(work, shared, found, a_thread_ended, (ended, stop)),
+                                daemon=True, name=f"core-{i}") for i in range(count)]
     for thread in threads:
         thread.start()
     try:
@@ -78,15 +78,17 @@ def on_all_cores(work: Callable[[Iterator[Item]], Iterable[Result]], items: Iter
 
 
 def _share(work: Callable[[Iterator[Item]], Iterable[Result]], items: Iterator[Item],
-           found: queue.SimpleQueue[Any], a_thread_ended: threading.Event) -> None:
-    """One thread's share into `found`: its results, the exception that ended it, if any, and None."""
+           found: queue.SimpleQueue[Any], a_thread_ended: threading.Event, stops: tuple[Stop | None, ...]) -> None:
+    """One thread's share into `found`: its results, the exception that ended it, if any, and None.
+
+    `Cancelled` is no exception to report if one of `stops` is set.
+    """
     try:
         for result in work(items):
             found.put(result)
-    except Cancelled:
-        pass
     except BaseException as problem:  # raised again by the thread that reads the queue
-        found.put(problem)
+        if not (isinstance(problem, Cancelled) and any(stops)):
+            found.put(problem)
     finally:
         found.put(None)
         a_thread_ended.set()

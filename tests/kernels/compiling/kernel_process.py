@@ -22,7 +22,11 @@ right = bool(peaks[0] == -np.inf and peaks[1] == 0.0)
 print(json.dumps({"folder": str(CACHE_FOLDER), "right": right, "loaded": sum(reset_peaks.stats.cache_hits.values())}))
 """
 #: Says which folder is chosen, and compiles nothing.
-FOLDER = "import json\nfrom granchain_core.kernels.compiling.cache_folder import CACHE_FOLDER\nprint(json.dumps({'folder': str(CACHE_FOLDER)}))"
+FOLDER = """
+import json
+from granchain_core.kernels.compiling.cache_folder import CACHE_FOLDER
+print(json.dumps({"folder": str(CACHE_FOLDER)}))
+"""
 
 
 def used(folder: Path, program: str = PROGRAM) -> tuple[dict, list[str]]:

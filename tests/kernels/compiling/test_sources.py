@@ -33,7 +33,8 @@ def hashed(folder: Path, text: str) -> str:
 
 @pytest.mark.parametrize(("old", "new"), [
     ("#: A comment.", "#: Another comment,\n#: of two lines."), ("  # of a spring", ""), ('"""Docstring."""', '"""Other words."""'),
-    ('"""Module."""\n', ""), ("\n\n\n", "\n\n\n\n"), ("x**power", "x ** power"), ("FACTOR * x**power + 1.0", "(FACTOR * x**power\n            + 1.0)"),
+    ('"""Module."""\n', ""), ("\n\n\n", "\n\n\n\n"), ("x**power", "x ** power"),
+    ("FACTOR * x**power + 1.0", "(FACTOR * x**power\n            + 1.0)"),
 ])
 def test_comments_and_layout_keep_the_hash(old: str, new: str, tmp_path: Path) -> None:
     assert old in SOURCE

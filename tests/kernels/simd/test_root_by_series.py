@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from granchain_core.kernels.batch_size import CHOICES
 from granchain_core.kernels.compiling.jit import kernel
 from granchain_core.kernels.simd.functions import root_by_series
 from granchain_core.kernels.simd.vector import BLOCK_WIDTH, aligned, load8, loader, store
@@ -32,6 +33,10 @@ CASES = {
     BLOCK_WIDTH: (roots_of_eight, -200.0, 10.0, 5.0 / 16.0 * 2.0**-39),
     4: (roots_of_four, -30.0, 10.0, 35.0 / 128.0 * (3.0 * 2.0**-12) ** 4),
 }
+
+
+def test_every_size_of_a_batch_has_a_case() -> None:
+    assert set(CASES) == set(CHOICES)
 
 
 @pytest.mark.parametrize("width", CASES)

@@ -1,4 +1,7 @@
-"""A NaN goes through what closes contacts, in every lane as in scalar code: it is never taken for an open contact."""
+"""A NaN goes through what closes contacts, in every lane as in scalar code: it is never taken for an open contact.
+
+A sum that cancels may lose one.
+"""
 
 from __future__ import annotations
 
@@ -44,3 +47,21 @@ def test_nan_overlaps_stay_nan_and_pass_their_damping() -> None:
     np.testing.assert_array_equal(out[2], gated)
     np.testing.assert_array_equal(one_by_one[1], gated)
     assert (np.isnan(out[1]) == np.isnan(VALUES)).all() and (out[1][[0, 1, 5]] > 0.0).all()
+
+
+@kernel
+def there_and_back(x, y, alone, out):
+    """(x + y) − y of eight values, in vectors and one by one."""
+    rows = load8(y, 0)
+    store(out, 0, (load8(x, 0) + rows) - rows)
+    for i in range(alone.size):
+        alone[i] = (x[0, i] + y[0, i]) - y[0, i]
+
+
+def test_a_nan_that_cancels_in_a_sum_may_be_lost() -> None:
+    """`reassoc` with `nsz` lets the compiler take (x + y) − y for x. So states are examined, not sums of them."""
+    x, y, out, alone = aligned(1), aligned(1), aligned(1), np.zeros(8)
+    x[0], y[0] = 1.0, VALUES
+    there_and_back(x, y, alone, out)
+    for found in (out[0], alone):
+        np.testing.assert_array_equal(found, 1.0)
