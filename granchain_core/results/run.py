@@ -321,7 +321,8 @@ def run_from(engine: Engine, samples: Samples, first_sample: int, regime: Regime
         displacement=samples.displacement, velocity=samples.velocity, force=samples.force,
         drive_displacement=scene.drive_amplitude * np.sin(2 * np.pi * inside / engine.samples),
         max_input_force=float(maxima[0]), max_output_force=float(maxima[1]), max_output_force_elastic=float(maxima[2]),
-        status=status, regime=regime, displacement_error=error, energy_residual=residual(samples.energy, engine.scaled.static_energy), cost=cost,
+        status=status, regime=regime, displacement_error=error,
+        energy_residual=residual(samples.energy, engine.scaled.static_energy), cost=cost,
         start=start, force_errors=ForceErrors.of(force_errors), jumps=_jumps(engine, first_sample),
     )
 
