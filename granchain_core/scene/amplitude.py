@@ -55,8 +55,8 @@ class Amplitude:
             raise BadInput(f"A drive of {self.formula.replace('-', ' ')} has one value.")
         if wrong := [value for value in self.values if not (math.isfinite(value) and value > 0.0)]:
             unit = FORMULAS.get(self.formula, ("m", 0))[0]
-            raise BadInput(f"The drive amplitude ({self.formula.replace('-', ' ')}) is {wrong[0]:g} {unit}; it must be a "
-                           "number above 0, and any such number is valid.")
+            raise BadInput(f"The drive amplitude ({self.formula.replace('-', ' ')}) is {wrong[0]:g} {unit}; it must be "
+                           "a number above 0, and any such number is valid.")
 
     @classmethod
     def table(cls, frequencies: Sequence[float] | np.ndarray, amplitudes: Sequence[float] | np.ndarray,
