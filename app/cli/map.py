@@ -174,7 +174,8 @@ def _tell(found: ParameterMap, curves: list[BifurcationCurve], computed: int, ar
 def _curve_json(curve: BifurcationCurve) -> dict[str, Any]:
     return {"kind": curve.kind, "period": curve.period, "x": [point.x for point in curve.points],
             "y": [point.y for point in curve.points],
-            "multiplier": [[point.multiplier.real, point.multiplier.imag] for point in curve.points]}
+            "multiplier": [[point.multiplier.real, point.multiplier.imag] for point in curve.points],
+            "ended_low": curve.ended_low, "ended_high": curve.ended_high}
 
 
 def _largest(errors: np.ndarray) -> float:

@@ -29,8 +29,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
                         help="drive periods of the orbit; by default those of the settled motion, 1 if it has none or "
                              "with another --start")
     parser.add_argument("--start", default="settled", metavar="settled|rest|random|near|FILE",
-                        help="where Newton's method starts; near: where the settled motion passes near an orbit that "
-                             "it does not follow; FILE is a recorded run, whose last sample counts")
+                        help="where Newton's method starts; near: near the settled motion, for an orbit that it does "
+                             "not follow; FILE is a recorded run, whose last sample counts")
     parser.add_argument("--seed", type=whole, default=0, help="seed of the random start")
     parser.add_argument("--observer", action="store_true",
                         help="also compute the multipliers of the observer of model (4)")
@@ -53,7 +53,7 @@ def do(arguments: argparse.Namespace) -> None:
             "period": found.period, "residual": found.residual, "newton_residuals": list(found.newton_residuals),
             "multipliers": _pairs(found.multipliers), "stable": found.stable,
             "multiplier_errors": _numbers(found.multiplier_errors), "stability_certain": found.stability_certain,
-            "period_note": found.period_note or None,
+            "period_note": found.period_note or None, "distance_of_motion": found.distance_of_motion,
         }
         if found.observer_multipliers is not None:
             data["observer_multipliers"] = _pairs(found.observer_multipliers)
@@ -65,6 +65,8 @@ def do(arguments: argparse.Namespace) -> None:
     count = len(found.newton_residuals) - 1
     print(f"{chosen.name}: orbit of period {found.period}, {found.stability_words()}, "
           f"residual {found.residual:.1e} after {count} Newton iteration{'' if count == 1 else 's'}")
+    if found.distance_of_motion is not None:
+        print(found.distance_words())
     _show_multipliers("multipliers", found.multipliers, found.multiplier_errors)
     if found.observer_multipliers is not None:
         _show_multipliers(f"observer, {found.observer_stability_words()}", found.observer_multipliers,

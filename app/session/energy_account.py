@@ -21,4 +21,4 @@ def with_account(settled: Settled, stop: Stop) -> Settled:
     engine = Engine(run.scene, setting, 1, account=True, stop=stop)
     engine.start(settled.state)
     samples = engine.record(max(1, round((len(run.time) - 1) / run.samples)))
-    return replace(settled, run=replace(run, energy_residual=residual(samples.energy)))
+    return replace(settled, run=replace(run, energy_residual=residual(samples.energy, engine.scaled.static_energy)))

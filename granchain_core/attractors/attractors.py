@@ -219,9 +219,14 @@ def _run_on(scene: Scene, state: State, periods: int, stop: Stop | None) -> tupl
     return engine.state, strobes, engine.scaled.scales.velocity
 
 
+def or_infinite(error: float | None) -> float:
+    """A stated error; infinity where none is stated, which is never the least."""
+    return np.inf if error is None else error
+
+
 def _attractor(group: list[Found], origins: list[Origin]) -> Attractor:
     """The attractor of a group: forces with the least error, or in an irregular group the largest of any member."""
-    best = min((one.result for one in group), key=lambda result: result.output_force_error or 0.0)
+    best = min((one.result for one in group), key=lambda result: or_infinite(result.output_force_error))
     first, maxima = group[0], best.maxima
     if first.result.regime.period is None:
         maxima = np.max([one.result.maxima for one in group], axis=0)

@@ -48,7 +48,10 @@ class Found:
 
     @property
     def tolerance(self) -> float:
-        """How far its section may be from the true one, relative to the largest displacement or w."""
+        """How far its section may be from the true one, relative to the largest displacement or w.
+
+        0 where no error is stated: such a result is the same only as what it equals, and periodic ones all state one.
+        """
         if self.orbit is not None:
             return _ORBIT_DIFFERENCE / max(_LEAST_CONTRACTION, 1.0 - min(1.0, float(np.abs(self.orbit.multipliers[0]))))
         return min(_LARGEST_DIFFERENCE, self.result.output_force_error or 0.0)

@@ -51,8 +51,22 @@ _MOST_SECANTS = 14
 _MOST_HALVINGS = 3
 #: Smallest fraction of the way to the next y that is tried as one step.
 _LEAST_FRACTION = 1.0 / 32.0
+#: Largest change of the critical multiplier's angle [rad] and relative change of the first knob in one step; a point
+#: beyond either is on another curve. Both are chosen, not measured: a step that is refused is halved, down to
+#: `_LEAST_FRACTION`, so smaller ones cost time, and larger ones may take a neighbouring curve for this one.
+_LARGEST_TURN, _LARGEST_JUMP = 0.15, 0.25
 #: Angle from +1 or −1 below which a critical pair is not distinguished from a real multiplier [rad].
 _REAL_ANGLE = 1e-7
+
+#: Why a curve ends: the last value asked for, and the three ways in which it is lost, in words.
+REACHED, BRANCH_LOST, MULTIPLIER_LOST, ANOTHER_CURVE = CURVE_ENDS = (
+    "reached", "branch lost", "multiplier lost", "another curve")
+END_WORDS = {
+    REACHED: "the last value was reached",
+    BRANCH_LOST: "Newton's method loses the branch, as where a curve turns back",
+    MULTIPLIER_LOST: "no multiplier meets the condition any more",
+    ANOTHER_CURVE: "the next point is on another curve",
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -224,54 +238,67 @@ def points_of_curve(scene: Scene, kind: str, state: State | np.ndarray, values: 
     lost the curve ends, and points beyond that are left out. Points come back in ascending y, that at the scene's own y
     included. Raises `BadInput`, `Cancelled`, and `ComputationError` where there is no such point to begin with.
     """
+    return follow_curve(scene, kind, state, values, period, x, y, stop, on_point)[0]
+
+
+def follow_curve(scene: Scene, kind: str, state: State | np.ndarray, values: Iterable[float], period: int = 1,
+                 x: str = "f", y: str = "A0", stop: Stop | None = None,
+                 on_point: Callable[[BifurcationPoint], None] | None = None
+                 ) -> tuple[list[BifurcationPoint], str, str]:
+    """`points_of_curve`, and why the curve ends at its least and at its largest y, each one of `CURVE_ENDS`."""
     first = bifurcation_point(scene, kind, state, period, x, y, stop)
     wanted = sorted({float(QUANTITIES[y].check(value)) for value in values} - {first.y})
     found = [first]
     if on_point is not None:
         on_point(first)
-    for side in ([v for v in wanted if v > first.y], [v for v in reversed(wanted) if v < first.y]):
-        points = [first]
+    ends = []
+    for side in ([v for v in reversed(wanted) if v < first.y], [v for v in wanted if v > first.y]):
+        points, ended = [first], REACHED
         for value in side:
             if stop:
                 raise Cancelled
             following = _follow(scene, kind, points, value, period, x, y, stop)
-            if following is None:
+            if isinstance(following, str):
+                ended = following
                 break
             points.append(following)
             if on_point is not None:
                 on_point(following)
         found += points[1:]
-    return sorted(found, key=lambda point: point.y)
+        ends.append(ended)
+    return sorted(found, key=lambda point: point.y), ends[0], ends[1]
 
 
 def _follow(scene: Scene, kind: str, points: list[BifurcationPoint], value: float, period: int, x: str, y: str,
-            stop: Stop | None) -> BifurcationPoint | None:
-    """The curve's point at y = `value`, by smaller steps where one is too large; None where the curve ends."""
+            stop: Stop | None) -> BifurcationPoint | str:
+    """The curve's point at y = `value`, by smaller steps where one is too large; where the curve ends, why."""
     way, part = points[-2:], 1.0
     whole = abs(value - way[-1].y)
     while way[-1].y != value:
         end = value if abs(value - way[-1].y) <= part * whole else way[-1].y + part * (value - points[-1].y)
         following = _stepped(scene, kind, way, end, period, x, y, stop)
-        if following is not None:
+        if isinstance(following, BifurcationPoint):
             way = [way[-1], following]
             continue
         part *= 0.5
         if part < _LEAST_FRACTION:
-            return None
+            return following
     return way[-1]
 
 
 def _stepped(scene: Scene, kind: str, way: list[BifurcationPoint], end: float, period: int, x: str, y: str,
-             stop: Stop | None) -> BifurcationPoint | None:
-    """The point at y = `end` by one step from the last two; None if there is none that continues smoothly."""
+             stop: Stop | None) -> BifurcationPoint | str:
+    """The point at y = `end` by one step from the last two; if none continues smoothly, why."""
     guess, state = _extrapolated(way, end, x, y)
     try:
         branch = _Branch(scene.evolve(**{x: guess, y: end}), x, guess, period, stop, way[-1].multiplier)
         along = _inwards(branch, state) if kind == "fold" else np.append(np.zeros(len(state)), 1.0)
         found = _nearest(branch, kind, np.append(state, 1.0), along, y)
-    except (ComputationError, BadInput):
-        return None
-    return found if _continues(way[-1], found) else None
+    except ComputationError as problem:
+        return MULTIPLIER_LOST if problem.status == "no-point" else BRANCH_LOST
+    except BadInput:
+        return BRANCH_LOST
+    return found if _continues(way[-1], found) else ANOTHER_CURVE
 
 
 def _inwards(branch: _Branch, state: np.ndarray) -> np.ndarray:
@@ -304,4 +331,4 @@ def _extrapolated(way: list[BifurcationPoint], y: float, x_knob: str, y_knob: st
 def _continues(before: BifurcationPoint, after: BifurcationPoint) -> bool:
     """Whether the critical multiplier and the first knob continue smoothly: else the point is on another curve."""
     turned = abs(abs(np.angle(after.multiplier)) - abs(np.angle(before.multiplier)))
-    return bool(turned <= 0.15 and abs(after.x / before.x - 1.0) <= 0.25)
+    return bool(turned <= _LARGEST_TURN and abs(after.x / before.x - 1.0) <= _LARGEST_JUMP)

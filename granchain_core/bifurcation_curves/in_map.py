@@ -1,7 +1,9 @@
 """Bifurcation curves in a map: found between neighbouring cells and continued through its rows.
 
 A pair of neighbouring cells determines what is searched between them: periods n and 2n a period doubling, a periodic
-and a quasi-periodic cell a Neimark–Sacker point, anything else the fold at which an orbit ends. The orbit of the
+and a quasi-periodic cell a Neimark–Sacker point. Beside a chaotic cell all three kinds are tried in turn, since a
+cascade or a subcritical bifurcation may lie within one cell; beside a period that is another multiple of n a period
+doubling, then a fold; else the fold at which an orbit ends. An unsettled or failed cell says nothing. The orbit of the
 periodic cell is continued towards its neighbour; the search for the point starts where a multiplier is nearest to its
 critical value.
 """
@@ -19,7 +21,7 @@ from ..orbits import Orbit, periodic_orbit
 from ..orbits.stroboscopic_map import refuse_cut
 from ..parameter_map.cells import CELL_REGIMES, ParameterMap
 from ..scene.quantities import QUANTITIES
-from .continuation import BifurcationPoint, bifurcation_point, points_of_curve
+from .continuation import END_WORDS, REACHED, BifurcationPoint, bifurcation_point, follow_curve
 
 #: Steps in which an orbit is carried from its cell to the neighbour.
 _STEPS = 6
@@ -42,6 +44,9 @@ class BifurcationCurve:
     points : list of BifurcationPoint
         In ascending y: `x` and `y`, the knobs in SI, `multiplier`, the critical one, and `state`, the orbit's scaled
         displacements and w at phase 0.
+    ended_low, ended_high : str
+        Why the curve ends at its least and at its largest y, one of `CURVE_ENDS`: "reached", the last value asked for;
+        "branch lost", as at a turning point in y; "multiplier lost"; "another curve", a jump; "" if not known.
 
     Examples
     --------
@@ -54,6 +59,8 @@ class BifurcationCurve:
     kind: str
     period: int
     points: list[BifurcationPoint]
+    ended_low: str = ""
+    ended_high: str = ""
 
     def sentence(self, x: str, y: str) -> str:
         """The curve in words; `x` and `y` are the names of the knobs."""
@@ -61,16 +68,19 @@ class BifurcationCurve:
         for knob, values in ((x, [point.x for point in self.points]), (y, [point.y for point in self.points])):
             unit = QUANTITIES[knob].unit
             ends.append(f"{knob} {min(values):.7g} to {max(values):.7g}{'' if unit in ('', '1') else ' ' + unit}")
-        return f"{self.kind.replace('_', ' ')} of period {self.period}: {', '.join(ends)}, {len(self.points)} points"
+        said = f"{self.kind.replace('_', ' ')} of period {self.period}: {', '.join(ends)}, {len(self.points)} points"
+        early = [f"ends at the {side} {y}: {END_WORDS[why]}" for side, why in
+                 (("least", self.ended_low), ("largest", self.ended_high)) if why not in ("", REACHED)]
+        return "; ".join([said, *early])
 
 
 @dataclass(frozen=True)
 class _Pair:
-    """Two neighbouring cells of one row: the periodic one, the other, and what lies between them."""
+    """Two neighbouring cells of one row: the periodic one, the other, and the kinds to try between them, in order."""
 
     inside: int
     outside: int
-    kind: str
+    kinds: tuple[str, ...]
     period: int
 
 
@@ -125,16 +135,15 @@ def bifurcation_curves(found: ParameterMap, rows: Iterable[int] | None = None, v
     curves: list[BifurcationCurve] = []
     for row in chosen:
         for pair in _pairs(found, row):
-            point = _between(found, pair, stop)
-            if point is None or any(_lies_on(found, point, pair, curve) for curve in curves):
+            kind, point = _between(found, pair, stop)
+            if point is None or any(_lies_on(found, point, kind, pair.period, curve) for curve in curves):
                 continue
             scene = grid.cell(pair.inside).evolve(**{grid.x.knob: point.x})
             try:
-                points = points_of_curve(scene, pair.kind, point.state, heights, pair.period, grid.x.knob, grid.y.knob,
-                                         stop)
+                points = follow_curve(scene, kind, point.state, heights, pair.period, grid.x.knob, grid.y.knob, stop)
             except ComputationError:
                 continue
-            curves.append(BifurcationCurve(pair.kind, pair.period, points))
+            curves.append(BifurcationCurve(kind, pair.period, *points))
             if on_curve is not None:
                 on_curve(curves[-1])
     return curves
@@ -143,23 +152,43 @@ def bifurcation_curves(found: ParameterMap, rows: Iterable[int] | None = None, v
 def _pairs(found: ParameterMap, row: int) -> Iterator[_Pair]:
     """Neighbours in a row of which one is periodic and the other something else."""
     width = found.grid.shape[1]
-    quasi = CELL_REGIMES.index("quasi-periodic")
+    names = np.array(CELL_REGIMES)[found.cells["regime"]]
     for column in range(width - 1):
         numbers = row * width + column, row * width + column + 1
         for inside, outside in (numbers, numbers[::-1]):
             period, other = int(found.cells["period"][inside]), int(found.cells["period"][outside])
             if period == 0 or other == period or found.cells["regime"][outside] < 0:
                 continue
-            if found.cells["regime"][outside] == quasi:
-                yield _Pair(inside, outside, "neimark_sacker", period)
-            elif other == 2 * period:
-                yield _Pair(inside, outside, "period_doubling", period)
-            elif period != 2 * other:
-                yield _Pair(inside, outside, "fold", period)
+            kinds = _kinds(period, other, str(names[outside]))
+            if kinds:
+                yield _Pair(inside, outside, kinds, period)
 
 
-def _between(found: ParameterMap, pair: _Pair, stop: Stop | None) -> BifurcationPoint | None:
-    """The point between two cells, from the orbit that comes nearest to it; None where there is none."""
+def _kinds(period: int, other: int, regime: str) -> tuple[str, ...]:
+    """What to try between an orbit of `period` and a neighbour of this regime and period, 0 where it has none."""
+    if regime in ("unsettled", "failed") or period == 2 * other:
+        return ()
+    if regime == "quasi-periodic":
+        return ("neimark_sacker",)
+    if other == 0:
+        return ("period_doubling", "neimark_sacker", "fold")
+    if other == 2 * period:
+        return ("period_doubling",)
+    return ("period_doubling", "fold") if other % period == 0 else ("fold",)
+
+
+def _between(found: ParameterMap, pair: _Pair, stop: Stop | None) -> tuple[str, BifurcationPoint | None]:
+    """The first of the pair's kinds that is found between its cells, and the point; None where there is none."""
+    point = None
+    for kind in pair.kinds:
+        point = _point_between(found, pair, kind, stop)
+        if point is not None:
+            return kind, point
+    return pair.kinds[-1], None
+
+
+def _point_between(found: ParameterMap, pair: _Pair, kind: str, stop: Stop | None) -> BifurcationPoint | None:
+    """The point of one kind, from the orbit that comes nearest to it; None where there is none."""
     grid = found.grid
     columns = [number % grid.shape[1] for number in (pair.inside, pair.outside)]
     a, b = (grid.x.values[column] for column in columns)
@@ -169,7 +198,7 @@ def _between(found: ParameterMap, pair: _Pair, stop: Stop | None) -> Bifurcation
         for x in np.linspace(a, b, _STEPS + 1):
             scene = grid.cell(pair.inside).evolve(**{grid.x.knob: float(x)})
             orbit = periodic_orbit(scene, pair.period, None if orbit is None else orbit.state, stop=stop)
-            away = _away(orbit, pair.kind)
+            away = _away(orbit, kind)
             if away < nearest:
                 best, nearest = orbit, away
     except ComputationError:
@@ -177,7 +206,7 @@ def _between(found: ParameterMap, pair: _Pair, stop: Stop | None) -> Bifurcation
     if best is None:
         return None
     try:
-        point = bifurcation_point(best.scene, pair.kind, best.state, pair.period, grid.x.knob, grid.y.knob, stop)
+        point = bifurcation_point(best.scene, kind, best.state, pair.period, grid.x.knob, grid.y.knob, stop)
     except (BadInput, ComputationError):
         return None
     low, high = min(a, b) - _CELLS_OUTSIDE * abs(b - a), max(a, b) + _CELLS_OUTSIDE * abs(b - a)
@@ -192,11 +221,12 @@ def _away(orbit: Orbit, kind: str) -> float:
     return float(np.abs(orbit.multipliers - (1.0 if kind == "fold" else -1.0)).min())
 
 
-def _lies_on(found: ParameterMap, point: BifurcationPoint, pair: _Pair, curve: BifurcationCurve) -> bool:
-    """Whether a point is on a curve found before."""
-    if (curve.kind, curve.period) != (pair.kind, pair.period):
+def _lies_on(found: ParameterMap, point: BifurcationPoint, kind: str, period: int, curve: BifurcationCurve) -> bool:
+    """Whether a point is on a curve found before; beyond the curve's ends it is not."""
+    rows = [one.y for one in curve.points]
+    if (curve.kind, curve.period) != (kind, period) or not rows[0] <= point.y <= rows[-1]:
         return False
     values = found.grid.x.values
     cell = (values[-1] - values[0]) / (len(values) - 1)
-    there = np.interp(point.y, [one.y for one in curve.points], [one.x for one in curve.points])
+    there = np.interp(point.y, rows, [one.x for one in curve.points])
     return bool(abs(there - point.x) <= _CELLS_APART * cell)

@@ -34,7 +34,8 @@ class BetterMinimum(Exception):
 class Profile:
     """The profile of one parameter: values and least misfits above the minimum; the interval, and which ends are open.
 
-    An open end is a bound at which the misfit is not yet too large: the data do not limit the parameter there.
+    At an open end the misfit is not yet too large: the end is a bound, and the data do not limit the parameter there,
+    or it is the farthest value that was tried.
     """
 
     values: tuple[float, ...]
@@ -116,5 +117,5 @@ def _end(problem: Problem, best: np.ndarray, j: int, others: list[int], ridge: n
             part = (top - root_inside) / (root_outside - root_inside)
             trial = inside + min(max(part, 0.1), 0.9) * (outside - inside)
     if math.isnan(outside):
-        return inside, inside == bound
+        return inside, True  # the limit was never crossed: the interval goes on, nobody knows how far
     return inside + (top - root_inside) / (root_outside - root_inside) * (outside - inside), False

@@ -114,6 +114,14 @@ class ScaledChain:
         """Length of the whole state array."""
         return 2 * self.bodies + (2 if self.slots.account is not None else 0)
 
+    @property
+    def static_energy(self) -> float:
+        """Energy of the contacts at rest under the preload alone, which no motion needs; 0 without preload."""
+        if self.slots.preload is None:
+            return 0.0
+        elastic = self.slots.chain.stiffness * self.slots.preload.static ** (EXPONENT + 1.0)
+        return float(elastic.sum()) / (EXPONENT + 1.0)
+
     def with_own_tension(self) -> ScaledChain:
         """A copy with its own flags of force-free contacts, if there are any: an engine writes into them."""
         if self.slots.tension is None:

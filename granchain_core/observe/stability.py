@@ -2,7 +2,8 @@
 
 The orbit is followed from value to value, each Newton iteration starting from the orbit before; where that ends, the
 steady state from rest is tried. A crossing is narrowed down by bisection, again on orbits and not on the interpolated
-curve.
+curve. Where an orbit could not be reached from the one before, a change of stability is a jump to another branch, which
+has no threshold.
 """
 
 from __future__ import annotations
@@ -10,7 +11,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
@@ -43,7 +43,10 @@ class ObserverPoint:
 
 @dataclass(frozen=True)
 class Threshold:
-    """The observer's stability changes between `low` and `high`; `gains`: it becomes stable as the value rises."""
+    """The observer's stability changes between `low` and `high`; `gains`: it becomes stable as the value rises.
+
+    Among the `jumps` of an `ObserverStability` the orbits at both values are on two branches, and nothing crosses.
+    """
 
     low: float
     high: float
@@ -52,12 +55,16 @@ class Threshold:
 
 @dataclass(frozen=True)
 class ObserverStability:
-    """Points in the order of the values, and every crossing of |μ| = 1 between neighbours on the same kind of orbit."""
+    """Points in the order of the values, and every crossing of |μ| = 1 between neighbours on one branch.
+
+    `jumps` are the neighbours of unlike stability whose orbits are not on one branch, as far as Newton's method tells.
+    """
 
     scene: Scene
     knob: str
     points: tuple[ObserverPoint, ...]
     thresholds: tuple[Threshold, ...]
+    jumps: tuple[Threshold, ...] = ()
 
     def column(self, name: str) -> np.ndarray:
         """One attribute of all points."""
@@ -78,27 +85,41 @@ def observer_stability(scene: Scene, knob: str, values: Sequence[float], period:
     scenes = [scene.evolve(**{knob: float(value)}) for value in values]
     orbit: Orbit | None = None
     orbits: list[Orbit | None] = []
+    continued: list[bool] = []
     points = []
     for value, one in zip(values, scenes, strict=True):
-        orbit, failure = _follow(one, orbit, period, stop)
+        before = orbit
+        orbit = _continued(one, before, stop)
+        continued.append(orbit is not None)
+        failure = ""
+        if orbit is None:  # the orbit before has ended or is too far away, or there was none
+            orbit, failure = _from_rest(one, period, stop)
         orbits.append(orbit)
         points.append(_point(float(value), orbit, failure))
-    found = []
-    for (a, left), (b, right) in pairwise(zip(points, orbits, strict=True)):
-        if left is not None and right is not None and left.period == right.period \
-                and (a.observer_largest < 1.0) != (b.observer_largest < 1.0):
+    found, jumps = [], []
+    for (a, left), (b, right), on_branch in zip(zip(points, orbits, strict=True),
+                                                zip(points[1:], orbits[1:], strict=True), continued[1:], strict=False):
+        if left is None or right is None or (a.observer_largest < 1.0) == (b.observer_largest < 1.0):
+            continue
+        if on_branch:
             found.append(_locate(scene, knob, a, b, left, stop))
-    return ObserverStability(scene, knob, tuple(points), tuple(found))
+        else:
+            jumps.append(_between(a, b, a.value, b.value))
+    return ObserverStability(scene, knob, tuple(points), tuple(found), tuple(jumps))
 
 
-def _follow(scene: Scene, before: Orbit | None, period: int | None,
-            stop: Stop | None) -> tuple[Orbit | None, str]:
-    """The orbit nearest to the one before, else the one reached from rest, else none and why."""
-    if before is not None:
-        try:
-            return periodic_orbit(scene, before.period, before.state, observer=True, stop=stop), ""
-        except ComputationError:
-            pass  # the orbit before has ended or is too far away: the steady state from rest is tried next
+def _continued(scene: Scene, before: Orbit | None, stop: Stop | None) -> Orbit | None:
+    """The orbit that Newton's method reaches from the one before; None where there is none."""
+    if before is None:
+        return None
+    try:
+        return periodic_orbit(scene, before.period, before.state, observer=True, stop=stop)
+    except ComputationError:
+        return None
+
+
+def _from_rest(scene: Scene, period: int | None, stop: Stop | None) -> tuple[Orbit | None, str]:
+    """The orbit reached from rest, else none and why."""
     try:
         return periodic_orbit(scene, period, observer=True, stop=stop), ""
     except ComputationError as problem:
@@ -117,12 +138,16 @@ def _locate(scene: Scene, knob: str, a: ObserverPoint, b: ObserverPoint, orbit: 
     low, high, stable_at_low = a.value, b.value, a.observer_largest < 1.0
     while abs(high - low) > LOCATED * abs(b.value - a.value):
         middle = 0.5 * (low + high)
-        now, _ = _follow(scene.evolve(**{knob: middle}), orbit, orbit.period, stop)
-        if now is None or now.period != orbit.period:
+        now = _continued(scene.evolve(**{knob: middle}), orbit, stop)
+        if now is None:
             break
         if bool(now.observer_stable) == stable_at_low:
             low, orbit = middle, now
         else:
             high = middle
-    rising = b.value > a.value
-    return Threshold(min(low, high), max(low, high), stable_at_low != rising)
+    return _between(a, b, low, high)
+
+
+def _between(a: ObserverPoint, b: ObserverPoint, low: float, high: float) -> Threshold:
+    """The change of stability between two neighbours, known to lie between two values."""
+    return Threshold(min(low, high), max(low, high), (a.observer_largest < 1.0) != (b.value > a.value))

@@ -25,6 +25,8 @@ from .stroboscopic_map import Flow, StroboscopicMap, refuse_cut
 
 #: Why an orbit has period 1 where a start was given.
 NO_PERIOD_GIVEN = "period 1 was taken, because a start was given without a period"
+#: The same where an orbit is sought near a motion, and the caller gives no start.
+NO_PERIOD_OF_SEARCH = "period 1 was taken, because none was given"
 
 
 def periodic_orbit(scene: Scene, period: int | None = None, start: State | None = None, observer: bool = False,

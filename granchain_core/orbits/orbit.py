@@ -57,6 +57,9 @@ class Orbit(Labelled):
         with more than 100 beads.
     period_note : str
         Why period 1 was assumed, in words; empty if a period was given or found.
+    distance_of_motion : float or None
+        Of an orbit sought near a motion (`orbit_near_motion`): its least distance from the motion's states at phase 0,
+        relative to the largest displacement and velocity in these. Else None.
 
     Examples
     --------
@@ -78,6 +81,7 @@ class Orbit(Labelled):
     monodromy: np.ndarray | None = None
     observer_monodromy: np.ndarray | None = None
     period_note: str = ""
+    distance_of_motion: float | None = None
 
     @property
     def changes(self) -> np.ndarray:
@@ -166,6 +170,8 @@ class Orbit(Labelled):
         values: dict[str, Attribute] = {
             **provenance(self.scene, FLOW_METHOD, None), "period": self.period, "residual": self.residual,
             "stable": int(self.stable), "liouville": or_nan(self.liouville)}
+        if self.distance_of_motion is not None:
+            values["distance_of_motion"] = self.distance_of_motion
         return values if self.observer_stable is None else {**values, "observer_stable": int(self.observer_stable)}
 
     def summary(self) -> list[str]:
@@ -176,7 +182,14 @@ class Orbit(Labelled):
                 f"leading multiplier {lead.real:+.4f}{lead.imag:+.4f}i, |μ| {modulus_words(abs(lead))}"
                 + ("" if self.multiplier_errors is None else f" ± {self.multiplier_errors[0]:.0e}"),
                 f"closes to {self.residual:.1e} of its largest displacement and w",
+                *([] if self.distance_of_motion is None else [self.distance_words()]),
                 *([self.period_note] if self.period_note else [])]
+
+    def distance_words(self) -> str:
+        """How near the motion comes to an orbit that was sought from it; empty where it was not."""
+        if self.distance_of_motion is None:
+            return ""
+        return f"the motion comes within {self.distance_of_motion:.2g} of it, relative to its own size"
 
 
 def _is_certain(multipliers: np.ndarray, errors: np.ndarray | None) -> bool:

@@ -36,10 +36,10 @@ class Response:
     """The pulse ratio: strong pushes of the driver per number of periods, whether they are in step, and the evidence.
 
     `in_step` is whether the reflected pulse is in step with one strong push in `periods`; None in a stop band, or with
-    several strong pushes per orbit. `contact_phase` and `peak_phase` are the drive's phases [degrees] at which the
-    strongest push begins and is strongest; the phase is 0 where the driver moves forward through its middle, and None
-    where driver and bead 1 never part. `returning` is relative to 2πf A0, `transmission` is largest output over largest
-    input force.
+    several strong pushes per orbit. It is measured for 1:1 only: one strong push in several periods counts as in step.
+    `contact_phase` and `peak_phase` are the drive's phases [degrees] at which the strongest push begins and is
+    strongest; the phase is 0 where the driver moves forward through its middle, and None where driver and bead 1 never
+    part. `returning` is relative to 2πf A0, `transmission` is largest output over largest input force.
     """
 
     strong: int

@@ -2,8 +2,10 @@
 
 A chaotic or quasi-periodic motion passes near unstable periodic orbits. States that nearly come back after n periods
 are near one of period n (Auerbach et al. 1987); and the orbit that a period doubling or a Neimark–Sacker bifurcation
-made unstable lies in the middle of the new attractor. Newton's method on the stroboscopic map is started from the
-present state, from the middle of the section and from the closest returns.
+made unstable lies inside the new attractor. Newton's method on the stroboscopic map is started from the
+present state, from the mean of the section's states and from the closest returns. It may end far from where it began:
+no orbit is refused for that, but its distance from the motion is stated. The search of steady/settling/nearby_orbit.py
+decides whether a motion settles on an orbit, and takes only orbits within a tenth of the motion.
 """
 
 from __future__ import annotations
@@ -25,27 +27,29 @@ from ..steady.regime_criteria import LONGEST_LOCKED_PERIOD
 from ..steady.residuals import least_displacement
 from ..steady.returns import least_period
 from ..steady.settling.advance import run_until_settled
-from .find_orbit import NO_PERIOD_GIVEN, periodic_orbit
+from .find_orbit import NO_PERIOD_OF_SEARCH, periodic_orbit
 from .orbit import Orbit
 from .stroboscopic_map import SAME_ORBIT_DISTANCE, StroboscopicMap, refuse_cut
 
 #: Closest returns from which Newton's method is started.
 _STARTS = 4
-#: Fewest periods between two of them.
+#: Fewest periods between two of them, so that the four are of different passages: a motion that comes back after n
+#: periods does so from several states one after another.
 _PERIODS_BETWEEN_STARTS = 5
 #: Periods of a settled motion near which an orbit is sought.
 _RECORDED_PERIODS = 400
 #: An orbit within this distance of a settled motion is that of the motion; one farther away is another.
 OWN_ORBIT_DISTANCE = 1e-3
-#: States of the section whose mean is its middle: a multiple of all short periods.
-_STATES_OF_MIDDLE = 120
+#: States of the section whose mean is taken: a multiple of all short periods.
+_STATES_OF_MEAN = 120
 
 
 def orbit_near_motion(scene: Scene, period: int | None = None, stop: Stop | None = None) -> Orbit:
-    """An orbit of `period` drive periods (1 by default) near the settled motion from rest, which does not follow it.
+    """A periodic orbit sought near the settled motion from rest, of `period` drive periods (1 by default).
 
-    The motion is recorded for 400 periods after it has settled, and `search_orbit` starts from it. Raises what that
-    raises, and `ComputationError` where the search ends on the orbit that the motion follows.
+    The motion itself does not follow the orbit. The motion is recorded for 400 periods after it has settled, and
+    `search_orbit` starts from it. `Orbit.distance_of_motion` is how near the motion comes to the orbit. Raises what
+    that raises, and `ComputationError` where the search ends on the orbit that the motion follows.
     """
     require_scene(scene)
     n = whole_number("period", 1 if period is None else period, 1, LONGEST_LOCKED_PERIOD)
@@ -56,7 +60,7 @@ def orbit_near_motion(scene: Scene, period: int | None = None, stop: Stop | None
     found = search_orbit(scene, n, start, section.strobes(), stop)
     if settling.regime.period is not None:
         refuse_own_orbit(found, [State(*one) for one in section.strobes()[: settling.regime.period].astype(float)])
-    return replace(found, period_note=NO_PERIOD_GIVEN if period is None else "")
+    return replace(found, period_note=NO_PERIOD_OF_SEARCH if period is None else "")
 
 
 def refuse_own_orbit(found: Orbit, states: Iterable[State]) -> None:
@@ -74,14 +78,17 @@ def distance_of_states(one: State, other: State) -> float:
 
 def search_orbit(scene: Scene, period: int, start: State, strobes: np.ndarray,
                  stop: Stop | None = None) -> Orbit:
-    """An orbit of `period` drive periods near `start` or near where its section passes one.
+    """An orbit of `period` drive periods, by Newton's method started near a motion.
+
+    The starts are the state `start`, the mean of the section's states and its closest returns. The distance of the
+    orbit from the motion is stated as `Orbit.distance_of_motion`; it is not limited.
 
     `strobes` (P, 2, N) are states at phase 0 in SI, the transient left out; P may be 0. Of an orbit that repeats sooner
     the least period is returned. Raises `BadInput` for a period out of range, `ComputationError` where no start leads
     to an orbit, and `Cancelled`.
     """
     tried = 0
-    for begin in (start, *_middle(strobes, period), *_close_returns(strobes, period)):
+    for begin in (start, *_mean(strobes, period), *_close_returns(strobes, period)):
         tried += 1
         try:
             found = periodic_orbit(scene, period, begin, stop=stop)
@@ -90,14 +97,24 @@ def search_orbit(scene: Scene, period: int, start: State, strobes: np.ndarray,
                 raise
             continue
         least = least_period_of(found, stop)
-        return found if least == period else periodic_orbit(scene, least, found.state, stop=stop)
+        if least != period:
+            found = periodic_orbit(scene, least, found.state, stop=stop)
+        return replace(found, distance_of_motion=_distance_of_motion(found.state, start, strobes))
     raise ComputationError(f"Newton's method found no orbit of {period} drive periods from the present state or from "
                            f"{tried - 1} places of the section; try another period.", "no-convergence")
 
 
-def _middle(strobes: np.ndarray, period: int) -> Iterator[State]:
+def _distance_of_motion(state: State, start: State, strobes: np.ndarray) -> float:
+    """Least distance of a state from those of a motion, relative to the largest displacement and velocity of these."""
+    motion = np.concatenate([np.array([[start.displacement, start.velocity]]), strobes.astype(float)])
+    size = np.maximum(1e-300, np.abs(motion).max(axis=(0, 2)))[:, None]
+    away = np.abs(motion - np.array([state.displacement, state.velocity])) / size
+    return float(away.max(axis=(1, 2)).min())
+
+
+def _mean(strobes: np.ndarray, period: int) -> Iterator[State]:
     """The mean of every n-th late state, if there are two."""
-    late = strobes[-_STATES_OF_MIDDLE:][::period]
+    late = strobes[-_STATES_OF_MEAN:][::period]
     if len(late) > 1:
         yield State(*np.asarray(late, dtype=float).mean(axis=0))
 

@@ -59,8 +59,8 @@ class Driven(RecordedMotion):
     displacement_error : float
         Largest error of any displacement over the largest displacement.
     energy_residual : float
-        |work − loss − change of stored energy| over the largest of |work|, |loss| and the peak of the stored
-        energy.
+        Largest |work − loss − change of stored energy| over the largest of |work|, |loss| and the stored energy above
+        that of the preload at rest.
     status : str
         "done" or "accuracy-not-reached".
     cost : Cost
@@ -189,7 +189,7 @@ def drive(scene: Scene, signal: Signal, start: State | None = None, stop: Stop |
     between = or_whole_motion(SAMPLED_DRIVE / (2.0**signal.order - 1.0) * between)
     error, *errors = stated + between + formula_errors(scene, signal, growth, largest, maxima * scales.force)
     done = error <= scene.accuracy
-    balance = residual(now.energy)
+    balance = residual(now.energy, chain.scaled.static_energy)
     assert balance is not None, "the chain has an account"
     inward, outward, elastic = (float(one) for one in maxima * scales.force)
     return Driven(scene, signal, now.displacement * scales.length, now.velocity * scales.velocity,

@@ -177,8 +177,8 @@ class Run(RecordedMotion):
         bound (docs/accuracy.md), not a proof; None where none is stated. Also called `error_estimate`
         (docs/result-files.md, "Which name is which error").
     energy_residual : float or None
-        |work − loss − change of stored energy| over the largest of |work|, |loss| and the peak of the stored
-        energy; None where no account was kept.
+        Largest |work − loss − change of stored energy| of the record over the largest of |work|, |loss| and the stored
+        energy above that of the preload at rest; None where no account was kept.
     regime : Regime
         What kind of motion it is.
     status : str
@@ -285,16 +285,18 @@ def require_run(value: object) -> None:
     raise BadInput(f"A recorded motion is given as a Run, not as a value of type {type(value).__name__}; {near}.")
 
 
-def residual(energy: np.ndarray | None) -> float | None:
-    """|work − loss − change of stored energy| over the largest of |work|, |loss| and the peak of the stored energy.
+def residual(energy: np.ndarray | None, static: float) -> float | None:
+    """The largest |work − loss − change of stored energy| of a record, over the energies that take part in the motion.
 
-    `energy` (T, 3) has the columns stored, work, lost; None where no account was kept.
+    These are the largest of |work|, |loss| and |stored energy − `static`|, where `static` is the energy of the contacts
+    at rest under the preload (`ScaledChain.static_energy`). `energy` (T, 3) has the columns stored, work, lost; None
+    where no account was kept.
     """
     if energy is None:
         return None
-    stored, work, lost = (energy[-1] - energy[0])
-    largest = max(abs(work), abs(lost), float(np.abs(energy[:, 0]).max()))
-    return float(abs(work - lost - stored) / largest) if largest > 0.0 else 0.0
+    stored, work, lost = (energy - energy[0]).T
+    largest = max(float(np.abs(part).max()) for part in (work, lost, energy[:, 0] - static))
+    return float(np.abs(work - lost - stored).max() / largest) if largest > 0.0 else 0.0
 
 
 def run_from(engine: Engine, samples: Samples, first_sample: int, regime: Regime, error: float | None,
@@ -319,7 +321,8 @@ def run_from(engine: Engine, samples: Samples, first_sample: int, regime: Regime
         displacement=samples.displacement, velocity=samples.velocity, force=samples.force,
         drive_displacement=scene.drive_amplitude * np.sin(2 * np.pi * inside / engine.samples),
         max_input_force=float(maxima[0]), max_output_force=float(maxima[1]), max_output_force_elastic=float(maxima[2]),
-        status=status, regime=regime, displacement_error=error, energy_residual=residual(samples.energy), cost=cost,
+        status=status, regime=regime, displacement_error=error,
+        energy_residual=residual(samples.energy, engine.scaled.static_energy), cost=cost,
         start=start, force_errors=ForceErrors.of(force_errors), jumps=_jumps(engine, first_sample),
     )
 

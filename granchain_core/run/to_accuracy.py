@@ -161,7 +161,7 @@ def _refined(attempt: Callable[[MethodSetting], _Attempt], scene: Scene, setting
         error = float(errors.stated[0])
         if error <= scene.accuracy:
             return now, "done", errors.final(done=True)
-        left = residual(now.samples.energy) or 0.0
+        left = residual(now.samples.energy, now.engine.scaled.static_energy) or 0.0
         chaotic = error > _CHAOS_SUSPECTED_ABOVE and left <= _RESIDUAL_PER_ACCURACY * scene.accuracy
         if setting.finest or errors.rounded or chaotic:
             return now, "accuracy-not-reached", errors.final(done=False)

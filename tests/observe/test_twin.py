@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
 import granchain_core
-from granchain_core import BadInput, Scene, scene
-from granchain_core.observe import Twin, observer_stability, twin
+from granchain_core import BadInput, ComputationError, Scene, scene
+from granchain_core.observe import Twin, observer_stability, stability, twin
 from granchain_core.observe.drift import TRANSLATION, is_drift
 from granchain_core.observe.pair import Pair
 from granchain_core.observe.twin import multipliers_of, rate_of
 from granchain_core.orbits import damped_newton
-from granchain_core.scene.state import rest
+from granchain_core.scene.state import State, rest
 
 FREE, FOUNDED = scene("fig11-free"), scene("fig11-founded")
 CHAOTIC = scene("rig").evolve(f=140.0, N=2)
@@ -133,6 +134,23 @@ def test_how_much_foundation_makes_an_observer_stable() -> None:
     assert threshold.gains and threshold.high - threshold.low < 1e-6
     for kappa, stable in ((threshold.low, False), (threshold.high, True)):
         assert granchain_core.orbit(FREE.evolve(f=200.0, kappa=kappa), 1, observer=True).observer_stable is stable
+
+
+def test_a_jump_to_another_branch_is_no_threshold(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Stability changes between two values whose orbits have one period, but were reached from rest each."""
+    shown = FREE.evolve(f=200.0)
+    real = stability.periodic_orbit
+
+    def only_from_rest(at: Scene, period: int | None = None, start: State | None = None, **options: Any) -> Any:
+        if start is not None:
+            raise ComputationError("Newton's method found no orbit.", "no-convergence")
+        return real(at, period, start, **options)
+
+    monkeypatch.setattr(stability, "periodic_orbit", only_from_rest)
+    found = observer_stability(shown, "kappa", [2e-4, 4e-4])
+    assert found.points[0].period == found.points[1].period == 1 and found.thresholds == ()
+    (jump,) = found.jumps
+    assert (jump.low, jump.high, jump.gains) == (2e-4, 4e-4, True)
 
 
 def test_a_value_without_an_orbit_says_why(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -16,6 +16,7 @@ from chains import LAWS
 
 from granchain_core import run, scene
 from granchain_core.integrate import Engine, MethodSetting
+from granchain_core.results.run import residual
 from granchain_core.scene.effects import EFFECTS, Effect
 
 COMBINATIONS = [c for c in itertools.product(LAWS, ("allowed", "cut"), (0.0, 0.002), (0.0, 2.0))
@@ -129,6 +130,26 @@ def test_a_record_of_little_energy_has_its_own_account() -> None:
     for periods in (1, 3):
         found = run(struck, periods=periods, record=2)
         assert found.kinetic_energy.max() < 1e-9 * 0.5 * struck.beads[0].mass * 0.05**2 and found.energy_residual < 1e-4
+
+
+@pytest.mark.parametrize("amplitude", [1e-8, 1e-10])
+def test_an_account_without_the_work_does_not_close_under_a_preload(amplitude: float) -> None:
+    """The static energy, up to 2e4 times the work here, is not what the residual is relative to."""
+    engine = Engine(scene("sec2").evolve(N=5, F0=10.0, f=2000.0, A0=amplitude), MethodSetting("dop853", tolerance=1e-12), 16,
+                    account=True)
+    energy = engine.record(16 * 3).energy
+    static = engine.scaled.static_energy
+    assert energy[0, 0] == pytest.approx(static, rel=1e-12)
+    assert residual(energy, static) < 1e-5
+    without_work = np.where(np.array([True, False, True]), energy, 0.0)
+    assert residual(without_work, static) > 0.3
+
+
+def test_the_residual_is_the_largest_of_the_record() -> None:
+    """An account that fails in between and closes again at the end does not close."""
+    energy = np.array([[0.0, 0.0, 0.0], [1.0, 1.5, 0.0], [1.0, 1.0, 0.0]])
+    assert residual(energy, 0.0) == pytest.approx(0.5 / 1.5)
+    assert residual(None, 0.0) is None
 
 
 @pytest.mark.parametrize("effect", EFFECTS, ids=lambda effect: effect.name)

@@ -39,6 +39,23 @@ def test_hertz_collision_has_its_duration_peak_force_and_no_loss(speed, stiffnes
     assert restitution == pytest.approx(1.0, abs=1e-10)  # 1000 times the tolerance per step
 
 
+@pytest.mark.parametrize("masses", [(1.0, 3.0), (5.0, 0.4)])
+def test_two_unlike_beads_part_as_momentum_and_energy_say_after_the_time_of_their_reduced_mass(masses):
+    """v₁' = (m₁ − m₂)/(m₁ + m₂) v, v₂' = 2m₁/(m₁ + m₂) v, and Hertz's duration with m* = m₁m₂/(m₁ + m₂)."""
+    first, second = masses
+    speed, reduced = 0.7, first * second / (first + second)
+    hertz = DURATION * reduced**0.4 * speed**-0.2
+    chain = Bench(2, 2.0 * hertz, 4, ends=(0.0, 0.0), inverse_mass=[1.0 / first, 1.0 / second])
+    chain.throw([speed, 0.0])
+    kept = chain.record()
+    after = kept.velocity[-1]
+    assert after[0] == pytest.approx((first - second) / (first + second) * speed, abs=1e-10)
+    assert after[1] == pytest.approx(2.0 * first / (first + second) * speed, abs=1e-10)
+    # both fly freely since they parted: their distance tells when that was
+    parted = chain.time[-1] - (kept.displacement[-1, 1] - kept.displacement[-1, 0]) / (after[1] - after[0])
+    assert parted == pytest.approx(hertz, rel=1e-7)
+
+
 @pytest.mark.parametrize("restitution", [0.95, 0.7, 0.3])
 @pytest.mark.parametrize("speed", [0.1, 3.0])
 def test_tsuji_restitution_is_exact_and_independent_of_speed(speed, restitution):

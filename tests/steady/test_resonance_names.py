@@ -53,4 +53,9 @@ def test_nothing_is_claimed_while_there_is_no_curve_or_off_it() -> None:
 def test_beyond_the_last_peak_where_little_arrives_is_the_stop_band() -> None:
     assert place_words((1, 1), place(2500.0, transmission=0.1)) == "1:1 motion, stop band"
     assert place(2500.0, transmission=0.4).kind != "stop band"
-    assert place(900.0, transmission=0.1).kind != "stop band"
+    assert place(900.0, transmission=0.1) == Place("flank", 1130.0, 3)
+
+
+def test_a_deep_valley_between_peaks_keeps_its_name() -> None:
+    """However little arrives at the wall in an anti-resonance, it is no stop band."""
+    assert place_words((1, 1), place(870.0, transmission=0.1)) == "1:1 anti-resonance"

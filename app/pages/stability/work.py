@@ -35,18 +35,25 @@ _LARGEST_MODE_ERROR = 1e-4
 
 @dataclass(frozen=True)
 class OrbitTarget:
-    """The orbit asked for, near `start`: the one that is followed, or one that a search found with these residuals."""
+    """The orbit asked for, at `start`: the one that is followed, or one that a search found with these residuals.
+
+    `distance_of_motion` is that of an orbit that was found by a search (`Orbit.distance_of_motion`).
+    """
 
     scene: Scene
     period: int
     start: State
     followed: bool
     residuals: tuple[float, ...] = ()
+    distance_of_motion: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
 class OrbitAnalysis:
-    """An orbit, one of its modes, its points, its distance from the start of the search, and the time taken [s]."""
+    """An orbit, one of its modes, its points, its distance from `target.start`, and the time taken [s].
+
+    The distance says something only of an orbit that is followed: a search has ended at `target.start`.
+    """
 
     target: OrbitTarget
     orbit: Orbit
@@ -94,7 +101,7 @@ def transient(settled: Settled, section: Section) -> int:
 
 
 def search(settled: Settled, section: Section | None, period: int, stop: Stop) -> OrbitTarget:
-    """An orbit near the motion shown, which it does not follow.
+    """An orbit sought near the motion shown, which the motion does not follow.
 
     Raises what `search_orbit` raises, and `ComputationError` where the search ends on the orbit that is followed.
     """
@@ -107,4 +114,5 @@ def search(settled: Settled, section: Section | None, period: int, stop: Stop) -
     here = [State(u, v) for u, v in zip(run.displacement[:: run.samples], run.velocity[:: run.samples], strict=True)]
     if settled.regime.name == "periodic":
         refuse_own_orbit(found, here)
-    return OrbitTarget(scene, found.period, found.state, followed=False, residuals=found.newton_residuals)
+    return OrbitTarget(scene, found.period, found.state, followed=False, residuals=found.newton_residuals,
+                       distance_of_motion=found.distance_of_motion)
