@@ -46,7 +46,7 @@ def read_data(content: bytes, answers: Answers | None = None, wanted: Sequence[s
               convention: Convention = NO_CONVENTION) -> Series | Shaker | Measured:
     """The measurement in the bytes of a file; `wanted` are the kinds that its reader can use.
 
-    `most_rows` and `convention` hold for tables in text. Raises `Unclear` for what has to be asked, and `BadInput`
+    `most_rows` holds for every format, `convention` for tables in text. Raises `Unclear` for what has to be asked, and `BadInput`
     naming the line.
     """
     reading = Reading(answers or Answers(), wanted, source, most_bytes, most_rows, convention)

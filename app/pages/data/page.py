@@ -261,9 +261,9 @@ def _found(content: bytes, answers: Answers, name: str) -> Measured | Series:
     if isinstance(found, Series):
         if found.input_force is None and found.output_force is None:
             raise BadInput(f"{name} is a time series without a force; the page draws input and output force.")
-        return found
-    if len(found.frequency) > MOST_UPLOADED_POINTS:
-        raise BadInput(f"{name} has {len(found.frequency)} points, and the page draws up to {MOST_UPLOADED_POINTS}.")
+    points = len(found.time if isinstance(found, Series) else found.frequency)
+    if points > MOST_UPLOADED_POINTS:
+        raise BadInput(f"{name} has {points} points, and the page draws up to {MOST_UPLOADED_POINTS}.")
     return found
 
 
