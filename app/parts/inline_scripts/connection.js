@@ -18,6 +18,15 @@
   const PICTURES = "granchain-pictures";
   const PARTS = ["bar", "side", "stage", "curves", "overlay", "foot"];
 
+  // What has no room in the storage, or what the browser allows to no page, is missing after the reload.
+  const attempt = (store) => {
+    try {
+      store();
+    } catch {
+      /* nothing depends on it */
+    }
+  };
+
   const showBanner = (sentence) => {
     const banner = document.getElementById("lost");
     banner.textContent = sentence;
@@ -198,8 +207,8 @@
       const { at } = granchain.steps;
       // A page that had no connection has no pictures of its own.
       const { snapshot, ...before } = this.#ping ? {} : (this.#resumeState ?? {});
-      Connection.#store(RESUME, () => JSON.stringify({ ...this.#carried, at, ...before }));
-      Connection.#store(PICTURES, () => snapshot ?? LastPictures.capture());
+      attempt(() => sessionStorage.setItem(RESUME, JSON.stringify({ ...this.#carried, at, ...before })));
+      attempt(() => sessionStorage.setItem(PICTURES, snapshot ?? LastPictures.capture()));
       location.replace(granchain.address.url());
     }
 
@@ -230,20 +239,12 @@
       }
     }
 
-    // What has no room is missing on the next page.
-    static #store(key, value) {
-      try {
-        sessionStorage.setItem(key, value());
-      } catch {
-        /* the storage is full, or the browser allows none */
-      }
-    }
-
     // What the page before the reload kept, which is read once; null if it kept nothing.
     static #readResumeState() {
       try {
-        const [kept, snapshot] = [RESUME, PICTURES].map((key) => sessionStorage.getItem(key));
-        for (const key of [RESUME, PICTURES]) sessionStorage.removeItem(key);
+        const [kept, snapshot] = [sessionStorage.getItem(RESUME), sessionStorage.getItem(PICTURES)];
+        sessionStorage.removeItem(RESUME);
+        sessionStorage.removeItem(PICTURES);
         return kept && { ...JSON.parse(kept), ...(snapshot && { snapshot }) };
       } catch {
         return null;

@@ -80,7 +80,7 @@ class Shared(Generic[Item]):
         try:
             yield from self._awaited(computation, stop)
         finally:
-            self._leave(key, computation, cpu_time)
+            self._unsubscribe(key, computation, cpu_time)
 
     def _join(self, key: Hashable, compute: Callable[[TurnFlag], Iterator[Item]],
                 cpu_time: CpuTime) -> _Computation[Item]:
@@ -98,7 +98,7 @@ class Shared(Generic[Item]):
             found.cpu_time.members.append(cpu_time)
         return found
 
-    def _leave(self, key: Hashable, computation: _Computation[Item], cpu_time: CpuTime) -> None:
+    def _unsubscribe(self, key: Hashable, computation: _Computation[Item], cpu_time: CpuTime) -> None:
         with self._lock:
             computation.cpu_time.members.remove(cpu_time)
             if not computation.cpu_time.members and not computation.done:
