@@ -150,10 +150,12 @@ class Controller:
         """See `PageHost`."""
         self.sentences.report_fault(error, sentence, fault)
 
-    def close(self, session_context: object = None) -> None:
-        """The session has ended, or Bokeh has dropped it: end all computations of this page, and call no further
-        action.
-        """
+    def session_dropped(self, session_context: object) -> None:
+        """Bokeh has dropped the session: see `close`."""
+        self.close()
+
+    def close(self) -> None:
+        """The session has ended: end all computations of this page, and call no further action."""
         self._calls.close()
 
     @property

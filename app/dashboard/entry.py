@@ -33,7 +33,7 @@ def page() -> None:
     if sentences:
         controller.show_message(" ".join(sentences))
     when_left(document, controller.close)
-    pn.state.on_session_destroyed(controller.close)
+    pn.state.on_session_destroyed(controller.session_dropped)
     METRICS.session_opened()  # counted after `when_left`, so that its end is counted, too
     controller.on_close(METRICS.session_closed)
 

@@ -158,7 +158,7 @@ def test_nothing_is_settled_for_a_visitor_who_left_while_kernels_were_compiled(d
     monkeypatch.setattr(picture_work, "settling", lambda *_, **__: settled.append("began") or iter(()))
     dashboard.pictures.compute()
     assert waiting.wait(60)
-    dashboard.close(None)
+    dashboard.close()
     dashboard.run_callbacks_until(lambda: not dashboard.pictures.busy)
     assert settled == []
 
