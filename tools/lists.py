@@ -1,6 +1,6 @@
 """Lists that follow from tables in the code: knobs (docs/model.md), methods (docs/method.md), equations and
 scenes (README.md), drives by a formula (docs/scenes.md), what is used of libraries (docs/libraries.md), metrics
-(docs/deployment.md), and worker pools (docs/dashboard.md).
+(docs/deployment.md), worker pools and the times of the connection (docs/dashboard.md).
 """
 
 from __future__ import annotations
@@ -11,6 +11,8 @@ import textwrap
 from pathlib import Path
 
 from app import library_internals
+from app.scripts import FILES
+from app.serve.computing.priorities import ADDED_NICENESS
 from app.serve.computing.worker_pools import POOLS
 from app.serve.monitoring.metrics import FORMER_NAMES, HISTOGRAM, HISTOGRAM_HELP, METRICS
 from app.server import add_shared_metrics
@@ -87,10 +89,17 @@ def table_of_libraries() -> str:
     return "\n".join(["| what | where | without it |", "|---|---|---|", *rows])
 
 
+def table_of_connection_times() -> str:
+    """The table of docs/dashboard.md: the times of the script that watches the connection."""
+    rows = re.findall(r"^ +(?:const )?([A-Z_]+) = (\d+)[,;] // (.+)$", FILES["connection.js"].read_text(encoding="utf-8"), re.MULTILINE)
+    return "\n".join(["| constant | ms | what it is |", "|---|---|---|", *(f"| `{name}` | {value} | {words} |" for name, value, words in rows)])
+
+
 def table_of_worker_pools() -> str:
     """The table of docs/dashboard.md: every pool of threads, its limits and its purpose."""
-    rows = [f"| `{pool.name.upper()}` | {pool.workers} | {pool.per_owner_limit or '–'} | {pool.purpose} |" for pool in POOLS]
-    return "\n".join(["| pool | threads | work of one session at once | what runs there |", "|---|---|---|---|", *rows])
+    rows = [f"| `{pool.name.upper()}` | {pool.workers} | {f'+{ADDED_NICENESS}' if pool.low_priority else '0'} | "
+            f"{pool.per_owner_limit or '–'} | {pool.purpose} |" for pool in POOLS]
+    return "\n".join(["| pool | threads | nice value | work of one session at once | what runs there |", "|---|---|---|---|---|", *rows])
 
 
 def table_of_metrics() -> str:

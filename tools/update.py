@@ -26,6 +26,7 @@ from tools.generated import with_part
 from tools.lists import (
     equations,
     list_of_methods,
+    table_of_connection_times,
     table_of_drives,
     table_of_knobs,
     table_of_libraries,
@@ -85,6 +86,7 @@ _TABLES = (
     ("docs/dashboard.md", "messages of the browser", table_of_messages_of_the_browser),
     ("docs/dashboard.md", "messages of the server", table_of_messages_of_the_server),
     ("docs/dashboard.md", "worker pools", table_of_worker_pools),
+    ("docs/dashboard.md", "times of the connection", table_of_connection_times),
 )
 
 

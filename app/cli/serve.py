@@ -149,7 +149,7 @@ def _sign_in(arguments: argparse.Namespace, secret: bytes | None) -> dict[str, s
     derived = hmac.new(secret or secrets.token_bytes(32), b"cookies of granchain", "sha256").hexdigest()
     found = {"cookie_secret": os.environ.get("PANEL_COOKIE_SECRET") or derived}
     if arguments.basic_auth is not None:
-        _content(arguments.basic_auth)
+        _content(arguments.basic_auth)  # Panel reads the file itself; here it is refused in a sentence
         return {**found, "basic_auth": arguments.basic_auth}
     missing = [name for name in ("PANEL_OAUTH_KEY", "PANEL_OAUTH_SECRET") if not os.environ.get(name)]
     if missing:

@@ -25,8 +25,8 @@ class Calls:
         self._closing: list[Callable[[], object]] = []
         self._closed = False
 
-    def now(self, action: Callable[..., None], *args: object) -> None:
-        """Call `action` as soon as the document may be changed; on the event loop."""
+    def when_unlocked(self, action: Callable[..., None], *args: object) -> None:
+        """Call `action` now if the document is not locked, else once it is unlocked; on the event loop."""
         with_document_lock(self._document, partial(self.call_and_report, action, *args))
 
     def next_tick(self, action: Callable[..., None], *args: object) -> None:

@@ -97,7 +97,7 @@ class Controller:
         action = self._actions.get(name) if isinstance(name, str) else None
         if action is None:
             action, message = self._unknown, {"name": quoted(name)}
-        self._calls.now(action, message)
+        self._calls.when_unlocked(action, message)
 
     def _unknown(self, message: dict[str, Any]) -> None:
         self.show_message(f"The server does not know the request {message['name']}; reload the page.")
@@ -150,11 +150,11 @@ class Controller:
         """See `PageHost`."""
         self.sentences.report_fault(error, sentence, fault)
 
-    def close(self, session_context: object) -> None:
-        """Bokeh has dropped the session: see `leave`."""
-        self.leave()
+    def session_dropped(self, session_context: object) -> None:
+        """Bokeh has dropped the session: see `close`."""
+        self.close()
 
-    def leave(self) -> None:
+    def close(self) -> None:
         """The session has ended: end all computations of this page, and call no further action."""
         self._calls.close()
 

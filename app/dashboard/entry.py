@@ -32,8 +32,8 @@ def page() -> None:
     pn.config.exception_handler = _handler(controller)
     if sentences:
         controller.show_message(" ".join(sentences))
-    when_left(document, controller.leave)
-    pn.state.on_session_destroyed(controller.close)
+    when_left(document, controller.close)
+    pn.state.on_session_destroyed(controller.session_dropped)
     METRICS.session_opened()  # counted after `when_left`, so that its end is counted, too
     controller.on_close(METRICS.session_closed)
 

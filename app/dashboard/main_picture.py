@@ -194,7 +194,7 @@ class MainPicture:
             return
         self._answered, seconds = asked.number, time.monotonic() - asked.at
         METRICS.answered(seconds)
-        words = f"The server is busy: pictures follow every {seconds:.1f} s." if METRICS.busy else ""
+        words = f"The server is busy: this picture took {seconds:.1f} s." if METRICS.busy else ""
         self._views.status_line.update_state(busy=words)
 
     def _send(self, number: int, result: Settled | LiveStep) -> None:

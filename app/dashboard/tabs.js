@@ -162,7 +162,7 @@ class Tabs {
     const measured = document.getElementById("measured-series");
     measured.hidden = !this.model.state.series;
     measured.textContent = this.model.state.series || "";
-    window.granchain.connection.keep({ uploaded: Boolean(this.model.state.understood) });
+    window.granchain.connection.carryOver({ uploaded: Boolean(this.model.state.understood) });
     if (!this.updatesItself) this.show();
   }
 }

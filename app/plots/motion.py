@@ -184,7 +184,7 @@ def _line(plot: figure, style: LineStyle, source: ColumnDataSource, column: str 
 
 def _axis(axis: Any, style: LineStyle, unit: str, theme: Theme) -> None:
     """The axis of a line: its label has the line's colour, which says whose axis it is where there are two."""
-    axis.update(axis_label=style.label(unit), axis_label_text_color=getattr(theme, style.role),
+    axis.update(axis_label=style.label(unit), axis_label_text_color=getattr(theme, f"{style.role}_text"),
                 ticker=BasicTicker(desired_num_ticks=3))
 
 

@@ -91,6 +91,11 @@ class Theme:
     largest_small_text_size: int = 20
     #: A line of wrong numbers beside the right ones.
     naive: str = "#d97706"
+    #: Text in the colour of the drive, of the input and of the output force: darker or lighter than their lines, so
+    #: that its contrast with `paper` and `card` is at least 4.5.
+    drive_text: str = "#b3261e"
+    input_text: str = "#1d4ed8"
+    output_text: str = "#1b6e47"
     #: The second line of a figure, such as the observer beside its chain.
     second: str = VIOLET
 
@@ -118,7 +123,8 @@ THEMES = {
     "dark": Theme("dark", paper="#0e1116", card="#161a21", ink="#eef1f6", soft="#a4adba", faint="#2a313b",
                   accent="#7aa5ff", steel="#7c8796",
                   steel_shine="#e3e8ef", steel_edge="#414a57", steel_number="#0e1116",
-                  warn="#ffcf87", warn_paper="#3a2a10"),
+                  warn="#ffcf87", warn_paper="#3a2a10", drive_text="#ff7a7e", input_text="#5c9bff",
+                  output_text="#3fbf83"),
     "projector": Theme("light", paper="#ffffff", card="#ffffff", ink="#000000", soft="#222222", faint="#c4c9d0",
                        accent="#003cc0", steel="#66707d",
                        steel_shine="#ffffff", steel_edge="#4a525d", steel_number="#000000",

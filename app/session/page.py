@@ -20,7 +20,8 @@ class Page:
     Hooks and actions run in the event loop, which all sessions share. So each may take about ten milliseconds at most;
     longer work is a `Task`.
 
-    `actions` maps the "do" of a browser message to its handler. A name may be used only once in the dashboard.
+    `actions` maps the "do" of a browser message to its handler. A name may be used only once in the dashboard. Actions
+    whose names end with `-stop` end all work of the page together, and the page then says "stopped".
     """
 
     actions: Actions

@@ -64,7 +64,8 @@ class Job:
     def give_way(self, waits: Callable[[], bool] | None = None) -> None:
         """Wait while `waits` returns True; without it, while the picture for a moved knob is being computed.
 
-        The longer the wait, the rarer the checks: each check takes the GIL from all other threads.
+        The longer the wait, the rarer the checks: each check takes the GIL from all other threads. Nothing wakes the
+        thread, because `waits` may depend on anything of the page.
         """
         must_wait, pause = waits or (lambda: self._host.awaiting_picture), _PICTURE_CHECK_INTERVAL
         while must_wait() and not self.stop:

@@ -197,10 +197,10 @@ def lyapunov_spectrum(scene: Scene, periods: int = 400, start: State | None = No
     stroboscopic_map = StroboscopicMap(scene, 1, stop)
     x = stroboscopic_map.inner(run_until_settled(scene, start, stop).engine.y)
     size = len(x)
-    every = _ALIGNMENT_PERIODS + periods
-    directions, growth, traces = np.eye(size), np.zeros((every, size)), np.zeros(every)
+    total_periods = _ALIGNMENT_PERIODS + periods
+    directions, growth, traces = np.eye(size), np.zeros((total_periods, size)), np.zeros(total_periods)
     rounding = np.zeros(size, dtype=bool)
-    for p in range(every):
+    for p in range(total_periods):
         flow = stroboscopic_map(x, directions=directions)
         directions, triangle = np.linalg.qr(flow.derivative)
         stretching = np.abs(np.diag(triangle))
@@ -208,7 +208,7 @@ def lyapunov_spectrum(scene: Scene, periods: int = 400, start: State | None = No
         growth[p] = np.log(np.maximum(stretching, np.finfo(float).tiny))
         x, traces[p] = flow.end, flow.log_determinant
         if progress is not None:
-            progress((p + 1) / every)
+            progress((p + 1) / total_periods)
     counted = growth[_ALIGNMENT_PERIODS:]
     blocks = np.array([part.mean(axis=0) for part in np.array_split(counted, _BLOCKS)])
     resolved = int(np.argmax(rounding)) if rounding.any() else size

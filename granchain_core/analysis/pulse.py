@@ -24,20 +24,21 @@ from ..tables.provenance import Attribute
 
 #: Speed of the continuum's solitary wave [beads per time] over F^{1/6}, K = m = 1.
 CONTINUUM = 2.0 / math.sqrt(5.0)
-#: Part of a pulse's first maximum in a contact below which the pulse has passed.
-_PART = 0.02
-#: A pulse has passed a contact at the latest so many times later than it takes from there over two contacts, by its
-#: first maxima. The wave from the wall reaches the last two contacts after 2 such times.
-_PASSED = 1.5
-#: Stated error by sampling over the change of the force with every second sample. With F = F₀ − a x² + b x⁴ and the
-#: maximum a distance s from a sample, the parabola is wrong by 3 b s² (h² − s²), so that of the spacing 2h changes it
-#: by 9 b s² h²: by four times the error at s = h/2, by three times near s = 0. Twice as much is stated. The same holds
+#: Fraction of the first maximum of a contact's force below which the pulse has ended there.
+_ENDS_BELOW = 0.02
+#: Longest duration of a pulse in a contact, from its first maximum on, in units of the time that the first maximum
+#: takes over the next two contacts. The wave from the wall reaches the last two contacts after 2 such times.
+_LONGEST_DURATION = 1.5
+#: Stated error by sampling, divided by the change of the force with every second sample. With F = F₀ − a x² + b x⁴
+#: and the maximum a distance s from a sample, the parabola is wrong by 3 b s² (h² − s²), so that of the spacing 2h
+#: changes it by 9 b s² h²: by four times the error at s = h/2, by three times near s = 0. Twice as much is
+#: stated. The same holds
 #: for the place of the maximum, which is wrong by (b/a) s (4s² − h²) and changes by 3 (b/a) s h².
-_OF_THE_CHANGE = 2.0 / 3.0
+_ERROR_OVER_CHANGE = 2.0 / 3.0
 #: The same for the time above half height. A straight line between samples places a crossing at the part θ of its
 #: interval wrongly by a multiple of θ(1 − θ), and twice the spacing changes that by the same multiple of θ or 1 − θ: by
 #: the error itself, or more.
-_OF_THE_CHANGE_OF_WIDTH = 2.0
+_WIDTH_ERROR_OVER_CHANGE = 2.0
 
 
 def solitary_speed(scene: Scene, force: float, constant: float = SOLITARY_BY_FORCE) -> float:
@@ -190,7 +191,7 @@ def pulse(run: Run) -> Pulse:
     found = np.array([_passing(run, int(c), firsts) for c in contacts])
     time, force, half, arrived = found[:, 0].T
     time_change, force_change, half_change, arrival_change = np.abs(found[:, 1] - found[:, 0]).T
-    late = _OF_THE_CHANGE * arrival_change
+    late = _ERROR_OVER_CHANGE * arrival_change
     if len(backwards := np.flatnonzero(time[:-2] >= time[2:])):
         c = int(contacts[backwards[0]])
         raise BadInput(f"The first pulse cannot be told from the wave that comes back from the wall: contact {c} has "
@@ -201,10 +202,10 @@ def pulse(run: Run) -> Pulse:
     passed = np.searchsorted(run.time, [*time, 2.0 * time[-1] - time[-2]]) + 1  # a bead is fastest before this contact
     velocity = np.array([run.velocity[: passed[i], i].max() for i in range(scene.N)])
     speed_error = 0.5 * speed[1:-1] * (late[2:] + late[:-2])
-    width_error = speed_error + _OF_THE_CHANGE_OF_WIDTH * (half_change / half)[1:-1]
+    width_error = speed_error + _WIDTH_ERROR_OVER_CHANGE * (half_change / half)[1:-1]
     return Pulse(run, contacts, time, force, speed, speed * half, velocity,
-                 _OF_THE_CHANGE * float((force_change / force).max()), _OF_THE_CHANGE * float(time_change.max()),
-                 _largest(speed_error), _largest(width_error))
+                 _ERROR_OVER_CHANGE * float((force_change / force).max()),
+                 _ERROR_OVER_CHANGE * float(time_change.max()), _largest(speed_error), _largest(width_error))
 
 
 def _first_maximum(run: Run, contact: int) -> int | None:
@@ -216,7 +217,7 @@ def _first_maximum(run: Run, contact: int) -> int | None:
     added = run.force[:, contact] - run.scene.F0
     maxima = _maxima(added)
     if run.scene.F0 > 0.0:
-        maxima = maxima[added[maxima] > _PART * added.max()]
+        maxima = maxima[added[maxima] > _ENDS_BELOW * added.max()]
     return int(maxima[0]) if len(maxima) else None
 
 
@@ -243,8 +244,8 @@ def _passing(run: Run, contact: int, firsts: list[int | None]) -> tuple[tuple[fl
         if not run.velocity.any():
             raise BadInput("No pulse runs along a chain that nothing moves; let it be driven, or struck (strike > 0).")
         raise BadInput(f"No pulse reaches contact {contact} in this record; record longer.")
-    end = first + max(1, _PASSED * ((firsts[min(contact + 2, run.scene.N) - 1] or len(force)) - first))
-    gone = np.flatnonzero(force[first:] < _PART * force[first])
+    end = first + max(1, _LONGEST_DURATION * ((firsts[min(contact + 2, run.scene.N) - 1] or len(force)) - first))
+    gone = np.flatnonzero(force[first:] < _ENDS_BELOW * force[first])
     maxima = _maxima(force)
     passing = maxima[(maxima >= first) & (maxima < min(end, first + gone[0]))] if len(gone) else np.array([first])
     i = int(passing[np.argmax(force[passing])])

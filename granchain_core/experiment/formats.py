@@ -34,7 +34,8 @@ class Reading:
     source : str
         What the file is called.
     most_bytes, most_rows : int
-        The largest content and the most lines that are read.
+        The largest content, and the most lines of a text or numbers of a row of HDF5 or points of a dataset, that are
+        read.
     convention : Convention
         What the reader takes for granted.
     path : Path or None
@@ -79,12 +80,12 @@ def format_of(content: bytes) -> Format:
 
 def _read_labelled(content: bytes, reading: Reading) -> Series | Shaker | Measured:
     if reading.path is not None:
-        return read_labelled(reading.path, reading.answers, reading.wanted, reading.source)
+        return read_labelled(reading.path, reading.answers, reading.wanted, reading.source, reading.most_rows)
     check_size(content, reading.most_bytes)
     with tempfile.TemporaryDirectory() as folder:  # HDF5 opens only files
         path = Path(folder) / "data.h5"
         path.write_bytes(content)
-        return read_labelled(path, reading.answers, reading.wanted, reading.source)
+        return read_labelled(path, reading.answers, reading.wanted, reading.source, reading.most_rows)
 
 
 def _read_project(content: bytes, reading: Reading) -> Series | Shaker | Measured:
@@ -124,6 +125,8 @@ def _digitised(datasets: dict[str, list[tuple[float, float]]], reading: Reading,
     if not answers.columns:
         raise Unclear(Question(f"This is {what}, which does not say what x and y are.", about, guesses,
                                first_rows(rows), names))
+    if len(rows) > reading.most_rows:
+        raise BadInput(f"The dataset {name[:40]!r} has {len(rows)} points; at most {reading.most_rows} are read.")
     asked = Asked(guesses, first_rows(rows), True)
     chosen = answered(asked, answers)
     points = np.array(datasets[name])

@@ -17,8 +17,8 @@ from .series import Series, Shaker
 from .units import heading, unit_named
 
 
-def read_labelled(path: str | Path, answers: Answers, wanted: Sequence[str],
-                  source: str) -> Series | Shaker | Measured:
+def read_labelled(path: str | Path, answers: Answers, wanted: Sequence[str], source: str,
+                  most_rows: int = MOST_ROWS) -> Series | Shaker | Measured:
     """The measurement in a file. Columns are its rows of equal length; of several lengths those with an axis count.
 
     HDF5 parses the file in a child process: the dashboard gets it from a visitor.
@@ -26,7 +26,7 @@ def read_labelled(path: str | Path, answers: Answers, wanted: Sequence[str],
     Raises `Unclear` and `BadInput`.
     """
     with opened(path, "is not a measurement that can be read", called="The file", foreign=True) as file:
-        stored, refused = _rows(file)
+        stored, refused = _rows(file, most_rows)
         if not stored:
             raise Refused(refused or "it has no two rows of numbers of one length")
         names = _group(stored)
@@ -49,7 +49,7 @@ def read_labelled(path: str | Path, answers: Answers, wanted: Sequence[str],
                  bool(answers.columns))
 
 
-def _rows(file: File) -> tuple[dict[str, Stored], str]:
+def _rows(file: File, most_rows: int) -> tuple[dict[str, Stored], str]:
     """The rows of numbers in a file, and why others are not read."""
     found, refused = {}, ""
     for name in file.names():
@@ -58,8 +58,12 @@ def _rows(file: File) -> tuple[dict[str, Stored], str]:
         except Refused as problem:
             refused = refused or str(problem)
             continue
-        if len(stored.shape) == 1 and 2 <= stored.shape[0] <= MOST_ROWS and stored.type != "text":
-            found[name] = stored
+        if len(stored.shape) != 1 or stored.shape[0] < 2 or stored.type == "text":
+            continue
+        if stored.shape[0] > most_rows:
+            refused = refused or f"/{name} has {stored.shape[0]} numbers; at most {most_rows} are read"
+            continue
+        found[name] = stored
     return found, refused
 
 

@@ -10,7 +10,7 @@ import numpy as np
 MOST_BYTES = 50_000_000
 #: Most rows of it.
 MOST_ROWS = 1_000_000
-#: The words at the beginning of the note of data that were computed (granchain_core/virtual).
+#: The words at the beginning of the note of data that were computed (granchain_core/virtual_experiment).
 VIRTUAL = "virtual experiment"
 
 

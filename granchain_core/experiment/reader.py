@@ -46,8 +46,8 @@ def read_data(content: bytes, answers: Answers | None = None, wanted: Sequence[s
               convention: Convention = NO_CONVENTION) -> Series | Shaker | Measured:
     """The measurement in the bytes of a file; `wanted` are the kinds that its reader can use.
 
-    `most_rows` and `convention` hold for tables in text. Raises `Unclear` for what has to be asked, and `BadInput`
-    naming the line.
+    `most_rows` holds for every format, `convention` for tables in text. Raises `Unclear` for what has to
+    be asked, and `BadInput` naming the line.
     """
     reading = Reading(answers or Answers(), wanted, source, most_bytes, most_rows, convention)
     return format_of(content).read(content, reading)

@@ -33,7 +33,7 @@ _FACTORS = {1.5, 2.5, 0.4}
 #: record, an error that falls as the fourth power of the step, the part of a change that is stated.
 _OTHER_NUMBERS = {
     ("experiment/grid.py", "_decoded"), ("run/budget.py", "refuse_long_picture"), ("orbits/response.py", "RETURNS_IN_STEP"),
-    ("observe/twin.py", "_TRANSIENT"), ("integrate/methods.py", "method_for"), ("analysis/pulse.py", "_OF_THE_CHANGE")}
+    ("observe/twin.py", "_TRANSIENT"), ("integrate/methods.py", "method_for"), ("analysis/pulse.py", "_ERROR_OVER_CHANGE")}
 #: Where the law stands without such a number: as δ times its root, as a polynomial or a constant, or in a text.
 _WITHOUT_NUMBER = {
     ("kernels/effects/contact.py", "elastic_force"), ("kernels/effects/contact.py", "three_halves"),

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from playwright.sync_api import BrowserContext, Page, Route
+from playwright.sync_api import BrowserContext, Page, Route, expect
 from server import until
 
 from app.format import prefixed
@@ -30,6 +30,7 @@ class Answers:
     """What the address of the scripts answers: modules, the blank page, and `readiness` for whether there is room."""
 
     readiness = 502
+    reason = ""
 
     def __init__(self) -> None:
         self.opened: list[str] = []
@@ -40,7 +41,7 @@ class Answers:
         path = route.request.url.removeprefix(ORIGIN).partition("?")[0]
         if path == "readiness":
             self.asked += 1
-            route.fulfill(status=self.readiness, body="")
+            route.fulfill(status=self.readiness, body=self.reason)
         elif path.endswith(".js"):
             route.fulfill(path=APP / path, content_type="text/javascript")
         else:
@@ -208,8 +209,8 @@ def test_an_event_that_is_not_declared_is_an_error(page: Page) -> None:
 def test_what_the_page_before_a_reload_kept_is_taken_once(page: Page) -> None:
     page.evaluate("sessionStorage.setItem('granchain-again', JSON.stringify({ playing: false }))")
     page.reload()
-    taken = page.evaluate("[granchain.connection.again, granchain.connection.takeAgain(), granchain.connection.takeAgain()]")
-    assert taken == [{"playing": False}, {"playing": False}, None] and page.evaluate("granchain.connection.again") is None
+    taken = page.evaluate("[granchain.connection.resumeState, granchain.connection.takeResumeState(), granchain.connection.takeResumeState()]")
+    assert taken == [{"playing": False}, {"playing": False}, None] and page.evaluate("granchain.connection.resumeState") is None
 
 
 def test_a_silent_server_is_asked_counted_as_lost_and_taken_back(page: Page) -> None:
@@ -254,11 +255,37 @@ def test_a_page_asks_ever_more_rarely_and_opens_nothing_while_there_is_no_room(s
     until(page, lambda: page.clock.run_for(500) is None and len(answers.opened) == 2)
 
 
+def test_a_full_server_is_not_called_a_lost_connection(page: Page, answers: Answers) -> None:
+    answers.readiness = 503
+    page.evaluate("() => { granchain.connection.connect(() => {}); closeSocket(); }")
+    banner = page.locator("#lost")
+    until(page, lambda: page.clock.run_for(500) is None and answers.asked > 0)
+    expect(banner).to_contain_text("Connection lost")  # a proxy may answer 503 as well
+    answers.reason = '{"/readiness": false, "reason": "all 200 places for sessions are taken"}'
+    until(page, lambda: page.clock.run_for(500) is None and "The server is full" in banner.inner_text())
+    answers.readiness, answers.reason = 502, ""
+    until(page, lambda: page.clock.run_for(500) is None and "Connection lost" in banner.inner_text())
+
+
+def test_pictures_without_room_in_the_storage_cost_nothing_else(page: Page, answers: Answers) -> None:
+    page.evaluate("""() => {
+      granchain.connection.connect(() => {});
+      granchain.connection.carryOver({ playing: false, uploaded: true });
+      HTMLCanvasElement.prototype.toDataURL = () => "x".repeat(20e6);
+      closeSocket();
+    }""")
+    answers.readiness = 200
+    until(page, lambda: page.clock.run_for(500) is None and len(answers.opened) == 2)
+    until(page, lambda: page.evaluate("Boolean(window.granchain?.connection?.resumeState)"))
+    state = page.evaluate("granchain.connection.resumeState")
+    assert (state["playing"], state["uploaded"], "snapshot" in state) == (False, True, False)
+
+
 def test_a_page_that_lost_its_server_opens_its_own_link_when_that_answers_again(page: Page, answers: Answers) -> None:
     page.evaluate("""() => {
       granchain.connection.connect(() => {});
       granchain.address.linkReceived("v=1&scene=sec2&f=616", []);
-      granchain.connection.keep({ playing: false });
+      granchain.connection.carryOver({ playing: false });
       closeSocket();
     }""")
     page.clock.run_for(1000)
@@ -266,6 +293,6 @@ def test_a_page_that_lost_its_server_opens_its_own_link_when_that_answers_again(
     answers.readiness = 200
     until(page, lambda: page.clock.run_for(500) is None and len(answers.opened) == 2)
     assert answers.opened[-1] == f"{ORIGIN}?v=1&scene=sec2&f=616"
-    until(page, lambda: page.evaluate("window.granchain?.connection?.again?.playing") is False)
+    until(page, lambda: page.evaluate("window.granchain?.connection?.resumeState?.playing") is False)
     assert page.evaluate("[lost.hidden, lost.textContent.slice(0, 15), Boolean(document.getElementById('last-pictures'))]") == [
         False, "Connected again", True]

@@ -13,4 +13,4 @@ def dashboard() -> Iterator[Dashboard]:
     """A dashboard of this test's own."""
     one = Dashboard()
     yield one
-    one.close(None)
+    one.close()

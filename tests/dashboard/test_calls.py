@@ -58,6 +58,6 @@ def test_a_visitor_who_leaves_ends_everything_although_one_end_fails(dashboard: 
     errors = METRICS.counted["errors"]
     for number in range(3):
         dashboard.on_close(lambda number=number: ended.append(number) if number != 1 else 1 / 0)  # type: ignore[misc]
-    dashboard.close(None)
+    dashboard.close()
     assert ended == [0, 2] and METRICS.counted["errors"] == errors + 1
     assert "cleanup of a closed session failed" in caplog.text

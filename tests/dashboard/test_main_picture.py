@@ -158,7 +158,7 @@ def test_nothing_is_settled_for_a_visitor_who_left_while_kernels_were_compiled(d
     monkeypatch.setattr(picture_work, "settling", lambda *_, **__: settled.append("began") or iter(()))
     dashboard.pictures.compute()
     assert waiting.wait(60)
-    dashboard.close(None)
+    dashboard.close()
     dashboard.run_callbacks_until(lambda: not dashboard.pictures.busy)
     assert settled == []
 
@@ -176,7 +176,7 @@ def test_a_busy_server_says_so_with_the_next_picture(dashboard: Dashboard, monke
             clock[0] += 1.2
             dashboard.run_callbacks_until(lambda: not (dashboard.pictures.busy or dashboard.callbacks))
             words = dashboard.views.status_line.state["busy"]
-            assert words == ("The server is busy: pictures follow every 1.2 s." if said else "")
+            assert words == ("The server is busy: this picture took 1.2 s." if said else "")
     finally:
         for _ in range(40):
             METRICS.lagged(0.0)

@@ -22,8 +22,9 @@ from app.pages.data import page as module
 from app.pages.data.page import SAMPLES, DataPage
 from app.plots.measured import measured_columns
 from app.serve.computing.worker_pools import LONG
-from granchain_core import CurvePoint, Scene, scene, settle, settling
-from granchain_core.experiment import Measured, compared, read_data
+from app.serve.http.limits import MOST_UPLOADED_POINTS
+from granchain_core import BadInput, CurvePoint, Scene, scene, settle, settling
+from granchain_core.experiment import Measured, Series, answers_of, compared, read_data
 from granchain_core.experiment.formats import FORMATS
 from granchain_core.hdf5 import VERSIONS, seal
 from granchain_core.results.regime import Regime
@@ -71,6 +72,34 @@ def test_hdf5_never_parses_an_upload_in_the_server(sealed: bool, dashboard: Dash
         seal(path)
     monkeypatch.setattr(h5py, "File", lambda *_: pytest.fail("parsed in the server's process"))
     assert "2 points" in after(dashboard, sent(path.read_bytes()), "understood")
+
+
+def many_samples(name: str, count: int, folder: Path) -> bytes:
+    """A series of so many samples in a format of the table; a project of a digitiser holds a curve."""
+    time, force = 1e-6 * np.arange(count), np.ones(count)
+    if "HDF5" in name:
+        with h5py.File(folder / "long.h5", "w") as file:
+            for row, values, unit in (("time", time, "s"), ("output_force", force, "N")):
+                file[row] = values
+                file[row].attrs["units"] = unit
+        return (folder / "long.h5").read_bytes()
+    if "project" in name:
+        points = ",".join(f'{{"value":[{i},1]}}' for i in range(1, count + 1))
+        return f'{{"datasetColl":[{{"name":"curve","data":[{points}]}}]}}'.encode()
+    return ("time_s,output_force_N\n" + "".join(f"{at:.6f},1\n" for at in time)).encode()
+
+
+@pytest.mark.parametrize("name", [one.name for one in FORMATS])
+def test_a_measurement_of_too_many_points_is_refused_in_every_format(name: str, tmp_path: Path) -> None:
+    for count, refused in ((MOST_UPLOADED_POINTS - 1, False), (MOST_UPLOADED_POINTS + 1, True)):
+        content = many_samples(name, count, tmp_path)
+        answers = answers_of(["f=1:Hz", "F=2:N"] if "project" in name else [])
+        if refused:
+            with pytest.raises(BadInput, match=r"at most 20000 are read"):
+                module._found(content, answers, "mine")
+        else:
+            found = module._found(content, answers, "mine")
+            assert count == len(found.time if isinstance(found, Series) else found.frequency)
 
 
 def test_an_hdf5_file_is_called_as_the_visitor_called_it(dashboard: Dashboard, tmp_path: Path) -> None:

@@ -8,14 +8,20 @@ from dataclasses import fields
 from pathlib import Path
 
 import pytest
+from bokeh.models import LinearAxis
 
 import app
 from app.plots.force_lines import DRIVE, INPUT, OUTPUT
+from app.plots.motion import motion
 from app.plots.theme import THEMES, Theme, style_sheet
 from app.session.page_constants import page_constants
 from app.session.share import BROWSER_FIELDS, VIEW_VALUES
+from granchain_core import scene, settle
 
 SCRIPTS = Path(app.__file__).parent / "parts" / "inline_scripts"
+
+
+TEXT_ROLES = ("drive_text", "input_text", "output_text")
 
 
 def properties(name: str) -> dict[str, str]:
@@ -38,6 +44,38 @@ def test_the_page_has_the_colours_of_its_pictures(name: str) -> None:
     assert style == {f"--{field.name.replace('_', '-')}": str(getattr(theme, field.name)) for field in fields(Theme)
                      if field.name != "scheme" and not field.name.endswith("text_size")} | {
         "--drive": DRIVE.colour, "--input": INPUT.colour, "--output": OUTPUT.colour}
+
+
+def luminance(colour: str) -> float:
+    """The relative luminance of WCAG 2.2."""
+    parts = [int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)]
+    linear = [part / 12.92 if part <= 0.04045 else ((part + 0.055) / 1.055) ** 2.4 for part in parts]
+    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+
+def contrast(one: str, other: str) -> float:
+    """The contrast ratio of WCAG 2.2."""
+    dark, light = sorted((luminance(one), luminance(other)))
+    return (light + 0.05) / (dark + 0.05)
+
+
+@pytest.mark.parametrize("name", THEMES)
+def test_text_and_lines_have_the_contrast_of_level_aa(name: str) -> None:
+    """axe-core measures text of the page alone; this also holds for text and lines of the figures."""
+    theme = THEMES[name]
+    texts = [(role, getattr(theme, role), ground) for role in ("ink", "soft", "accent", "warn", *TEXT_ROLES)
+             for ground in (theme.paper, theme.card)] + [("warn", theme.warn, theme.warn_paper)]
+    lines = [(role, getattr(theme, role), theme.card) for role in ("drive", "input", "output", "second", "naive")]
+    assert not [(role, ground) for role, colour, ground in texts if contrast(colour, ground) < 4.5]
+    assert not [(role, ground) for role, colour, ground in lines if contrast(colour, ground) < 3.0]
+
+
+def test_no_text_has_the_colour_of_a_line() -> None:
+    sheets = "".join(path.read_text(encoding="utf-8") for path in Path(app.__file__).parent.rglob("*.css"))
+    assert not re.findall(r"[;{ ]color: var\(--(?:drive|input|output)\)", sheets)
+    axes = motion(settle(scene("sec2")).run, THEMES["light"]).select({"type": LinearAxis})
+    colours = {axis.axis_label_text_color for axis in axes}
+    assert colours == {THEMES["light"].soft, *(getattr(THEMES["light"], role) for role in TEXT_ROLES)}
 
 
 def test_sizes_of_a_theme_are_in_its_row_alone() -> None:

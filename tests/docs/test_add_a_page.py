@@ -89,6 +89,10 @@ page.actions["transmission-search"]({})
 print(shown["running"], shown["progress"])
 host.run_callbacks_until(lambda: not shown["running"], 300.0)
 print(shown["status"], shown["most"])
+print(shown["done"])
+page.actions["transmission-search"]({})
+page.actions["transmission-stop"]({})
+print(shown["status"], shown["running"], shown["done"])
 print(len(figures[0].select_one({"name": "shares"}).data["share"]), figures[0].yaxis[0].axis_label)
 page.actions["transmission-search"]({})
 page.scene_changed()
@@ -98,15 +102,16 @@ host.leave()
 host.run_callbacks_until(lambda: not host.callbacks)
 print(shown["status"])
 """)
-    begun, found, drawn, stopped, left = printed.splitlines()
+    begun, found, done, stopped_by_hand, drawn, stopped, left = printed.splitlines()
     assert (begun, stopped, left) == ("True waiting for its turn …", "stopped False '' []", "waiting")
+    assert (done, stopped_by_hand) == ("1.0", "stopped False 0.0")
     assert drawn == "17 share of the input force (%)"
     assert found.startswith("done The largest share arrives at ") and found.endswith(" Hz.")
 
 
 def test_the_tables_of_pages_and_messages_have_the_new_page(tree: Path) -> None:
     assert "| `app/pages/transmission` | How much of the input force arrives at the wall | – |\n" in (tree / "docs" / "design.md").read_text(encoding="utf-8")
-    assert "| page `transmission` | `transmission-say`, `transmission-search` |\n" in (tree / "docs" / "dashboard.md").read_text(encoding="utf-8")
+    assert "| page `transmission` | `transmission-say`, `transmission-search`, `transmission-stop` |\n" in (tree / "docs" / "dashboard.md").read_text(encoding="utf-8")
 
 
 @pytest.mark.long
@@ -121,7 +126,7 @@ def test_the_new_page_keeps_to_what_every_page_does(tree: Path) -> None:
     """Without a browser; the table of pages has it, and nothing is written for it."""
     printed = follow(tree, "-m", "pytest", "-p", "no:cacheprovider", str(Path("tests", "pages", "test_every_page.py")),
                      "-k", "transmission", own_kernels=False)
-    assert "11 passed" in printed and "skipped" not in printed
+    assert "12 passed" in printed and "skipped" not in printed
 
 
 @pytest.mark.long

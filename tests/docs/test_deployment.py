@@ -7,6 +7,8 @@ import re
 import pytest
 from documents import ROOT
 
+from app.serve.computing.worker_pools import LONG
+from app.serve.monitoring import metrics
 from app.serve.monitoring.metrics import HISTOGRAM, METRICS
 from app.server import add_shared_metrics
 
@@ -40,8 +42,17 @@ def test_the_health_check_of_the_container_asks_at_its_port() -> None:
     assert f"port is always {port}" in " ".join(TEXT.split())
 
 
+def test_the_advice_of_monitoring_has_the_thresholds_of_the_code() -> None:
+    for name, value in (("event_loop_lag_seconds", metrics._BUSY_WAIT), ("event_loop_lag_max_seconds", metrics._BUSY_STALL),
+                        ("turn_wait_seconds", metrics._BUSY_WAIT), ('pool_queued{pool="long"}', LONG.workers)):
+        assert f"| `granchain_{name}` above {value:g} " in TEXT
+    words = " ".join(TEXT.split())
+    assert f"the largest lag with {metrics._BUSY_STALL:g} s, the other two with {metrics._BUSY_WAIT:g} s." in words
+    assert {8: "one of eight threads"}[LONG.workers] in words
+
+
 def test_the_advice_of_monitoring_names_metrics_that_there_are() -> None:
     add_shared_metrics()
     table = TEXT.partition("| sign |")[2].partition("\n\n")[0]
     named = set(re.findall(r"`((?:granchain|process)_\w+)", table))
-    assert len(named) > 8 and named <= {HISTOGRAM, *(metric.full_name for metric in METRICS.table())}
+    assert len(named) > 8 and named <= {HISTOGRAM, f"{HISTOGRAM}_bucket", *(metric.full_name for metric in METRICS.table())}

@@ -121,6 +121,16 @@ def test_attractors_are_listed_loaded_and_forgotten_with_their_scene(tab: Trial,
     assert tab.last("map-attractors")["attractors"] == [] and tab.last("map-attractors")["status"] == "none"
 
 
+def test_a_search_for_attractors_is_stopped_alone(tab: Trial) -> None:
+    tab.look()
+    tab.do("map-attractors")
+    the_map, search = tab.given
+    tab.do("map-attractors-stop")
+    assert search.job.stop and not the_map.job.stop
+    last = tab.last("map-attractors")
+    assert (last["progress"], last["running"], last["attractors"]) == ("stopped", False, [])
+
+
 def test_a_search_for_attractors_ends_when_a_knob_moves(tab: Trial, monkeypatch: pytest.MonkeyPatch) -> None:
     """Its result would be shown as that of the new knobs. A tab that nobody looks at is no exception."""
     monkeypatch.setattr(module, "attractors", lambda scene, starts, stop: [scene])

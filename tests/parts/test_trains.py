@@ -11,8 +11,10 @@ import pytest
 from bokeh.models import Range1d
 
 from app.frames import LiveWindow, settled_frames, with_jumps
+from app.parts.time_figures.pinned_trains import MOST_POINTS
 from app.parts.time_figures.trains import ForceTrains
 from granchain_core import LiveChain, scene, settle
+from granchain_core.fit.overlay import Overlay
 
 CHAIN = scene("sec2").evolve(D=300.0, f=100.0, accuracy=1e-4)
 
@@ -75,6 +77,17 @@ def test_forces_under_the_axes_have_no_power_of_ten(least: float, most: float, a
         assert [one.replace("\N{NO-BREAK SPACE}", " ") for one in found] == words
     assert trains.output_words(8.0, None) == {"N": "about 8.0 N", "mN": "about 8000 mN"}[axis]
     assert trains.output_words(1.449e-6, 1e-5) == "1.449 µN"
+
+
+def test_a_long_measured_series_is_drawn_to_the_end_of_the_picture_with_its_largest_force() -> None:
+    time = np.linspace(0.0, 1.0, 100_001)
+    force = np.where(np.arange(len(time)) == 77_777, 5.0, np.sin(300.0 * time))
+    trains = ForceTrains(Range1d())
+    trains._measured.load(Overlay(time, {"output_force": force}, None))
+    trains._measured.update(1.0, 1.0, 1.0, 1.0, 1.0)
+    drawn = next(one.data_source.data for one in trains._measured._lines.values())
+    assert len(drawn["time"]) <= MOST_POINTS and drawn["time"][0] < 1e-3 and drawn["time"][-1] > 1.0 - 1e-3
+    assert drawn["force"].max() == 5.0 and drawn["force"].min() == pytest.approx(-1.0) and (np.diff(drawn["time"]) >= 0.0).all()
 
 
 def test_live_jumps_move_with_the_picture() -> None:

@@ -51,7 +51,7 @@ def test_every_status_is_under_way_or_still() -> None:
 
 def test_every_page_stops_with_the_same_word() -> None:
     scripts = {path: path.read_text(encoding="utf-8") for path in PAGES.rglob("*.js")}
-    stops = re.compile(r'do:\s*"\w+-stop"|send\(\s*"\w+-stop"\s*\)')
+    stops = re.compile(r'do:\s*"[\w-]+-stop"|send\(\s*"[\w-]+-stop"\s*\)')
     found = {path.name: (len(stops.findall(text)), len(re.findall(r'button\(\s*"(?:stop|✕)"', text)))
              for path, text in scripts.items() if stops.search(text)}
     assert len(found) > 2 and all(messages == buttons for messages, buttons in found.values()), found

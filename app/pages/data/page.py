@@ -258,12 +258,11 @@ def _found(content: bytes, answers: Answers, name: str) -> Measured | Series:
     if isinstance(found, Shaker):
         raise BadInput(f"{name} is the shaker's amplitude, and the page draws curves of frequency and force, and "
                        "series of forces; use granchain curve --amplitude FILE.")
-    if isinstance(found, Series):
-        if found.input_force is None and found.output_force is None:
-            raise BadInput(f"{name} is a time series without a force; the page draws input and output force.")
-        return found
-    if len(found.frequency) > MOST_UPLOADED_POINTS:
-        raise BadInput(f"{name} has {len(found.frequency)} points, and the page draws up to {MOST_UPLOADED_POINTS}.")
+    if isinstance(found, Series) and found.input_force is None and found.output_force is None:
+        raise BadInput(f"{name} is a time series without a force; the page draws input and output force.")
+    points = len(found.time if isinstance(found, Series) else found.frequency)
+    if points > MOST_UPLOADED_POINTS:
+        raise BadInput(f"{name} has {points} points, and the page draws up to {MOST_UPLOADED_POINTS}.")
     return found
 
 

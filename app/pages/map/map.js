@@ -35,11 +35,12 @@ class MapTab {
       this.following = true;
       this.send("map-attractors");
     });
+    this.stopSearch = button("stop", () => this.send("map-attractors-stop"), { title: "Stop the search" });
     this.content = [
       element("div", { className: "row top" }, segments, this.meter, this.stop, this.again, this.status),
       element("div", { className: "mapbox" }, this.host),
       this.line,
-      element("div", { className: "row" }, find),
+      element("div", { className: "row" }, find, this.stopSearch),
       this.found,
     ];
   }
@@ -107,6 +108,7 @@ class MapTab {
   showProgress() {
     this.status.textContent = MAP.stale ? "the knobs have moved …" : MAP.words;
     this.meter.hidden = this.stop.hidden = !MAP.running;
+    this.stopSearch.hidden = !MAP.searching;
     this.again.hidden = MAP.status !== "stopped";
     this.meter.value = MAP.done;
     this.host.classList.toggle("stale", MAP.stale);

@@ -77,7 +77,8 @@ class MapPage(Page):
         self.actions: Actions = {
             "map-stop": lambda _: self._stop(),
             "map-compute": lambda _: self._begin(), "map-choose": self._choose,
-            "map-attractors": lambda _: self._find(), "map-load": self._load,
+            "map-attractors": lambda _: self._find(), "map-attractors-stop": lambda _: self._stop_search(),
+            "map-load": self._load,
         }
 
     def scene_changed(self) -> None:
@@ -199,6 +200,10 @@ class MapPage(Page):
         self._found, self._searched = [], scene.digest
         self._show_attractors("waiting")
         self._search.start(partial(self._search_work, scene))
+
+    def _stop_search(self) -> None:
+        if self._search.cancel():
+            self._show_attractors("stopped")
 
     def _search_work(self, scene: Scene, job: Job) -> None:
         job.compile(scene, *PICTURE_PIECES, *(() if scene.cuts_tension else (ORBIT_KERNELS,)))

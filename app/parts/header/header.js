@@ -149,7 +149,7 @@ class Header {
     if (value === this.playing) return;
     this.playing = value;
     this.drawPlay();
-    window.granchain.connection.keep({ playing: value });
+    window.granchain.connection.carryOver({ playing: value });
     window.granchain.emit("play", value);
     this.send("playing", { value });
   }
@@ -189,7 +189,7 @@ class Header {
 
   // The replay runs or pauses as before a lost connection. If the browser is set to less motion, it begins paused.
   begin() {
-    const again = window.granchain.connection.takeAgain();
+    const again = window.granchain.connection.takeResumeState();
     if (again) this.restore(again);
     else if (matchMedia("(prefers-reduced-motion: reduce)").matches) this.setPlaying(false);
   }
@@ -227,7 +227,7 @@ class Header {
       window.granchain.emit("play", playing);
     }
     this.drawPlay();
-    window.granchain.connection.keep({ playing });
+    window.granchain.connection.carryOver({ playing });
   }
 
   // After a lost connection: sends what the share link does not contain.

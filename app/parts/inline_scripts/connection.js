@@ -11,9 +11,21 @@
     RETRY_LONGEST = 5000, // between two attempts at most
     SILENT_SOCKET = 3000; // how long the socket may stay silent once the server answers HTTP again
   const LOST = "Connection lost – trying again … The pictures may be out of date.";
+  const FULL = "The server is full – your place opens as soon as one is free, with your settings …";
   const BACK = "Connected again – restoring your settings …";
-  const AGAIN = "granchain-again";
+  // Keys of the browser's storage. The pictures have one of their own: if they do not fit, the rest is kept all the same.
+  const RESUME = "granchain-again";
+  const PICTURES = "granchain-pictures";
   const PARTS = ["bar", "side", "stage", "curves", "overlay", "foot"];
+
+  // What has no room in the storage, or what the browser allows to no page, is missing after the reload.
+  const attempt = (store) => {
+    try {
+      store();
+    } catch {
+      /* nothing depends on it */
+    }
+  };
 
   const showBanner = (sentence) => {
     const banner = document.getElementById("lost");
@@ -38,7 +50,7 @@
     }
 
     /** The pictures that are on the screen, as the address of an image. */
-    static taken() {
+    static capture() {
       const canvas = Object.assign(document.createElement("canvas"), { width: innerWidth, height: innerHeight });
       if (!granchain.overlay)
         for (const one of ["stage", "curve"].flatMap((id) => LastPictures.#canvases(document.getElementById(id)))) {
@@ -58,8 +70,8 @@
 
   /** Asks the server again and again whether it answers; shows that it does not, and reloads the page once it does. */
   class Connection {
-    #again = Connection.#taken();
-    #kept = {};
+    #resumeState = Connection.#readResumeState();
+    #carried = {};
     #lost = false;
     #leaving = false;
     #ping = null;
@@ -74,7 +86,7 @@
     #sinceReached = null; // since a lost server answered HTTP again; null while it does not
 
     constructor() {
-      if (this.#again) this.#showLastPictures();
+      if (this.#resumeState) this.#showLastPictures();
       this.#watchFirstSocket();
       setInterval(() => this.#tick(), TICK);
     }
@@ -90,24 +102,24 @@
     }
 
     /** What the page before the reload kept; null if it is no reload, or once it has been taken. */
-    get again() {
-      return this.#again;
+    get resumeState() {
+      return this.#resumeState;
     }
 
     /** Gives what the page before the reload kept to the script that restores it. It is restored only once. */
-    takeAgain() {
-      const again = this.#again;
-      this.#again = null;
-      return again;
+    takeResumeState() {
+      const state = this.#resumeState;
+      this.#resumeState = null;
+      return state;
     }
 
     /** What the page needs besides its link when it is reloaded. */
-    get kept() {
-      return this.#kept;
+    get carried() {
+      return this.#carried;
     }
 
-    keep(values) {
-      this.#kept = { ...this.#kept, ...values };
+    carryOver(values) {
+      this.#carried = { ...this.#carried, ...values };
     }
 
     /** Begins to watch; `send` sends a ping. */
@@ -179,8 +191,9 @@
 
     async #tryAgain() {
       this.#sinceTry = -Infinity; // no second attempt while this one is under way
-      const alive = await Connection.#reach();
+      const { alive, full } = await Connection.#reach();
       this.#sinceTry = 0;
+      if (this.#lost) showBanner(full ? FULL : LOST);
       // Ever later and not all pages at the same time: the server would get them all at once.
       this.#pause = alive ? RETRY_FIRST : Math.min(1.6 * this.#pause, RETRY_LONGEST);
       this.#retryAfter = this.#pause * (0.5 + 0.5 * Math.random());
@@ -191,18 +204,16 @@
 
     #reload() {
       this.#leaving = true;
-      try {
-        const { at } = granchain.steps;
-        const before = this.#ping ? {} : this.#again; // a page that had no connection has no pictures of its own
-        sessionStorage.setItem(AGAIN, JSON.stringify({ ...this.#kept, at, snapshot: LastPictures.taken(), ...before }));
-      } catch {
-        /* no room to keep them: the sentence and the last pictures are missing for a moment */
-      }
+      const { at } = granchain.steps;
+      // A page that had no connection has no pictures of its own.
+      const { snapshot, ...before } = this.#ping ? {} : (this.#resumeState ?? {});
+      attempt(() => sessionStorage.setItem(RESUME, JSON.stringify({ ...this.#carried, at, ...before })));
+      attempt(() => sessionStorage.setItem(PICTURES, snapshot ?? LastPictures.capture()));
       location.replace(granchain.address.url());
     }
 
     #showLastPictures() {
-      const pictures = new LastPictures(this.#again.snapshot ?? "");
+      const pictures = new LastPictures(this.#resumeState.snapshot ?? "");
       document.addEventListener("DOMContentLoaded", () => {
         showBanner(BACK);
         pictures.show();
@@ -215,24 +226,26 @@
 
     static async #reach() {
       try {
-        const { status } = await fetch(new URL("readiness", location.href), {
+        const answer = await fetch(new URL("readiness", location.href), {
           cache: "no-store",
           signal: AbortSignal.timeout(2 * PING_TIMEOUT),
         });
-        // A server with too many pages answers 503, and a proxy whose server is down 502. A server without health checks
-        // answers 404, which will do.
-        return status < 500;
+        // A proxy whose server is down answers 502 or 503; a server with too many pages answers 503 and the reason as
+        // JSON. A server without health checks answers 404, which will do.
+        if (answer.status < 500) return { alive: true, full: false };
+        return { alive: false, full: (await answer.json())["/readiness"] === false };
       } catch {
-        return false;
+        return { alive: false, full: false };
       }
     }
 
-    // What the page before kept, which is taken once.
-    static #taken() {
+    // What the page before the reload kept, which is read once; null if it kept nothing.
+    static #readResumeState() {
       try {
-        const kept = JSON.parse(sessionStorage.getItem(AGAIN));
-        sessionStorage.removeItem(AGAIN);
-        return kept;
+        const [kept, snapshot] = [sessionStorage.getItem(RESUME), sessionStorage.getItem(PICTURES)];
+        sessionStorage.removeItem(RESUME);
+        sessionStorage.removeItem(PICTURES);
+        return kept && { ...JSON.parse(kept), ...(snapshot && { snapshot }) };
       } catch {
         return null;
       }
@@ -240,5 +253,5 @@
   }
 
   granchain.connection = new Connection();
-  granchain.steps.begin(granchain.connection.again);
+  granchain.steps.begin(granchain.connection.resumeState);
 })();

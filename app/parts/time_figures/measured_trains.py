@@ -19,6 +19,17 @@ _FORCES = ("input_force", "output_force")
 _DRIVE = 2
 
 
+def thinned(values: np.ndarray, most: int) -> np.ndarray:
+    """The places of at most `most` of the values, in order: the least and the largest of each of equal parts."""
+    if len(values) <= most:
+        return np.arange(len(values))
+    size = -(-len(values) // (most // 2))
+    count = -(-len(values) // size)
+    parts = np.pad(values, (0, count * size - len(values)), "edge").reshape(count, size)
+    places = size * np.arange(count) + np.stack([parts.argmin(axis=1), parts.argmax(axis=1)])
+    return np.unique(np.minimum(places, len(values) - 1))
+
+
 class MeasuredTrains:
     """The lines in both figures, made when there is a series for the first time."""
 
@@ -54,13 +65,14 @@ class MeasuredTrains:
         self._last = shown, scale, push, out, drive
         inside = np.zeros(0, dtype=np.int64)
         if self._shown is not None and shown > 0.0:
-            inside = np.flatnonzero((self._shown.time >= 0.0) & (self._shown.time <= shown))[:MOST_POINTS]
+            inside = np.flatnonzero((self._shown.time >= 0.0) & (self._shown.time <= shown))
         for series, unit in ((0, push), (1, out), (_DRIVE, drive)):
             measured = self._measured(series)
             values = NO_TRAIN
             if self._shown is not None and measured is not None:
-                values = {"time": (self._shown.time[inside] * scale).astype(np.float32),
-                          "force": (measured[inside] / unit).astype(np.float32)}
+                drawn = inside[thinned(measured[inside], MOST_POINTS)]
+                values = {"time": (self._shown.time[drawn] * scale).astype(np.float32),
+                          "force": (measured[drawn] / unit).astype(np.float32)}
             self._draw(series, values)
 
     def _measured(self, series: int) -> np.ndarray | None:

@@ -28,7 +28,7 @@ _FIRST_RESULT_TIME = 1.0
 
 
 class _Alarms:
-    """A thread that calls each action when it is due."""
+    """A thread that calls each action when it is due; a `threading.Timer` would be a thread for each action."""
 
     def __init__(self) -> None:
         self._changed = threading.Condition()

@@ -15,7 +15,7 @@ from concurrent.futures import Future
 from queue import SimpleQueue
 
 #: Added to the nice value of a thread of lower priority; it then gets a tenth of a processor beside another thread.
-_ADDED_NICENESS = 10
+ADDED_NICENESS = 10
 
 
 class _Starter:
@@ -67,7 +67,7 @@ def lower_priority() -> None:
     if sys.platform != "linux" or threading.current_thread() is threading.main_thread():
         return
     if not has_lower_priority() and _STARTER.run():
-        os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), min(_usual() + _ADDED_NICENESS, 19))
+        os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), min(_usual() + ADDED_NICENESS, 19))
 
 
 def has_lower_priority() -> bool:

@@ -35,6 +35,14 @@ class _Computation(Generic[Item]):
         self.stop = TurnFlag(self.cpu_time)
 
 
+def _own(error: Exception) -> Exception:
+    """A copy of an error for one session: raising it adds the frames of that session alone to its traceback."""
+    own = type(error).__new__(type(error), *error.args)  # copy.copy would call __init__, whose arguments may be others
+    own.__dict__.update(error.__dict__)
+    own.__cause__, own.__suppress_context__ = error.__cause__, error.__suppress_context__
+    return own.with_traceback(error.__traceback__)
+
+
 class Shared(Generic[Item]):
     """Computations by their keys.
 
@@ -72,7 +80,7 @@ class Shared(Generic[Item]):
         try:
             yield from self._awaited(computation, stop)
         finally:
-            self._leave(key, computation, cpu_time)
+            self._unsubscribe(key, computation, cpu_time)
 
     def _join(self, key: Hashable, compute: Callable[[TurnFlag], Iterator[Item]],
                 cpu_time: CpuTime) -> _Computation[Item]:
@@ -90,7 +98,7 @@ class Shared(Generic[Item]):
             found.cpu_time.members.append(cpu_time)
         return found
 
-    def _leave(self, key: Hashable, computation: _Computation[Item], cpu_time: CpuTime) -> None:
+    def _unsubscribe(self, key: Hashable, computation: _Computation[Item], cpu_time: CpuTime) -> None:
         with self._lock:
             computation.cpu_time.members.remove(cpu_time)
             if not computation.cpu_time.members and not computation.done:
@@ -124,7 +132,7 @@ class Shared(Generic[Item]):
             yield from new
             if done and given == len(computation.items):
                 if computation.error is not None:
-                    raise computation.error
+                    raise _own(computation.error)
                 return
 
     def _compute(self, key: Hashable, computation: _Computation[Item],

@@ -232,7 +232,7 @@ class TurnFlag(Flag):
         if not self.is_new:
             self._turns.became_refinement(self._turn)
         if self._turns.should_yield(self._turn):
-            self._leave()
+            self._release()
             self._enter()
 
     @contextmanager
@@ -245,7 +245,7 @@ class TurnFlag(Flag):
             yield
         finally:
             self._charge()
-            self._leave()
+            self._release()
 
     @contextmanager
     def released(self) -> Iterator[None]:
@@ -254,7 +254,7 @@ class TurnFlag(Flag):
             yield
             return
         self._charge()
-        self._leave()
+        self._release()
         try:
             yield
         finally:
@@ -282,7 +282,7 @@ class TurnFlag(Flag):
         self._turn = self._turns.begin(self.cpu_time, self, self.is_new)
         self._began = time.thread_time()
 
-    def _leave(self) -> None:
+    def _release(self) -> None:
         turn, self._turn = self._turn, None
         if turn is not None:
             self._turns.end(turn)

@@ -44,7 +44,7 @@ class WorkerPool:
         self.purpose = purpose
         self.per_owner_limit = per_owner_limit
         self.workers = workers
-        self._low_priority = low_priority
+        self.low_priority = low_priority
         self._given: SimpleQueue[Callable[[], None]] = SimpleQueue()
         self._threads: list[threading.Thread] = []
         self._numbers = count()
@@ -173,14 +173,14 @@ class WorkerPool:
 
         A thread whose priority was lowered by its work ends, because it cannot get its usual priority back.
         """
-        if self._low_priority:
+        if self.low_priority:
             lower_priority()
         while True:
             work = self._given.get()
             work()
             del work  # otherwise a waiting thread would keep objects of the last session alive
             with self._lock:
-                if has_lower_priority() and not self._low_priority and self._is_replaced():
+                if has_lower_priority() and not self.low_priority and self._is_replaced():
                     return
                 if self.queued:
                     self.queued -= 1
@@ -220,7 +220,8 @@ LONG = WorkerPool(
     "long", 8,
     "parameter maps, searches for attractors, branches, analyses, figures of the paper, virtual experiments",
     low_priority=True, per_owner_limit=2)
-#: One at a time for all sessions, because two timings at once disturb each other.
+#: One at a time for all sessions, because two timings at once disturb each other. Its priority is not lower, because a
+#: timing that others hold up is wrong.
 MEASUREMENTS = WorkerPool("measurements", 1, "timings of Accuracy and Effects, and hard cases")
 COMPILATIONS = WorkerPool("compilations", 2, "waiting for processes that compile kernels")
 

@@ -27,7 +27,7 @@ def when_left(document: Document, close: Callable[[], None]) -> None:
     _PAGES[document] = weakref.WeakMethod(close)
 
 
-def leave(session: Any) -> None:
+def end_session(session: Any) -> None:
     """End a session of Bokeh's whose page has left: no other page can connect to the session."""
     close = _PAGES[session.document]() if session.document in _PAGES else None
     if close is not None:

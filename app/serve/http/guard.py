@@ -93,7 +93,7 @@ class Guard(RequestHandler):
         """Answer with one sentence for the visitor; the log has the details under the same id."""
         self.set_header("Content-Type", "text/plain; charset=UTF-8")
         sentences = {404: "There is no such page.", 403: "This is not allowed.", 421: "This host is not served here.",
-                     503: "This server has as many visitors as it can serve; please try again in a minute.",
+                     503: "All places of this server are taken; please try again in a minute.",
                      500: "Something went wrong inside granchain."}
         sentence = f"{sentences.get(status_code, 'The request cannot be answered.')} (request {self.request_id})\n"
         if status_code == 503:

@@ -18,7 +18,7 @@ from bokeh.util.token import check_token_signature, get_session_id
 from tornado.iostream import IOStream, StreamClosedError
 from tornado.web import HTTPError
 
-from ..connection.leaving import leave
+from ..connection.leaving import end_session
 from ..document.part_messages import dispatch
 from ..monitoring.metrics import METRICS
 from .frame_rate import FrameBucket
@@ -179,7 +179,7 @@ class GuardedSocket(Guard):
         except AssertionError:  # Bokeh expects a session, but may have dropped it by now
             self.application.client_lost(self.connection)  # type: ignore[attr-defined]
         if session is not None:
-            leave(session)
+            end_session(session)
 
     def write_message(self, message: Any, *args: Any, **kwargs: Any) -> Any:
         """Send a message; an error has the request's id in place of a traceback."""

@@ -8,7 +8,7 @@ from typing import Any
 from bokeh.protocol.exceptions import ProtocolError
 from bokeh.server.server import Server
 
-from ..connection.leaving import leave
+from ..connection.leaving import end_session
 
 #: Time for which the token of a loaded page is valid [s].
 TOKEN_LIFETIME = 300
@@ -54,7 +54,7 @@ class Sessions:
         loading = self._loading()
         for session in loading[:max(0, len(loading) + 1 - self.most_loading)]:
             self._claimed[session.id] = time.monotonic()
-            leave(session)
+            end_session(session)
         return True
 
     def claim_connection(self, session_id: str) -> bool:

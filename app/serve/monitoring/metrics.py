@@ -19,14 +19,15 @@ from .process import cpu_seconds, most_descriptors, open_descriptors, os_threads
 BUCKETS = (0.025, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0)
 #: The name and the help text of this histogram.
 HISTOGRAM = "granchain_answer_seconds"
-HISTOGRAM_HELP = "From a change of scene, knob, start or mode to the first picture of it."
+HISTOGRAM_HELP = ("From the action of a change of scene, knob, start or mode on the event loop until its first picture "
+                  "is offered to the browser: without network and painting.")
 #: Time between two measurements of the event loop's lag [s].
 _LAG_INTERVAL = 0.25
 #: Number of measurements that are kept, of ten seconds.
 _LAGS_KEPT = 40
 #: A single lag above this makes the server busy, too [s]: the mean of ten seconds hides one stall of five.
 _BUSY_STALL = 1.0
-#: Mean wait of a message, or of a computation, above which the server is busy [s].
+#: Mean lag of the event loop, or mean wait for a turn, above which the server is busy [s].
 _BUSY_WAIT = 0.3
 
 #: The counters of `Metrics.count`: name without `_total`, and help text.

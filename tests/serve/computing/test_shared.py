@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+import traceback
 from collections.abc import Iterator
 from typing import Any
 
@@ -14,7 +15,7 @@ from app.serve.computing.latest_wins import LatestWins
 from app.serve.computing.shared import Shared
 from app.serve.computing.turns import Flag, TurnFlag
 from app.serve.computing.worker_pools import WorkerPool
-from granchain_core import Cancelled
+from granchain_core import Cancelled, OverBudget
 
 pytestmark = pytest.mark.quick
 
@@ -106,6 +107,33 @@ def test_an_error_reaches_all_and_is_not_kept() -> None:
         found: list[Any] = []
         follower(one, "key", fails, found).join(20)  # type: ignore[arg-type]
         assert found == [ZeroDivisionError]
+
+
+@pytest.mark.parametrize("error", [ZeroDivisionError("1/0"), OverBudget("It takes too long.", 3.0, 1.0), OSError(2, "no such file")])
+def test_each_session_raises_an_error_of_its_own(error: Exception) -> None:
+    """The frames of one session are in the traceback of no other."""
+    one, go, caught = shared(), threading.Event(), list[Exception]()
+
+    def fails(_: TurnFlag) -> Iterator[int]:
+        assert go.wait(20)
+        raise error
+        yield 1
+
+    def follow() -> None:
+        try:
+            list(one.follow("key", fails, Flag(), CpuTime()))
+        except Exception as problem:
+            caught.append(problem)
+
+    threads = [threading.Thread(target=follow, daemon=True) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    until(lambda: one.hits + one.misses == 4)
+    go.set()
+    for thread in threads:
+        thread.join(20)
+    assert [(type(own), str(own), vars(own)) for own in caught] == 4 * [(type(error), str(error), vars(error))]
+    assert len(set(map(id, caught))) == 4 and len({len(traceback.extract_tb(own.__traceback__)) for own in caught}) == 1
 
 
 def test_a_first_result_that_takes_long_gives_way_to_a_newer_request(monkeypatch: pytest.MonkeyPatch) -> None:
