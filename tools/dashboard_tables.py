@@ -19,7 +19,7 @@ _READ_OTHERWISE = {"chain.js": ["pong"]}
 def messages_of_the_browser() -> dict[str, list[str]]:
     """The messages that the dashboard understands, by owner."""
     dashboard = Controller(Document(), Session())
-    dashboard.close(None)
+    dashboard.close()
     return {owner: list(actions) for owner, actions in dashboard.owners.items() if actions}
 
 

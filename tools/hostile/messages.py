@@ -146,5 +146,5 @@ def actions_of_the_page() -> tuple[str, ...]:
 
     controller = Controller(Document(), Session(scene=scene("sec2")))
     names = tuple(sorted(name for actions in controller.owners.values() for name in actions))
-    controller.close(None)
+    controller.close()
     return names
