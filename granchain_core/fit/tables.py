@@ -28,7 +28,7 @@ def parameter_table(free: Sequence[Free], best: np.ndarray, profiles: Sequence[P
                                   f"{'lower' if end == 'low' else 'upper'} end of the 95 % interval, in `unit`")
             columns[f"open_{end}"] = Column(
                 np.array([getattr(one, f"open_{end}") for one in profiles], dtype=np.int8), along, "1",
-                "1 where that end is a bound, and the data do not limit the parameter there")
+                "1 where the interval goes on beyond that end: it is a bound, or the farthest value that was tried")
     return Table("parameters", axis("parameter", np.array([one.name for one in free], dtype=object), "",
                                     "name of the parameter"), columns)
 
