@@ -17,8 +17,9 @@ from ..frames import round_up
 from ..parts.figures.figure_style import bare_axis, bare_plot
 from ..plots.axes import knob_scale
 from ..plots.curve import SWEEPS, curve_columns, curve_line, curve_marks, curve_tooltips
+from ..plots.force_lines import OUTPUT
 from ..plots.measured import COLUMNS, TOOLTIPS, measured_columns
-from ..plots.theme import GREY, OUTPUT_COLOUR
+from ..plots.theme import GREY
 from ..plots.themed import themed
 from ..serve.document.changes import set_properties
 from ..serve.document.document_models import models_collected_once
@@ -63,7 +64,7 @@ class CurveFigure:
         plot.min_border_top = 10
         plot.min_border_bottom = 6
         plot.xaxis.axis_label = knob_scale("f").label
-        bare_axis(plot.yaxis[0], OUTPUT_COLOUR)
+        bare_axis(plot.yaxis[0], OUTPUT.role)
         plot.on_event(Tap, lambda event: choose(event.x))
         return plot
 

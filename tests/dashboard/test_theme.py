@@ -11,6 +11,7 @@ import pytest
 from bokeh.models import LinearAxis
 
 import app
+from app.parts.figures.figure_style import bare_axis
 from app.plots.force_lines import DRIVE, INPUT, OUTPUT
 from app.plots.motion import motion
 from app.plots.theme import THEMES, Theme, style_sheet
@@ -76,6 +77,11 @@ def test_no_text_has_the_colour_of_a_line() -> None:
     axes = motion(settle(scene("sec2")).run, THEMES["light"]).select({"type": LinearAxis})
     colours = {axis.axis_label_text_color for axis in axes}
     assert colours == {THEMES["light"].soft, *(getattr(THEMES["light"], role) for role in TEXT_ROLES)}
+    for role in ("drive", "input", "output"):  # axes of the page's own figures
+        axis = LinearAxis()
+        bare_axis(axis, role)
+        (name,) = re.findall(r"^var\((.*)\)$", axis.css_variables["--bk-axis-label-text-color"])
+        assert name == f"--{role}-text" and name in properties("light")
 
 
 def test_sizes_of_a_theme_are_in_its_row_alone() -> None:

@@ -37,15 +37,16 @@ def bare_plot(borders: tuple[int, int], ticks: tuple[int, int], axes: tuple[str,
     return plot
 
 
-def bare_axis(axis: Any, colour: str | None = None) -> None:
-    """No tick marks, no lines, large upright labels; the label in `colour` when it names a quantity."""
+def bare_axis(axis: Any, role: str | None = None) -> None:
+    """No tick marks, no lines, large upright labels; one that names a quantity has the theme's text colour of its role.
+    """
     axis.axis_line_color = None
     axis.major_tick_line_color = None
     axis.minor_tick_line_color = None
-    axis.axis_label_text_font_style = "bold" if colour else "normal"
+    axis.axis_label_text_font_style = "bold" if role else "normal"
     axis.axis_label_text_font_size = "14px"
     axis.major_label_text_font_size = "13px"
     axis.axis_label_standoff = 2
     axis.major_label_standoff = 2
-    if colour:
-        axis.css_variables = {"--bk-axis-label-text-color": colour}
+    if role:
+        axis.css_variables = {"--bk-axis-label-text-color": f"var(--{role}-text)"}

@@ -69,9 +69,9 @@ class ForceTrains:
         plot = bare_plot((LEFT, GAP), _TICKS, ("below", "left"), (1,), name="input force", y_range=time,
                           x_range=Range1d(-1, 1), extra_x_ranges={"drive": Range1d(-1, 1)})
         axis = LinearAxis(x_range_name="drive", ticker=BasicTicker(desired_num_ticks=_TICKS[0], num_minor_ticks=0))
-        bare_axis(axis, DRIVE.colour)
+        bare_axis(axis, DRIVE.role)
         plot.add_layout(axis, "above")
-        bare_axis(plot.xaxis[1], INPUT.colour)
+        bare_axis(plot.xaxis[1], INPUT.role)
         plot.yaxis.axis_label = "time"
         self._zero_of_drive = Span(location=0, dimension="height", x_range_name="drive", line_color=DRIVE.colour,
                                    **_ZERO)
@@ -86,7 +86,7 @@ class ForceTrains:
     def _right_figure(self, time: Range1d) -> Plot:
         plot = bare_plot((GAP, 14), _TICKS, ("below", None), (1,), name="output force", y_range=time,
                           x_range=Range1d(0, 1))
-        bare_axis(plot.xaxis[0], OUTPUT.colour)
+        bare_axis(plot.xaxis[0], OUTPUT.role)
         plot.add_layout(Span(location=0, dimension="height", line_color=OUTPUT.colour, **_ZERO))
         self._lines += [
             plot.add_glyph(self._source, _glyph(ELASTIC, "elastic")),
