@@ -28,13 +28,20 @@ const holds = (host, node) => {
   return false;
 };
 
-// The views of the figures in an element that are on the screen.
-export const figuresIn = (host) =>
+const figures = () =>
   window.Bokeh.documents
     .flatMap((one) => one.roots())
     .filter(({ type }) => FIGURES.has(type))
     .map(viewOf)
-    .filter((view) => view?.el.getClientRects().length && holds(host, view.el));
+    .filter(Boolean);
+
+// The views of the figures in an element that are on the screen.
+export const figuresIn = (host) => figures().filter(({ el }) => el.getClientRects().length && holds(host, el));
+
+// Paints all figures again: their axes have colours of the style sheet, which BokehJS reads only when it paints.
+export function repaintFigures() {
+  for (const view of figures()) view.request_repaint?.();
+}
 
 // A canvas context that writes SVG, and the element that it has written.
 export function svgContext(width, height) {

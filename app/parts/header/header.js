@@ -1,6 +1,7 @@
 // The bar on top. What concerns only the replay stays in the browser; everything else sends one message.
 
 import { markAnotherScene } from "./another_scene.js";
+import { repaintFigures } from "../figures/bokeh.js";
 import { button, chooser, download, element, onWidth } from "../toolkit/dom.js";
 import { dashboardLink } from "./iframe_link.js";
 import { icon, iconButton } from "./icons.js";
@@ -259,6 +260,7 @@ export function render({ model }) {
   window.granchain.on("pause", () => header.setPlaying(false));
   window.granchain.on("theme", (value) => {
     header.send("theme", { value });
+    repaintFigures();
     header.layoutControls(); // the projector's words are larger
   });
   onWidth(header.root, () => header.layoutControls());
