@@ -5,16 +5,11 @@
 
 This is the public API: what is listed in `__all__` is public, everything else may change. Most commands have a
 function of the same name; README.md lists the others ("Python"), docs/python.md older names, which still work.
-
-Some functions have the name of a package (`run`, `fit`, `attractors`, `bifurcation_curves`). `from granchain_core.run
-import budget` imports from the package; `import granchain_core.run.budget as budget` does not work.
 """
 
 from __future__ import annotations
 
 import importlib
-import sys
-import types
 from typing import TYPE_CHECKING, Any
 
 from .errors import BadInput, Cancelled, ComputationError, OverBudget
@@ -31,23 +26,23 @@ if TYPE_CHECKING:
     from .analysis.pulse import Pulse, pulse
     from .analysis.rotation_number import RotationNumber, rotation_number
     from .analysis.spectrum import Spectrum, Transfer, spectrum, transfer
-    from .attractors import Attractor, Attractors, attractors
-    from .bifurcation_curves import BifurcationCurve, bifurcation_curves
+    from .attractor_search import Attractor, Attractors, attractors
+    from .bifurcation_continuation import BifurcationCurve, bifurcation_curves
     from .execution.stop import Stop
-    from .fit import Fit, fit
-    from .observe import Observation, observe
+    from .fitting import Fit, fit
+    from .observers import Observation, observe
     from .orbits import Branch, Orbit
     from .orbits import continue_branch as branch
     from .orbits import continue_branch as continue_branch
     from .orbits import periodic_orbit as orbit
     from .orbits import periodic_orbit as periodic_orbit
-    from .parameter_map import Diagram, ParameterMap, diagram, parameter_map
+    from .parameter_maps import Diagram, ParameterMap, diagram, parameter_map
     from .prescribed_drive import Driven, Signal, drive
     from .results.regime import Regime
     from .results.run import Cost, Run
-    from .run.live import LiveChain
-    from .run.many import Runs, run_many
-    from .run.to_accuracy import run
+    from .runs.live import LiveChain
+    from .runs.many import Runs, run_many
+    from .runs.to_accuracy import run
     from .scene.state import State
     from .steady.curve.curve import Curve, CurvePoint
     from .steady.curve.resonance_curve import iter_curve, resonance_curve
@@ -58,17 +53,17 @@ if TYPE_CHECKING:
 
 #: Public names by module. They are imported at first use, so that `import granchain_core` is quick.
 _MODULES = {
-    "run.to_accuracy": ("run",), "run.many": ("Runs", "run_many"), "run.live": ("LiveChain",),
+    "runs.to_accuracy": ("run",), "runs.many": ("Runs", "run_many"), "runs.live": ("LiveChain",),
     "results.run": ("Cost", "Run"), "scene.state": ("State",), "execution.stop": ("Stop",),
     "steady.settling.settle": ("settle", "settled", "settling"), "steady.settling.outcome": ("Settled",),
     "results.regime": ("Regime",),
     "steady.curve.curve": ("Curve", "CurvePoint"),
     "steady.curve.resonance_curve": ("iter_curve", "resonance_curve"),
-    "orbits": ("Branch", "Orbit", "continue_branch", "periodic_orbit"), "fit": ("Fit", "fit"),
-    "parameter_map": ("Diagram", "ParameterMap", "diagram", "parameter_map"),
-    "attractors": ("Attractor", "Attractors", "attractors"),
-    "bifurcation_curves": ("BifurcationCurve", "bifurcation_curves"),
-    "prescribed_drive": ("Driven", "Signal", "drive"), "observe": ("Observation", "observe"),
+    "orbits": ("Branch", "Orbit", "continue_branch", "periodic_orbit"), "fitting": ("Fit", "fit"),
+    "parameter_maps": ("Diagram", "ParameterMap", "diagram", "parameter_map"),
+    "attractor_search": ("Attractor", "Attractors", "attractors"),
+    "bifurcation_continuation": ("BifurcationCurve", "bifurcation_curves"),
+    "prescribed_drive": ("Driven", "Signal", "drive"), "observers": ("Observation", "observe"),
     "accuracy": ("WorkPrecision", "work_precision"), "store": ("load", "save"),
     "analysis.basins": ("Basins", "basins"), "analysis.spectrum": ("Spectrum", "Transfer", "spectrum", "transfer"),
     "analysis.lyapunov_spectrum": ("LyapunovSpectrum", "lyapunov_spectrum"),
@@ -103,19 +98,3 @@ def __getattr__(name: str) -> Any:
     if whole not in _MODULE_OF:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(importlib.import_module(f".{_MODULE_OF[whole]}", __name__), whole)
-
-
-class _PublicPackage(types.ModuleType):
-    """The package itself, in which a function keeps its name although a subpackage has the same name.
-
-    Python binds a subpackage to its name here when it is first imported; `granchain_core.run` would then be the
-    subpackage instead of the function.
-    """
-
-    def __setattr__(self, name: str, value: object) -> None:
-        if not (name in _PUBLIC and isinstance(value, types.ModuleType)):
-            super().__setattr__(name, value)
-
-
-_PUBLIC = frozenset(__all__)
-sys.modules[__name__].__class__ = _PublicPackage

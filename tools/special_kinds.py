@@ -16,7 +16,7 @@ def table_of_terms() -> str:
     rows = [f"| {_symbols(kind)} | {_term(kind)} | {kind.passes} | `orbits/branch/{_file(kind)}` |"
             for kind in (*KINDS, MERGED)]
     rows += ["| – | bifurcation curve | two-parameter continuation of LPC, PD or NS | "
-             "`bifurcation_curves/continuation.py` |",
+             "`bifurcation_continuation/continuation.py` |",
              "| normal form coefficients of LPC, PD, NS | a of a fold, c of a period doubling, Re d of a Neimark–Sacker "
              "point | c and Re d say whether the point is supercritical. Other programs may normalise theirs otherwise "
              "and count the signs the other way: compare the conventions before the values | "

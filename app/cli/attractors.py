@@ -30,8 +30,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 def do(arguments: argparse.Namespace) -> None:
     """Find the steady states of a setting."""
     from granchain_core import attractors
-    from granchain_core.attractors.attractor import failed_sentence
-    from granchain_core.attractors.attractors import MOST_STATES
+    from granchain_core.attractor_search.attractor import failed_sentence
+    from granchain_core.attractor_search.attractors import MOST_STATES
     from granchain_core.inputs.checks import check_range
 
     chosen = chosen_scene(arguments)

@@ -17,7 +17,7 @@ from .picture import write_picture
 if TYPE_CHECKING:
     from granchain_core import Driven, Signal
     from granchain_core.experiment import Answers, ForceDifference, Sensors, Series
-    from granchain_core.fit import Beginning
+    from granchain_core.fitting import Beginning
 
 #: Options of `run` that count drive periods, or choose among methods, with the values they have if they are not given.
 PERIODIC = {"periods": 100, "record": 20, "samples": 96, "method": None, "resume": False, "explain": False}
@@ -110,8 +110,8 @@ def check_no_samples(arguments: argparse.Namespace) -> None:
 
 def _beginning(start: str, chosen: Scene, series: Series, sensors: Sensors) -> Beginning | None:
     """Where chain and driver begin; None at rest, with a warning if the record does not begin so."""
-    from granchain_core.fit import settled_beginning
-    from granchain_core.fit.beginning import in_motion
+    from granchain_core.fitting import settled_beginning
+    from granchain_core.fitting.beginning import in_motion
 
     if start == "rest":
         if words := in_motion(series, chosen.F0):
@@ -124,7 +124,7 @@ def _beginning(start: str, chosen: Scene, series: Series, sensors: Sensors) -> B
 
 def _last_of(path: str, chosen: Scene) -> Beginning:
     """The last sample of a recorded run."""
-    from granchain_core.fit import Beginning
+    from granchain_core.fitting import Beginning
     from granchain_core.scene.state import State
     from granchain_core.store import load
 

@@ -19,7 +19,7 @@ from .picture import check_files, write_picture
 
 if TYPE_CHECKING:
     from granchain_core import Fit, Scene
-    from granchain_core.fit import Free
+    from granchain_core.fitting import Free
 
 
 #: An error by the unit of the data.
@@ -64,7 +64,7 @@ def do(arguments: argparse.Namespace) -> None:
     from pathlib import Path
 
     from granchain_core import fit
-    from granchain_core.fit import per_frequency
+    from granchain_core.fitting import per_frequency
 
     chosen = chosen_scene(arguments)
     check_files(arguments)
@@ -100,7 +100,7 @@ def _target(arguments: argparse.Namespace, chosen: Scene) -> Any:
     import numpy as np
 
     from granchain_core.experiment import stated_features
-    from granchain_core.fit import FeatureTarget
+    from granchain_core.fitting import FeatureTarget
 
     if bool(arguments.data) == (arguments.features is not None):
         raise BadInput("Give either --data FILE or --features paper.")
@@ -122,7 +122,7 @@ def _target(arguments: argparse.Namespace, chosen: Scene) -> Any:
 def _measured_target(arguments: argparse.Namespace) -> Any:
     """What was measured: a curve, a series, or series at several frequencies."""
     from granchain_core.experiment import Measured, Series, read_experiment
-    from granchain_core.fit import CurveTarget, RecordsTarget, SeriesTarget
+    from granchain_core.fitting import CurveTarget, RecordsTarget, SeriesTarget
 
     files, at = arguments.data, arguments.at
     if len(at) not in ((0, 1) if len(files) == 1 else (len(files),)):
@@ -168,7 +168,7 @@ def _error(text: str | None, unit: str) -> float | None:
 
 def _free(arguments: argparse.Namespace) -> list[Free]:
     """The parameters that are fitted."""
-    from granchain_core.fit.parameters import free_of
+    from granchain_core.fitting.parameters import free_of
 
     if not arguments.free:
         raise BadInput("Say what is fitted, for example --free A0=5e-6:14e-6 --free D=10:100.")
@@ -210,7 +210,7 @@ def _correlations(found: Fit) -> list[tuple[str, str, float]]:
 
 def _rows(found: Fit) -> list[str]:
     """A line for every datum of a curve, every feature, and every record of several; one series has none."""
-    from granchain_core.fit import CurveTarget, FeatureTarget, RecordsTarget
+    from granchain_core.fitting import CurveTarget, FeatureTarget, RecordsTarget
 
     target, evaluation = found.target, found.evaluation
     if isinstance(target, RecordsTarget):

@@ -65,7 +65,7 @@ def cost_in_words(cost: Cost) -> str:
 
 def warn(result: Run, budget: float) -> None:
     """Say on stderr what the numbers do not show: warnings, an accuracy not reached, touches not resolved."""
-    from granchain_core.run.to_accuracy import warnings
+    from granchain_core.runs.to_accuracy import warnings
 
     for warning in warnings(result):
         say(warning)

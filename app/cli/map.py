@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 
 from granchain_core import BadInput, Cancelled
-from granchain_core.bifurcation_curves import BifurcationCurve, bifurcation_curves
+from granchain_core.bifurcation_continuation import BifurcationCurve, bifurcation_curves
 from granchain_core.execution.stop import Stop
 from granchain_core.orbits.stroboscopic_map import refuse_cut
-from granchain_core.parameter_map import Axis, Grid, ParameterMap, iter_parameter_map
-from granchain_core.parameter_map.blocks import Blocks
-from granchain_core.parameter_map.cells import CELL_REGIMES, ERRORS, cell_of
-from granchain_core.parameter_map.grid import MOST_CELLS
+from granchain_core.parameter_maps import Axis, Grid, ParameterMap, iter_parameter_map
+from granchain_core.parameter_maps.blocks import Blocks
+from granchain_core.parameter_maps.cells import CELL_REGIMES, ERRORS, cell_of
+from granchain_core.parameter_maps.grid import MOST_CELLS
 from granchain_core.precompile.pieces import FIXED_STEP_KERNELS
 from granchain_core.scene.quantities import QUANTITIES
 
@@ -138,7 +138,7 @@ def _filled(blocks: Blocks, client: Any, stop: Stop, done: list[int]) -> tuple[P
 def _rows(grid: Grid, missing: list[int], client: Any, stop: Stop) -> Iterator[np.ndarray]:
     """Finished cells, a few at a time."""
     if client is not None:
-        from granchain_core.parameter_map.scheduled import iter_blocks
+        from granchain_core.parameter_maps.scheduled import iter_blocks
 
         yield from iter_blocks(client, grid, missing, stop)
         return

@@ -17,7 +17,7 @@ from .picture import add_option as add_picture
 from .picture import check_picture, write_picture
 
 if TYPE_CHECKING:
-    from granchain_core.observe import Observation
+    from granchain_core.observers import Observation
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -41,7 +41,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 def do(arguments: argparse.Namespace) -> None:
     """Push a scene's chain by a measured force."""
     from granchain_core import observe as push
-    from granchain_core.observe import first_state, read_force
+    from granchain_core.observers import first_state, read_force
     from granchain_core.store import check_writable, save_observation
 
     chosen = chosen_scene(arguments)
@@ -82,7 +82,7 @@ def do(arguments: argparse.Namespace) -> None:
 
 def _json(seen: Observation) -> dict[str, Any]:
     """An observation as one JSON object."""
-    from granchain_core.observe.observation import written
+    from granchain_core.observers.observation import written
 
     scene = scene_json(seen.scene)
     return {**scene, "effects": ["given force" if e.startswith("driver") else e for e in scene["effects"]],

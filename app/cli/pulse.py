@@ -29,7 +29,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 def do(arguments: argparse.Namespace) -> None:
     """Record the motion from the start over the time 1/f and follow its first pulse."""
     from granchain_core import pulse, run
-    from granchain_core.run.budget import BUDGET
+    from granchain_core.runs.budget import BUDGET
 
     chosen = chosen_scene(arguments)
     check_files(arguments)

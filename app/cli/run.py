@@ -13,7 +13,7 @@ from granchain_core.precompile.pieces import REGIME_KERNELS
 from granchain_core.prescribed_drive.formulas import FORMULAS
 from granchain_core.results.regime import Regime
 from granchain_core.results.run import start_words
-from granchain_core.run.budget import BUDGET
+from granchain_core.runs.budget import BUDGET
 
 from .common import chosen_scene, in_background, show_json, show_percent, unbroken
 from .compiling import compiling_beside
@@ -83,8 +83,8 @@ def do(arguments: argparse.Namespace) -> None:
 
 def _result(chosen: Scene, arguments: argparse.Namespace) -> Run:
     """The run and its file; one that was interrupted goes on with the discarded periods it has finished."""
-    from granchain_core.run.run_checkpoints import RunCheckpoints
-    from granchain_core.run.to_accuracy import run as run_scene
+    from granchain_core.runs.run_checkpoints import RunCheckpoints
+    from granchain_core.runs.to_accuracy import run as run_scene
 
     progress = show_percent if sys.stderr.isatty() else None
     sizes = arguments.periods, arguments.record, arguments.samples

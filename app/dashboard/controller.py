@@ -35,7 +35,7 @@ from .sentences import Sentences
 from .table import CURVE_NAME, PAGES, overlay_names
 
 if TYPE_CHECKING:
-    from granchain_core.fit.overlay import Overlay
+    from granchain_core.fitting.overlay import Overlay
 
 
 class Controller:

@@ -11,7 +11,7 @@ from bokeh.models import ColumnDataSource, HoverTool, LayoutDOM, Span
 from bokeh.plotting import figure
 
 from granchain_core import Curve, Fit
-from granchain_core.fit import CurveTarget, FeatureTarget, Free, RecordsTarget, SeriesTarget
+from granchain_core.fitting import CurveTarget, FeatureTarget, Free, RecordsTarget, SeriesTarget
 
 from ..format import prefixed
 from .axes import Scale, force_scale, knob_scale

@@ -6,7 +6,7 @@ import numpy as np
 from bokeh.models import ColumnDataSource, HoverTool
 from bokeh.plotting import figure
 
-from granchain_core.observe import Observation
+from granchain_core.observers import Observation
 
 from ..format import prefixed
 from .axes import force_scale

@@ -26,9 +26,9 @@ from bokeh.palettes import Inferno256
 from bokeh.plotting import figure
 from bokeh.transform import factor_cmap, transform
 
-from granchain_core.bifurcation_curves import BifurcationCurve
-from granchain_core.parameter_map import Axis, Grid, ParameterMap
-from granchain_core.parameter_map.cells import CELL_REGIMES, empty_cells
+from granchain_core.bifurcation_continuation import BifurcationCurve
+from granchain_core.parameter_maps import Axis, Grid, ParameterMap
+from granchain_core.parameter_maps.cells import CELL_REGIMES, empty_cells
 from granchain_core.results.regime import exponent_words
 
 from ..format import figures_of, in_words, short_error

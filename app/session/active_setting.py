@@ -11,7 +11,7 @@ from granchain_core import Scene, Settled
 from granchain_core.accuracy import Row
 from granchain_core.accuracy.compared_methods import label
 from granchain_core.integrate import METHODS, MethodSetting, method_for
-from granchain_core.run.live import LIVE_SETTING
+from granchain_core.runs.live import LIVE_SETTING
 from granchain_core.steady.settling.refine_orbit import orbit_setting
 
 

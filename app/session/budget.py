@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 
 from granchain_core import BadInput, Scene
-from granchain_core.run.budget import picture_seconds, refuse_long_picture
+from granchain_core.runs.budget import picture_seconds, refuse_long_picture
 
 from ..frames import PERIODS, samples_for
 from .scene_facts import slider_range

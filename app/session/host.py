@@ -12,7 +12,7 @@ from .activities import Activity
 from .session import Session
 
 if TYPE_CHECKING:
-    from granchain_core.fit.overlay import Overlay
+    from granchain_core.fitting.overlay import Overlay
 
 
 class Caller(Protocol):

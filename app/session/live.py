@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from granchain_core import LiveChain, Run, Scene, State
 from granchain_core.integrate.start import at_phase_0
-from granchain_core.run.live import joined
+from granchain_core.runs.live import joined
 
 from ..frames import PERIODS, Frames, LiveWindow, samples_for
 from ..serve.computing.cpu_time import CpuTime

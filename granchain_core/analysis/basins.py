@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..attractors.attractor import Attractor, Origin, attractor_methods, attractors_table
-from ..attractors.attractors import attractors_from
+from ..attractor_search.attractor import Attractor, Origin, attractor_methods, attractors_table
+from ..attractor_search.attractors import attractors_from
 from ..errors import BadInput
 from ..execution.stop import Stop
 from ..inputs.checks import axis_in, numbers_in

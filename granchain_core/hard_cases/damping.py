@@ -6,7 +6,7 @@ import numpy as np
 
 from ..errors import ComputationError
 from ..integrate import Engine, MethodSetting, dop853_setting
-from ..run.to_accuracy import run
+from ..runs.to_accuracy import run
 from ..scene import Scene, scene
 from ..scene.laws import LAWS
 from .case import Measurement, Picture, Trace

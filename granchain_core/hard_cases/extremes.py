@@ -9,7 +9,7 @@ import numpy as np
 from ..integrate import Engine, MethodSetting, dop853_setting, fixed_step_setting
 from ..kernels.effects.dissipation import LinearDashpot
 from ..kernels.effects.driver import Harmonic
-from ..run.to_accuracy import run
+from ..runs.to_accuracy import run
 from ..scene import Scene, scene
 from ..scene.state import State
 from .case import Measurement, Picture, Trace

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from ..integrate import Engine, dop853_setting
-from ..observe.drift import observer_drift
+from ..observers.drift import observer_drift
 from ..orbits import periodic_orbit
 from ..orbits.stroboscopic_map import StroboscopicMap
-from ..run.to_accuracy import run
+from ..runs.to_accuracy import run
 from ..scene import scene
 from ..steady.curve.curve import CurvePoint
 from ..steady.curve.resonance_curve import iter_curve

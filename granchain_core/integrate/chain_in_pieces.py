@@ -1,6 +1,6 @@
 """A scaled chain with a given force or a given motion of its driver in pieces, one polynomial between two samples.
 
-A measured force pushes it (observe/pushed_chain.py), or its driver moves as a signal says
+A measured force pushes it (observers/pushed_chain.py), or its driver moves as a signal says
 (prescribed_drive/moved_chain.py).
 """
 

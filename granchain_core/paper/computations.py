@@ -13,7 +13,7 @@ import numpy as np
 from ..errors import BadInput
 from ..execution.stop import Stop
 from ..experiment import Series, stated_features
-from ..observe import force_record, observe, twin
+from ..observers import force_record, observe, twin
 from ..scene import Scene, scene
 from ..scene.state import rest
 from ..steady.curve.curve import Curve

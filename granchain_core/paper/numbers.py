@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..attractors import attractors
+from ..attractor_search import attractors
 from ..inputs.checks import unknown_name
 from ..orbits import periodic_orbit
 from ..results.regime import Regime

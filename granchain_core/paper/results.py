@@ -10,7 +10,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from ..experiment import Feature, Measured, Series, Shaker
-from ..observe import Twin
+from ..observers import Twin
 from ..results.run import Run
 from ..scene import Scene
 from ..steady.curve.curve import Curve

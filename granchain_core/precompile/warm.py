@@ -27,7 +27,7 @@ from ..integrate.batch import Batch, can_share_batch, is_uniform
 from ..integrate.fixed import chain_width
 from ..integrate.scaling import scale_chain
 from ..kernels.compiling.cache_folder import CACHE_FOLDER, MARK
-from ..observe.pair import Pair
+from ..observers.pair import Pair
 from ..orbits.branch.axis import KnobAxis
 from ..orbits.branch.equations import BranchEquations
 from ..orbits.branch.point import record_along

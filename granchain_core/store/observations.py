@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ..observe import Observation
+from ..observers import Observation
 from .writing import write_file, write_result
 
 

@@ -16,9 +16,9 @@ import numpy as np
 from ..hdf5 import File, opened
 from ..hdf5.border import one_of, within
 from ..hdf5.plain import Refused
-from ..parameter_map import Axis, Grid, ParameterMap
-from ..parameter_map.cells import CELL, CELL_REGIMES, empty_cells
-from ..parameter_map.grid import KNOBS, MOST_CELLS
+from ..parameter_maps import Axis, Grid, ParameterMap
+from ..parameter_maps.cells import CELL, CELL_REGIMES, empty_cells
+from ..parameter_maps.grid import KNOBS, MOST_CELLS
 from ..scene import Amplitude
 from ..scene.quantities import QUANTITIES
 from .writing import write_file, write_result

@@ -16,11 +16,11 @@ from ..errors import BadInput
 from ..execution.stop import Stop
 from ..experiment.measured import VIRTUAL
 from ..experiment.sensors import SAMPLES_PER_BANDWIDTH, Sensors
-from ..fit.trains import Train
+from ..fitting.trains import Train
 from ..inputs.checks import check_range, unknown_name, whole_number
 from ..integrate import Engine, fixed_step_setting, following_setting
 from ..integrate.methods import typical_error
-from ..observe.record import shortest_pulse
+from ..observers.record import shortest_pulse
 from ..results.run import GIVEN_STATE, Cost, Run, run_from
 from ..scene import Scene
 from ..scene.refusals import refuse_undriven

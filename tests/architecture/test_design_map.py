@@ -32,8 +32,8 @@ _FACTORS = {1.5, 2.5, 0.4}
 #: Where such a number means something else: a share of a record's samples, a reserve of time, parts of a speed and of a
 #: record, an error that falls as the fourth power of the step, the part of a change that is stated.
 _OTHER_NUMBERS = {
-    ("experiment/grid.py", "_decoded"), ("run/budget.py", "refuse_long_picture"), ("orbits/response.py", "RETURNS_IN_STEP"),
-    ("observe/twin.py", "_TRANSIENT"), ("integrate/methods.py", "method_for"), ("analysis/pulse.py", "_ERROR_OVER_CHANGE")}
+    ("experiment/grid.py", "_decoded"), ("runs/budget.py", "refuse_long_picture"), ("orbits/response.py", "RETURNS_IN_STEP"),
+    ("observers/twin.py", "_TRANSIENT"), ("integrate/methods.py", "method_for"), ("analysis/pulse.py", "_ERROR_OVER_CHANGE")}
 #: Where the law stands without such a number: as δ times its root, as a polynomial or a constant, or in a text.
 _WITHOUT_NUMBER = {
     ("kernels/effects/contact.py", "elastic_force"), ("kernels/effects/contact.py", "three_halves"),
@@ -43,7 +43,7 @@ _WITHOUT_NUMBER = {
     ("kernels/rk4/contact_events.py", "add_quadrature_errors"), ("kernels/flow/event_time.py", "smooth_power"),
     ("kernels/batch/contact_correction.py", "impulse_error"), ("kernels/batch/contact_correction.py", "next_step_error"),
     ("kernels/batch/contact_correction.py", "three_halves_by_series"), ("kernels/batch/contact_correction.py", "correct_contacts"),
-    ("scene/description.py", "hertz_stiffness"),     ("scene/validity.py", "peak_pressures"), ("scene/effects.py", "latex"), ("fit/parameters.py", "UNITS"),
+    ("scene/description.py", "hertz_stiffness"),     ("scene/validity.py", "peak_pressures"), ("scene/effects.py", "latex"), ("fitting/parameters.py", "UNITS"),
     ("scene/hertz.py", "HERTZ_DURATION"), ("scene/hertz.py", "HERTZ_FORCE"), ("scene/hertz.py", "SOLITARY_BY_FORCE"),
     ("scene/hertz.py", "SOLITARY_BY_VELOCITY"), ("analysis/pulse.py", "CONTINUUM")}
 

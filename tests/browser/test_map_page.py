@@ -156,7 +156,7 @@ def test_the_tab_fits_a_phone_attractors_are_listed_and_one_is_loaded(visit: Vis
       const { top, bottom } = one.getBoundingClientRect(), room = document.getElementById("tabs").getBoundingClientRect();
       return top < room.bottom - 60 && bottom > room.top + 60;
     }"""))  # the list is below the map, and is brought onto the screen
-    assert rows.count() == 3  # tests/attractors/test_attractors.py: rest, up and down end differently there
+    assert rows.count() == 3  # tests/attractor_search/test_attractors.py: rest, up and down end differently there
     irregular = rows.filter(has_text="quasi-periodic")
     expect(irregular).to_contain_text("Lyapunov exponent")
     expect(rows.first).to_contain_text("±")

@@ -17,7 +17,7 @@ from app.session.share import decode
 from granchain_core import BadInput, ComputationError, run, scene
 from granchain_core.hdf5 import seal
 from granchain_core.kernels.batch_size import machine
-from granchain_core.run import to_accuracy
+from granchain_core.runs import to_accuracy
 from granchain_core.store import load, save
 
 pytestmark = pytest.mark.quick

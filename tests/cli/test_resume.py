@@ -20,7 +20,7 @@ import pytest
 from app.cli import main
 from granchain_core import Amplitude, BadInput, resonance_curve, scene
 from granchain_core.execution.checkpoints import Kept, folder_of
-from granchain_core.run import to_accuracy
+from granchain_core.runs import to_accuracy
 from granchain_core.steady.curve import resonance_curve as curves
 from granchain_core.steady.curve.point_checkpoints import point_checkpoints, points_in
 from granchain_core.steady.curve.request import CurveRequest

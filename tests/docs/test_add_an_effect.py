@@ -158,7 +158,7 @@ from app.session.session import Session
 from app.session.switches import SWITCHES, present, variants
 from app.parts.knobs.knobs import knob_state
 from granchain_core import scene
-from granchain_core.parameter_map.grid import KNOBS
+from granchain_core.parameter_maps.grid import KNOBS
 from granchain_core.orbits import CONTINUOUS
 from granchain_core.precompile.warm import structure
 session = Session(scene=scene("drag"))

@@ -18,9 +18,9 @@ from granchain_core import orbit, scene
 from granchain_core.analysis import lyapunov_spectrum
 from granchain_core.integrate.fixed import SHORT_CHAIN
 from granchain_core.kernels.batch import checks, record
-from granchain_core.observe.drift import TRANSLATION
+from granchain_core.observers.drift import TRANSLATION
 from granchain_core.orbits.branch import ends, normal_forms, special, steps
-from granchain_core.parameter_map import scheduled
+from granchain_core.parameter_maps import scheduled
 from granchain_core.results.regime import Regime
 from granchain_core.steady import exponent_measurements, regime_criteria, residuals
 from granchain_core.steady.batch import job, jobs_in_batch, threads
@@ -161,7 +161,7 @@ def test_the_definitions_have_the_values_of_the_constants_they_name() -> None:
 
 @pytest.mark.parametrize(("accuracy", "noise"), [(1e-8, 1e-7), (1e-5, 1e-6)])
 def test_what_run_takes_for_no_change(accuracy: float, noise: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    module, seen = importlib.import_module("granchain_core.run.to_accuracy"), []
+    module, seen = importlib.import_module("granchain_core.runs.to_accuracy"), []
 
     def find_period(strobes: np.ndarray, rounding: float) -> Regime:
         seen.append(rounding)

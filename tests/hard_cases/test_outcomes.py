@@ -18,9 +18,9 @@ from granchain_core.errors import FAILURES, OverBudget
 from granchain_core.execution.stop import Stop
 from granchain_core.integrate import Engine, MethodSetting, method_for
 from granchain_core.integrate.checkpoint import Checkpoint, checkpoint, resumed
-from granchain_core.run import to_accuracy
-from granchain_core.run.budget import estimate
-from granchain_core.run.to_accuracy import warnings
+from granchain_core.runs import to_accuracy
+from granchain_core.runs.budget import estimate
+from granchain_core.runs.to_accuracy import warnings
 from granchain_core.scene.validity import ONSET_OF_YIELD, YIELD_STRESS, peak_pressures
 from granchain_core.store import load, save
 

@@ -19,7 +19,7 @@ from app.session.session import Session
 from app.session.task import Job
 from granchain_core import Scene, Settled, State, scene
 from granchain_core.experiment import Difference, Measured
-from granchain_core.fit.overlay import Overlay
+from granchain_core.fitting.overlay import Overlay
 
 
 @cache

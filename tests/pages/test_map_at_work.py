@@ -12,7 +12,7 @@ from page_host import Trial, picture
 
 from app.pages.map import page as module
 from granchain_core import Cancelled
-from granchain_core.parameter_map.cells import CELL
+from granchain_core.parameter_maps.cells import CELL
 
 
 @pytest.fixture

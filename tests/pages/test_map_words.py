@@ -8,8 +8,8 @@ from app.pages.map.page import COLUMNS, ROWS, page_grid
 from app.pages.map.view import cells_message, described_attractor, head_message
 from app.plots.theme import THEMES
 from granchain_core import scene
-from granchain_core.attractors import attractors
-from granchain_core.parameter_map.cells import empty_cells
+from granchain_core.attractor_search import attractors
+from granchain_core.parameter_maps.cells import empty_cells
 
 
 def test_the_grid_of_a_page_covers_its_sliders_and_does_not_move_with_f_and_A0() -> None:

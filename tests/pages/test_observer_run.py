@@ -25,7 +25,7 @@ def test_a_run_measures_what_its_multiplier_predicts() -> None:
     assert steps[0].distance[0] == pytest.approx(NUDGE * np.sqrt(FOUNDED.N))
     ends, starts = ([step.distance[i] for step in steps] for i in (-1, 0))
     assert ends[:-1] == pytest.approx(starts[1:], abs=1e-12)  # one is read off the dense output
-    # what the two-term recurrence leaves of the other multipliers (tests/observe/test_twin.py)
+    # what the two-term recurrence leaves of the other multipliers (tests/observers/test_twin.py)
     assert run.measured == pytest.approx(run.predicted, rel=5e-3)
     assert "synchronises" in run.sentence
 

@@ -14,7 +14,7 @@ from app.frames import LiveWindow, settled_frames, with_jumps
 from app.parts.time_figures.pinned_trains import MOST_POINTS
 from app.parts.time_figures.trains import ForceTrains
 from granchain_core import LiveChain, scene, settle
-from granchain_core.fit.overlay import Overlay
+from granchain_core.fitting.overlay import Overlay
 
 CHAIN = scene("sec2").evolve(D=300.0, f=100.0, accuracy=1e-4)
 

@@ -13,7 +13,7 @@ from app.plots.probe import FIGURES, probe_state
 from granchain import BadInput, scene
 from granchain_core.accuracy import Row
 from granchain_core.experiment import read_data
-from granchain_core.fit import CurveTarget, Free
+from granchain_core.fitting import CurveTarget, Free
 from granchain_core.paper import compute
 
 CHAIN = scene("sec2").evolve(N=2, f=2000.0)

@@ -11,7 +11,7 @@ from app.plots.fit import fit as drawn
 from app.plots.theme import THEMES
 from granchain_core import fit, scene
 from granchain_core.experiment import Feature
-from granchain_core.fit import CurveTarget, FeatureTarget, Free, SeriesTarget, virtual_curve, virtual_series
+from granchain_core.fitting import CurveTarget, FeatureTarget, Free, SeriesTarget, virtual_curve, virtual_series
 
 CHAIN = scene("sec2").evolve(N=2, f=2000.0)
 DAMPING = [Free("D", 60.0, 200.0)]

@@ -12,9 +12,9 @@ from app.plots.branches import SPECIAL_STYLES
 from app.plots.parameter_map import CATEGORIES, category, cell_rows, cell_words, nothing, parameter_map, scale_models
 from app.plots.theme import THEMES
 from granchain_core import scene
-from granchain_core.bifurcation_curves import BifurcationCurve, BifurcationPoint
-from granchain_core.parameter_map import Axis, Grid, ParameterMap
-from granchain_core.parameter_map.cells import CELL_REGIMES, empty_cells
+from granchain_core.bifurcation_continuation import BifurcationCurve, BifurcationPoint
+from granchain_core.parameter_maps import Axis, Grid, ParameterMap
+from granchain_core.parameter_maps.cells import CELL_REGIMES, empty_cells
 
 GRID = Grid(scene("sec2").evolve(N=2), Axis.of("f", [1900.0, 2000.0, 2100.0]), Axis.of("A0", [1e-7, 1e-6, 1e-5]))
 

@@ -37,7 +37,7 @@ from granchain_core import (
     spectrum,
     transfer,
 )
-from granchain_core.observe.twin import twin
+from granchain_core.observers.twin import twin
 from granchain_core.store import save_curve
 
 CHAIN = scene("sec2").evolve(N=2, f=2000.0)

@@ -13,8 +13,8 @@ import pytest
 from app.cli import main
 from granchain_core import Amplitude, BadInput, branch, parameter_map, resonance_curve, scene, settle
 from granchain_core.experiment import read_amplitude
-from granchain_core.parameter_map import Grid
-from granchain_core.parameter_map.scheduled import describe
+from granchain_core.parameter_maps import Grid
+from granchain_core.parameter_maps.scheduled import describe
 from granchain_core.steady.curve.curve import Curve
 from granchain_core.store import load_branch, save_branch, save_curve
 from granchain_core.store.curves import load_curve

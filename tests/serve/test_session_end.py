@@ -25,7 +25,7 @@ from app.serve.connection import leaving
 from app.serve.monitoring.metrics import METRICS
 from app.server import Access
 from granchain_core import OverBudget, scene
-from granchain_core.run.budget import refuse_long_picture
+from granchain_core.runs.budget import refuse_long_picture
 from tools.visitors.visitor import Visitor, query_of
 
 

@@ -15,7 +15,7 @@ import xarray
 import granchain_core
 from granchain_core import BadInput, Stop, run_many, save, scene, settle
 from granchain_core.experiment import Feature
-from granchain_core.fit import CurveTarget, FeatureTarget, Free, SeriesTarget, virtual_curve, virtual_series
+from granchain_core.fitting import CurveTarget, FeatureTarget, Free, SeriesTarget, virtual_curve, virtual_series
 from granchain_core.tables import Labelled
 
 CHAIN = scene("sec2").evolve(N=2, f=2000.0)

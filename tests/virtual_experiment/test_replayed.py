@@ -11,7 +11,7 @@ import pytest
 from app.cli import main
 from granchain_core import BadInput, Signal, drive, run, scene, settle
 from granchain_core.experiment import Sensors, Series, compared_forces, read_data, read_experiment
-from granchain_core.fit.beginning import in_motion, settled_beginning
+from granchain_core.fitting.beginning import in_motion, settled_beginning
 from granchain_core.store import save
 from granchain_core.virtual_experiment import virtual_series_csv
 

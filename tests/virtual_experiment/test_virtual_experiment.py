@@ -17,8 +17,8 @@ from app.plots.measured import measured_columns
 from granchain_core import BadInput, Scene, scene, settle
 from granchain_core.experiment import Answers, Measured, Series, read_data
 from granchain_core.experiment.measured import VIRTUAL
-from granchain_core.fit.trains import Train, moved
-from granchain_core.observe.read import read_force
+from granchain_core.fitting.trains import Train, moved
+from granchain_core.observers.read import read_force
 from granchain_core.virtual_experiment import Sensors, virtual_curve_csv, virtual_series_csv
 
 CHAIN = scene("sec2").evolve(N=3, f=1000.0)

@@ -13,9 +13,9 @@ import numpy as np
 
 from app.cli.orbit import _start
 from granchain_core import observe, resonance_curve, run, scene
-from granchain_core.observe import first_state, read_force
+from granchain_core.observers import first_state, read_force
 from granchain_core.orbits import Continuation, begin_branch
-from granchain_core.parameter_map import Axis, Grid, parameter_map
+from granchain_core.parameter_maps import Axis, Grid, parameter_map
 from granchain_core.store import load, load_branch, save, save_branch, save_curve, save_observation
 from granchain_core.store.curves import load_curve
 from granchain_core.store.parameter_maps import load_parameter_map, save_parameter_map

@@ -12,7 +12,7 @@ import time
 import numpy as np
 
 from granchain_core import fit, scene
-from granchain_core.fit import CurveTarget, Free, SeriesTarget, virtual_curve, virtual_series
+from granchain_core.fitting import CurveTarget, Free, SeriesTarget, virtual_curve, virtual_series
 
 FREE = (Free("A0", 2.5e-7, 1e-6), Free("D", 50.0, 200.0), Free("k", 1e5, 1.6e6))
 #: The truth lies between these places of the bounds.

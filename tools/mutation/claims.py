@@ -8,7 +8,7 @@ from . import killers as k
 from .mutant import Mutant
 
 _SECTION, _REGIME, _RECORDING = "kernels/strobes/periodicity.py", "steady/regime_criteria.py", "steady/settling/recording.py"
-_RUN, _STATED, _METHODS = "run/to_accuracy.py", "integrate/stated.py", "integrate/methods.py"
+_RUN, _STATED, _METHODS = "runs/to_accuracy.py", "integrate/stated.py", "integrate/methods.py"
 
 STEADY = (
     Mutant("change-taken-for-distance", _SECTION, "distance = recent * contraction / (1.0 - contraction)", "distance = recent",
@@ -96,19 +96,19 @@ FAILING = (
            "work.scale[:] = kept.control[1:]", "error control goes on with another step after a restart", k.CHECKPOINTS),
     Mutant("checkpoint-at-phase-0", "integrate/checkpoint.py", "engine.grid_index, engine.elapsed = kept.grid_index, kept.elapsed",
            "engine.elapsed = kept.elapsed", "a run that was cut inside a period goes on at its beginning", k.CHECKPOINTS),
-    Mutant("budget-of-one-computation", "run/budget.py", "steps, seconds = steps * repetition_factor, seconds * repetition_factor", "steps, seconds = 0.25 * steps, 0.25 * seconds",
+    Mutant("budget-of-one-computation", "runs/budget.py", "steps, seconds = steps * repetition_factor, seconds * repetition_factor", "steps, seconds = 0.25 * steps, 0.25 * seconds",
            "the estimate of a run is a fraction of it", ("tests/hard_cases/test_outcomes.py", "-k", "within_a_factor_of_two and (knobs0 or knobs3 or knobs6)")),
-    Mutant("budget-not-kept", "run/budget.py", "if found.seconds <= budget:", "if found.seconds <= 1e30 * budget:",
+    Mutant("budget-not-kept", "runs/budget.py", "if found.seconds <= budget:", "if found.seconds <= 1e30 * budget:",
            "a run of years is begun", ("tests/hard_cases/test_outcomes.py", "-k", "command_line_refuses or offered_number_of_periods")),
 )
 
 OBSERVED = (
-    Mutant("force-overshoots", "observe/record.py", "from scipy.interpolate import PchipInterpolator  #",
+    Mutant("force-overshoots", "observers/record.py", "from scipy.interpolate import PchipInterpolator  #",
            "from scipy.interpolate import CubicSpline as PchipInterpolator  #",
            "between samples a measured force is above both, or below 0", k.SAMPLING),
-    Mutant("force-in-seconds", "observe/pushed_chain.py", "/ scales.phi ** np.arange(4)", "/ scales.phi ** np.zeros(4)",
+    Mutant("force-in-seconds", "observers/pushed_chain.py", "/ scales.phi ** np.arange(4)", "/ scales.phi ** np.zeros(4)",
            "the slopes of a measured force are not scaled", k.SAMPLING),
-    Mutant("loss-between-samples", "observe/observation.py", "= IRREGULAR * np.maximum(", "= 1e-3 * IRREGULAR * np.maximum(",
+    Mutant("loss-between-samples", "observers/observation.py", "= IRREGULAR * np.maximum(", "= 1e-3 * IRREGULAR * np.maximum(",
            "what is lost between samples is stated a thousand times too small", k.SAMPLING),
 )
 

@@ -89,9 +89,9 @@ NORMAL_FORMS = ("tests/orbits/test_normal_forms.py",)
 CRITICALITY = ("tests/orbits/test_criticality.py", "-k", "order")
 
 #: Observers.
-OBSERVER_ORBIT = ("tests/observe/test_twin.py", "-k", "multipliers_are_finite")
-TWIN = ("tests/observe/test_twin.py", "-k", "starts_where")
-SAMPLING = ("tests/observe/test_sampling.py", "-k", "follows_its_chain and smooth or monotone")
+OBSERVER_ORBIT = ("tests/observers/test_twin.py", "-k", "multipliers_are_finite")
+TWIN = ("tests/observers/test_twin.py", "-k", "starts_where")
+SAMPLING = ("tests/observers/test_sampling.py", "-k", "follows_its_chain and smooth or monotone")
 
 #: Time, restarts, failures.
 CONTINUATION = ("tests/integrate/test_continuation.py", "-k", "not stop_flag")
@@ -108,7 +108,7 @@ SETTLED = ("tests/steady/test_regimes.py", "-k", "section_2_from_rest")
 PERIODICITY = ("tests/kernels/strobes/test_periodicity.py", "-k", "two_halves or shortest_period")
 CRITERIA = ("tests/steady/test_regime_criteria.py",)
 TORUS_BIAS = ("tests/steady/test_jobs_in_batch.py", "-k", "bias_of_a_torus")
-CLAIMS_TIME = ("tests/run/test_sample_times.py",)
-CLAIMS_RUN = ("tests/run/test_peaks.py", "-k", "recorded_periods or largest_elastic")
+CLAIMS_TIME = ("tests/runs/test_sample_times.py",)
+CLAIMS_RUN = ("tests/runs/test_peaks.py", "-k", "recorded_periods or largest_elastic")
 FIXED_POINT = ("tests/steady/test_orbit_errors.py", "-k", "fixed_point")
 RELAXING = ("tests/steady/test_refine_orbit.py",)

@@ -30,8 +30,8 @@ DEMANDED: dict[str, tuple[str, ...]] = {
 }
 
 #: All tests of the core, what compiles least first: a mutant that survives its own tests is given these.
-BROAD: tuple[str, ...] = ("tests/kernels", "tests/scene", "tests/physics", "tests/integrate", "tests/run", "tests/numerics",
-                          "tests/steady", "tests/orbits", "tests/observe", "tests/parameter_map", "tests/hard_cases/test_outcomes.py", "tests/hard_cases/test_broken.py",
+BROAD: tuple[str, ...] = ("tests/kernels", "tests/scene", "tests/physics", "tests/integrate", "tests/runs", "tests/numerics",
+                          "tests/steady", "tests/orbits", "tests/observers", "tests/parameter_maps", "tests/hard_cases/test_outcomes.py", "tests/hard_cases/test_broken.py",
                           "tests/hard_cases/test_cases.py", "tests/hard_cases/test_fuzz.py",
                           "--deselect", "tests/kernels/test_machine_code.py", "--deselect", "tests/kernels/compiling/test_cache.py",
                           "-k", "not stop_flag")

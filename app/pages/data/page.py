@@ -43,7 +43,7 @@ from ...session.page import Actions, Page
 from ...session.task import Job, Task, report_nothing
 
 if TYPE_CHECKING:
-    from granchain_core.fit.overlay import Overlay
+    from granchain_core.fitting.overlay import Overlay
 
 #: What a column of a curve or of a series may hold.
 CHOICES = {"frequency": "frequency", "force": "largest force", "error": "error of the force", "time": "time",
@@ -156,7 +156,7 @@ class DataPage(Page):
 
     def _overlay_in_thread(self, series: Series, run: Run, sensors: Sensors, job: Job) -> None:
         """In a worker thread: where the series lies over the run."""
-        from granchain_core.fit.overlay import overlay  # imported late: only a fit needs it
+        from granchain_core.fitting.overlay import overlay  # imported late: only a fit needs it
 
         job.next_tick(self._show_overlay, overlay(series, run, sensors))
 

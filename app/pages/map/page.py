@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 
 from granchain_core import Scene
-from granchain_core.attractors import Attractor, attractors
+from granchain_core.attractor_search import Attractor, attractors
 from granchain_core.execution.stop import Stop
-from granchain_core.parameter_map import Axis, Grid, iter_parameter_map
-from granchain_core.parameter_map.cells import cell_of, empty_cells
+from granchain_core.parameter_maps import Axis, Grid, iter_parameter_map
+from granchain_core.parameter_maps.cells import cell_of, empty_cells
 from granchain_core.precompile.pieces import ORBIT_KERNELS
 
 from ...parts.toolkit.component import Component

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from granchain_core.attractors import Attractor
+from granchain_core.attractor_search import Attractor
 from granchain_core.orbits import response
-from granchain_core.parameter_map import Grid
+from granchain_core.parameter_maps import Grid
 from granchain_core.results.regime import exponent_words, modulus_words
 
 from ...format import figures_of, in_words, short_error

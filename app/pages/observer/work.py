@@ -10,9 +10,9 @@ import numpy as np
 from granchain_core import BadInput, ComputationError, Scene, Settled, State
 from granchain_core.execution.stop import Stop
 from granchain_core.kernels.forces.peaks import next_period
-from granchain_core.observe.drift import departure_words, observer_drift
-from granchain_core.observe.pair import Pair
-from granchain_core.observe.twin import (
+from granchain_core.observers.drift import departure_words, observer_drift
+from granchain_core.observers.pair import Pair
+from granchain_core.observers.twin import (
     SYNCHRONISED,
     linear_window,
     multipliers_of,

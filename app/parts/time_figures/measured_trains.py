@@ -12,7 +12,7 @@ from ...plots.themed import themed
 from .pinned_trains import MOST_POINTS, NO_TRAIN
 
 if TYPE_CHECKING:
-    from granchain_core.fit.overlay import Overlay
+    from granchain_core.fitting.overlay import Overlay
 
 #: The forces in the order of the figures, and the place of the shaker's displacement after them.
 _FORCES = ("input_force", "output_force")

@@ -23,7 +23,7 @@ from .measured_trains import MeasuredTrains
 from .pinned_trains import PinnedTrains
 
 if TYPE_CHECKING:
-    from granchain_core.fit.overlay import Overlay
+    from granchain_core.fitting.overlay import Overlay
 
 #: The lines in the order in which they are drawn, and whose axes there are.
 _LINES = (DRIVE, INPUT, ELASTIC, OUTPUT)

@@ -10,7 +10,7 @@ import pytest
 from granchain_core import Run, Scene, resonance_curve, run, scene, settle
 from granchain_core.integrate import METHODS, Engine, MethodSetting, dop853_setting, fixed_step_setting
 from granchain_core.integrate.methods import jump_errors
-from granchain_core.parameter_map import parameter_map
+from granchain_core.parameter_maps import parameter_map
 from granchain_core.scene.state import State
 
 #: The methods that locate contact events.

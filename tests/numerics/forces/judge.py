@@ -10,9 +10,9 @@ import numpy as np
 
 from granchain_core import ComputationError, Scene, resonance_curve, run
 from granchain_core.errors import OverBudget
-from granchain_core.parameter_map.cells import ERRORS, cell_of
-from granchain_core.parameter_map.compute import iter_parameter_map
-from granchain_core.parameter_map.grid import Axis, Grid
+from granchain_core.parameter_maps.cells import ERRORS, cell_of
+from granchain_core.parameter_maps.compute import iter_parameter_map
+from granchain_core.parameter_maps.grid import Axis, Grid
 from granchain_core.scene.state import State
 
 from .draw import LONGEST, Draw, draw, draw_steady, strength

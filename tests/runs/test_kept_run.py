@@ -9,7 +9,7 @@ import pytest
 
 from granchain_core import BadInput, Cancelled, Run, Stop, run, scene
 from granchain_core.execution.checkpoints import folder_of
-from granchain_core.run.run_checkpoints import Reached, RunCheckpoints
+from granchain_core.runs.run_checkpoints import Reached, RunCheckpoints
 
 CHOSEN = scene("sec2").evolve(N=5, f=1130.0)
 PERIODS, RECORD, SAMPLES = 100, 3, 8

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from granchain_core.fit.intervals import profile
+from granchain_core.fitting.intervals import profile
 
 pytestmark = pytest.mark.quick
 

@@ -14,9 +14,9 @@ from app.plots.fit import fit as drawn
 from app.plots.theme import THEMES
 from granchain_core import Amplitude, BadInput, Fit, Scene, Stop, fit, save, scene
 from granchain_core.experiment import Series
-from granchain_core.fit import Free, RecordsTarget, SeriesTarget, per_frequency, virtual_series
-from granchain_core.fit.search import Target
-from granchain_core.fit.targets import Evaluation
+from granchain_core.fitting import Free, RecordsTarget, SeriesTarget, per_frequency, virtual_series
+from granchain_core.fitting.search import Target
+from granchain_core.fitting.targets import Evaluation
 
 CHAIN = scene("sec2").evolve(N=2, k=2e5)
 ERROR = 0.02

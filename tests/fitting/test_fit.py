@@ -15,7 +15,7 @@ import pytest
 from granchain_core import Amplitude, BadInput, Cancelled, Fit, Stop, fit, resonance_curve, scene, settle
 from granchain_core.experiment import Feature, Measured, Series, read_data
 from granchain_core.experiment.measured import VIRTUAL
-from granchain_core.fit import (
+from granchain_core.fitting import (
     CurveTarget,
     FeatureTarget,
     Free,
@@ -24,11 +24,11 @@ from granchain_core.fit import (
     virtual_curve,
     virtual_series,
 )
-from granchain_core.fit.parameters import free_of, stiffened, with_values
-from granchain_core.fit.search import Problem
-from granchain_core.fit.targets import FAILED, SCATTER, extrema
-from granchain_core.fit.trains import Train
-from granchain_core.run.to_accuracy import run
+from granchain_core.fitting.parameters import free_of, stiffened, with_values
+from granchain_core.fitting.search import Problem
+from granchain_core.fitting.targets import FAILED, SCATTER, extrema
+from granchain_core.fitting.trains import Train
+from granchain_core.runs.to_accuracy import run
 
 CHAIN = scene("sec2").evolve(N=2, k=4e5)
 FREQUENCIES = np.linspace(1000.0, 2600.0, 9)

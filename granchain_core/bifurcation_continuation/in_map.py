@@ -19,7 +19,7 @@ from ..errors import BadInput, ComputationError
 from ..execution.stop import Stop
 from ..orbits import Orbit, periodic_orbit
 from ..orbits.stroboscopic_map import refuse_cut
-from ..parameter_map.cells import CELL_REGIMES, ParameterMap
+from ..parameter_maps.cells import CELL_REGIMES, ParameterMap
 from ..scene.quantities import QUANTITIES
 from .continuation import END_WORDS, REACHED, BifurcationPoint, bifurcation_point, follow_curve
 

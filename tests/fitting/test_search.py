@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.stats import qmc
 
-from granchain_core.fit import search
+from granchain_core.fitting import search
 
 
 def test_later_rounds_of_starts_are_spread_as_the_first() -> None:

@@ -86,7 +86,7 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
         Seconds the run may take; compiling does not count.
     kept : RunCheckpoints, optional
         Checkpoints on disk of a run that starts at phase 0: the run continues from them and adds to them
-        (run/run_checkpoints.py).
+        (runs/run_checkpoints.py).
 
     Returns
     -------

@@ -19,10 +19,10 @@ from app.cli import main
 from granchain_core import BadInput, resonance_curve, scene, settle
 from granchain_core.execution.checkpoints import folder_of
 from granchain_core.execution.stop import Stop
-from granchain_core.parameter_map import Axis, Grid, ParameterMap, parameter_map
-from granchain_core.parameter_map.blocks import Blocks
-from granchain_core.parameter_map.cells import CELL_REGIMES, empty_cells
-from granchain_core.parameter_map.scheduled import describe, work_on
+from granchain_core.parameter_maps import Axis, Grid, ParameterMap, parameter_map
+from granchain_core.parameter_maps.blocks import Blocks
+from granchain_core.parameter_maps.cells import CELL_REGIMES, empty_cells
+from granchain_core.parameter_maps.scheduled import describe, work_on
 from granchain_core.scheduler import dealt
 from granchain_core.store.parameter_maps import load_parameter_map, save_parameter_map
 

@@ -31,7 +31,7 @@ from ..inputs.checks import unknown_name
 from ..orbits.branch.special import BIFURCATIONS
 from ..orbits.damped_newton import iterate
 from ..orbits.stroboscopic_map import MULTIPLIER_ERROR, Flow, StroboscopicMap
-from ..parameter_map.grid import KNOBS
+from ..parameter_maps.grid import KNOBS
 from ..scene import Scene
 from ..scene.hertz import RATE_POWER
 from ..scene.quantities import QUANTITIES

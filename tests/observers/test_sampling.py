@@ -8,8 +8,8 @@ from recorded import Recorded, error, recorded
 
 from granchain_core import observe, run, scene
 from granchain_core.execution.stop import Stop
-from granchain_core.observe import ForceRecord, force_record
-from granchain_core.observe.pushed_chain import PushedChain
+from granchain_core.observers import ForceRecord, force_record
+from granchain_core.observers.pushed_chain import PushedChain
 from granchain_core.scene.state import rest
 
 FOUNDED = scene("fig11-founded")

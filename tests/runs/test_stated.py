@@ -16,7 +16,7 @@ from granchain_core.integrate import METHODS, MethodSetting
 from granchain_core.integrate.methods import typical_error
 from granchain_core.integrate.safety_factors import IRREGULAR
 from granchain_core.integrate.stated import Computations
-from granchain_core.run import to_accuracy
+from granchain_core.runs import to_accuracy
 from tests.numerics.forces.located import located
 
 REFINES = (4.0, 8.0, 16.0, 32.0)

@@ -9,7 +9,7 @@ import pytest
 
 import granchain_core
 from granchain_core import Scene, scene
-from granchain_core.attractors.sameness import Found, found, merged
+from granchain_core.attractor_search.sameness import Found, found, merged
 from granchain_core.execution.stop import Stop
 from granchain_core.integrate import Engine, dop853_setting
 from granchain_core.results.regime import Regime

@@ -28,10 +28,10 @@ from granchain_core import (
     run_many,
     scene,
 )
-from granchain_core.fit import CurveTarget, Free, virtual_curve
-from granchain_core.parameter_map import Axis, Grid
-from granchain_core.parameter_map.cells import empty_cells
-from granchain_core.parameter_map.scheduled import CELLS_IN_TASK, iter_blocks
+from granchain_core.fitting import CurveTarget, Free, virtual_curve
+from granchain_core.parameter_maps import Axis, Grid
+from granchain_core.parameter_maps.cells import empty_cells
+from granchain_core.parameter_maps.scheduled import CELLS_IN_TASK, iter_blocks
 from granchain_core.scheduler import dealt, results
 
 CHAIN = scene("sec2").evolve(N=2, f=2000.0)

@@ -10,10 +10,10 @@ import pytest
 
 import granchain_core
 from granchain_core import BadInput, ComputationError, Scene, scene
-from granchain_core.observe import Twin, observer_stability, stability, twin
-from granchain_core.observe.drift import TRANSLATION, is_drift
-from granchain_core.observe.pair import Pair
-from granchain_core.observe.twin import multipliers_of, rate_of
+from granchain_core.observers import Twin, observer_stability, stability, twin
+from granchain_core.observers.drift import TRANSLATION, is_drift
+from granchain_core.observers.pair import Pair
+from granchain_core.observers.twin import multipliers_of, rate_of
 from granchain_core.orbits import damped_newton
 from granchain_core.scene.state import State, rest
 

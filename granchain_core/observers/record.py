@@ -4,7 +4,7 @@ Between the samples the force is a monotone cubic (Fritsch & Carlson 1980, slope
 scipy's PchipInterpolator): it passes through every sample, nowhere beyond its two neighbours, so that a force that is
 never negative stays so, and where two neighbours are zero it is zero. Its error is of order 2 to 3 in the spacing where
 the force is smooth. Around the jump that a linear dashpot makes when its contact closes the force has an error of order
-1/2 in root mean square (tests/observe/test_sampling.py measures both), the motion one of order 1.
+1/2 in root mean square (tests/observers/test_sampling.py measures both), the motion one of order 1.
 """
 
 from __future__ import annotations

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from granchain_core import BadInput, Scene, orbit, resonance_curve, scene, settle
-from granchain_core.attractors import Attractor, attractors, listing
-from granchain_core.attractors.attractor import Origin
-from granchain_core.attractors.attractors import _locks, share
-from granchain_core.attractors.attractors import _regime as irregular_regime
-from granchain_core.attractors.sameness import Found
+from granchain_core.attractor_search import Attractor, attractors, listing
+from granchain_core.attractor_search.attractor import Origin
+from granchain_core.attractor_search.attractors import _locks, share
+from granchain_core.attractor_search.attractors import _regime as irregular_regime
+from granchain_core.attractor_search.sameness import Found
 from granchain_core.results.regime import Regime
 from granchain_core.scene.state import State, rest
 from granchain_core.steady.steady_state import SteadyState
@@ -140,7 +140,7 @@ def test_failed_starts_are_named_and_count_among_the_random_states(monkeypatch: 
     pressed = State(np.array([0.0, 1.0]), np.zeros(2))
     origins = [Origin("rest", rest(chain)), Origin("random 0", rest(chain)), Origin("random 1", pressed)]
     # the package has a function of the name of the module
-    monkeypatch.setattr(sys.modules["granchain_core.attractors.attractors"], "_origins", lambda *_: origins)
+    monkeypatch.setattr(sys.modules["granchain_core.attractor_search.attractors"], "_origins", lambda *_: origins)
     found = attractors(chain, random_states=2)
     assert [one.share for one in found] == [0.5]
     assert [origin.name for origin in found.failed] == ["random 1"]

@@ -10,10 +10,10 @@ import pytest
 from scipy.stats import f
 
 from granchain_core import Amplitude, Fit, Scene, Stop, fit, scene
-from granchain_core.fit import Free
-from granchain_core.fit.intervals import limit
-from granchain_core.fit.search import Target
-from granchain_core.fit.targets import Evaluation
+from granchain_core.fitting import Free
+from granchain_core.fitting.intervals import limit
+from granchain_core.fitting.search import Target
+from granchain_core.fitting.targets import Evaluation
 
 CHAIN = scene("sec2")
 AT = np.linspace(-1.0, 1.0, 6)

@@ -78,7 +78,7 @@ class Fit(Labelled):
     --------
     >>> import numpy as np
     >>> from granchain_core import fit, scene
-    >>> from granchain_core.fit import CurveTarget, Free, virtual_curve
+    >>> from granchain_core.fitting import CurveTarget, Free, virtual_curve
     >>> truth = scene("sec2").evolve(N=2, D=120.0)
     >>> measured = virtual_curve(truth, np.linspace(1500.0, 2500.0, 9), 0.02, np.random.default_rng(1))
     >>> found = fit(truth.evolve(D=80.0), CurveTarget(measured), [Free("D", 50.0, 200.0)])
@@ -214,7 +214,7 @@ def fit(scene: Scene, target: Target, free: Sequence[Free], design: int = 0, int
     --------
     >>> from granchain_core import fit, scene
     >>> from granchain_core.experiment import read_data
-    >>> from granchain_core.fit import CurveTarget, Free
+    >>> from granchain_core.fitting import CurveTarget, Free
     >>> measured = read_data(b"f [Hz],F [N],error [N]\\n1800,3.3,0.1\\n2000,2.3,0.1\\n2200,1.9,0.1\\n")
     >>> found = fit(scene("sec2").evolve(N=2), CurveTarget(measured), [Free("D", 50.0, 200.0)], intervals=False)
     >>> found.data, found.freedom

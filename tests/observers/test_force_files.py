@@ -15,7 +15,7 @@ from recorded import error, recorded
 from app import cli
 from granchain_core import BadInput, observe, run, scene
 from granchain_core.experiment import Unclear, answers_of
-from granchain_core.observe import ForceRecord, force_record, read_force, read_force_csv
+from granchain_core.observers import ForceRecord, force_record, read_force, read_force_csv
 from granchain_core.store import save, save_observation
 
 pytestmark = pytest.mark.quick
