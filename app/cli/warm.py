@@ -10,11 +10,16 @@ from .common import say
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `warm`."""
     parser.add_argument("scene", nargs="*", help="scenes whose kernels are compiled; by default the paper's scenes")
+    parser.add_argument("--list", action="store_true", help="say what is compiled on this machine; compile nothing")
 
 
 def do(arguments: argparse.Namespace) -> None:
-    """Compile the kernels of the paper's scenes, or of those named, ahead of time."""
-    from granchain_core.precompile.warm import USUAL, warm_scenes
+    """Compile the kernels of the paper's scenes, or of those named, ahead of time; or list what is compiled."""
+    from granchain_core.precompile.warm import USUAL, compiled_lines, warm_scenes
 
+    if arguments.list:
+        for line in compiled_lines(arguments.scene or USUAL):
+            print(line)
+        return
     for done in warm_scenes(arguments.scene or USUAL):
         say("compiled", done)

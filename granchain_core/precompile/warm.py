@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import contextlib
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import as_completed
 from contextlib import ExitStack
 from itertools import cycle
@@ -57,8 +57,8 @@ from .pieces import (
 def structure(shown: Scene) -> str:
     """Name of a scene's structure."""
     scaled = scale_chain(shown)
-    lanes = chain_width(scaled)
-    width = f"vector of {lanes}" if lanes else "long"
+    bodies = chain_width(scaled)
+    width = f"vector of {bodies}" if bodies else "long"
     effects = [effect.key(shown) for effect in effects_of(shown)]
     law = [] if shown.has_dissipation else ["none"]
     beads = [] if is_uniform(scaled) else ["unequal beads"]
@@ -159,6 +159,22 @@ def is_warm(shown: Scene, pieces: Iterable[str] = MOTION_KERNELS) -> bool:
     if CACHE_FOLDER is None:
         return False
     return all(_marker(CACHE_FOLDER, structure(shown), piece).exists() for piece in pieces)
+
+
+def compiled_lines(names: Iterable[str]) -> Iterator[str]:
+    """Which pieces of these scenes' structures are compiled on this machine, and what the cache has altogether."""
+    chains = {structure(scene(name)): scene(name) for name in names}
+    for name, chain in chains.items():
+        there = [piece for piece in PIECES if is_warm(chain, [piece])]
+        lacking = [piece for piece in PIECES if piece not in there]
+        yield (f"{name}: {', '.join(there) or 'nothing'} compiled"
+               + (f"; {', '.join(lacking)} not compiled" if lacking else ""))
+    if CACHE_FOLDER is None:
+        yield "no folder for compiled kernels: they are compiled anew in every process"
+        return
+    files = list(CACHE_FOLDER.rglob("*.nbc"))
+    size = sum(file.stat().st_size for file in files)
+    yield f"{len(files)} specializations of kernels, {size / 1e6:.0f} MB, in {CACHE_FOLDER}"
 
 
 def _marker(folder: Path, name: str, piece: str) -> Path:

@@ -193,3 +193,18 @@ def test_every_place_that_writes_the_exponent_of_the_contacts_is_on_the_list_and
 def test_the_places_of_the_exponent_exist(file: str) -> None:
     there = {name for name, _ in named_parts(ROOT / "granchain_core" / file)}
     assert {name for listed, name in listed_places() if listed == file} <= there
+
+
+def test_the_table_of_bodies_registered_from_above_is_that_of_the_code() -> None:
+    """Function → families above its own that give it a body (`.of`). Those of the effects' slots are too many."""
+    kernels = ROOT / "granchain_core" / "kernels"
+    defined = {name: path.relative_to(kernels) for path in kernels.rglob("*.py")
+               for name in re.findall(r"^@by_\w+\ndef (\w+)", path.read_text(encoding="utf-8"), re.MULTILINE)}
+    above = {(name, defined[name].as_posix(), path.relative_to(kernels).parts[0]) for path in kernels.rglob("*.py")
+             for name in re.findall(r"^@(\w+)\.of\(", path.read_text(encoding="utf-8"), re.MULTILINE)
+             if name in defined and defined[name].parts[0] not in ("effects", path.relative_to(kernels).parts[0])}
+    section = PAGE.split("registered bodies come up")[1].split("###")[0]
+    listed = {(name, row[2], row[3]) for row in
+              re.finditer(r"^\| (`.+?)(?:: .+?)? \| `kernels/([\w/.]+)` \| `kernels/([\w.]+)", section, re.MULTILINE)
+              for name in re.findall(r"`(\w+)`", row[1].split(": ")[0])}
+    assert listed == above

@@ -15,14 +15,17 @@ from pathlib import Path
 
 import pytest
 
+from app.cli import main
 from app.cli.common import in_background
 from app.cli.compiling import WORDS, compiling_beside
 from granchain_core import scene
+from granchain_core.precompile import warm
 from granchain_core.precompile.pieces import FIXED_STEP_KERNELS
 
 #: Compiles two functions, as a first run does.
 PROGRAM = """
 from numba import njit
+from app.cli import main
 from app.cli.common import in_background
 def work(stop):
     njit(lambda x: x + 1)(1)
@@ -107,6 +110,7 @@ def test_what_cannot_be_compiled_beside_leaves_no_word() -> None:
 import os
 from app.cli.compiling import _compile
 from granchain_core import scene
+from granchain_core.precompile import warm
 from granchain_core.precompile.pieces import ORBIT_KERNELS
 _compile({os.getpid()}, scene("sec2").evolve(tension="cut"), (ORBIT_KERNELS,))
 """], cwd=ROOT, capture_output=True, text=True, timeout=120)
@@ -118,3 +122,13 @@ def test_with_one_core_nothing_compiles_beside(monkeypatch: pytest.MonkeyPatch) 
     event = importlib.import_module("numba.core.event")
     with compiling_beside(scene("sec2"), FIXED_STEP_KERNELS), event.trigger_event("numba:compile"):
         assert compilers() == []
+
+
+def test_warm_lists_what_is_compiled(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setattr(warm, "CACHE_FOLDER", tmp_path)
+    warm._marker(tmp_path, warm.structure(scene("sec2")), FIXED_STEP_KERNELS).touch()
+    (tmp_path / "a.nbc").write_bytes(b"12")
+    assert main(["warm", "--list", "sec2"]) == 0
+    kernels, cache = capsys.readouterr().out.splitlines()
+    assert kernels.startswith(f"{warm.structure(scene('sec2'))}: {FIXED_STEP_KERNELS} compiled; regime, ")
+    assert cache == f"1 specializations of kernels, 0 MB, in {tmp_path}"

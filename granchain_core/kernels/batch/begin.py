@@ -22,16 +22,16 @@ _FEWEST_ORBITS = 2
 COARSE_ERROR_LEFT = 0.02
 #: [period n] A batch: lower bound of the factor by which the coarse orbit's error is assumed to shrink per orbit.
 _LEAST_CONTRACTION = 1e-3
-#: Columns of `last_check`: period in drive periods, contraction factor per orbit, distance left to the orbit; and their
-#: number.
+#: Columns of `last_check`: period in drive periods, contraction factor per orbit, distance left to the orbit. The last
+#: name is the number of columns.
 CHECK_PERIOD, CHECK_CONTRACTION, CHECK_DISTANCE, CHECK_COLUMNS = range(4)
 #: Columns of `fine_record`: the orbit's period and contraction factor, the coarse run's three largest forces (from
 #: FINE_FORCES on), orbits between two extrapolations, extrapolations so far, 1 if changes grew before one.
 FINE_PERIOD, FINE_CONTRACTION, FINE_FORCES, FINE_ORBITS_BETWEEN, FINE_EXTRAPOLATIONS, FINE_GREW = 0, 1, 2, 5, 6, 7
 #: [no threshold] Number of columns of `fine_record`.
 FINE_COLUMNS = 8
-#: Columns of `coarse_orbit`: those of `last_check`, slowest contraction before an extrapolation (0 without one), drive
-#: periods run; and their number.
+#: Columns of `coarse_orbit` after those of `last_check`: slowest contraction before an extrapolation (0 without one),
+#: drive periods run. The last name is the number of columns.
 ORBIT_SLOWEST_CONTRACTION, ORBIT_PERIODS, ORBIT_COLUMNS = CHECK_COLUMNS, CHECK_COLUMNS + 1, CHECK_COLUMNS + 2
 
 
@@ -69,15 +69,15 @@ def begin_fine_run(state, member):
     The fine run is checked once the difference from the coarse orbit has decayed.
     """
     schedule, search = state.schedule, state.search
-    found, fine = search.coarse_orbit[member], search.fine_record[member]
-    copy(search.last_check[member], found)
-    found[ORBIT_SLOWEST_CONTRACTION] = search.slowest_contraction[member]
-    found[ORBIT_PERIODS] = state.record.periods[member]
-    period = int(found[CHECK_PERIOD])
-    if search.slowest_contraction[member] == 0.0:  # else they were kept when the orbit was disturbed
+    orbit, fine = search.coarse_orbit[member], search.fine_record[member]
+    copy(search.last_check[member], orbit)
+    orbit[ORBIT_SLOWEST_CONTRACTION] = search.slowest_contraction[member]
+    orbit[ORBIT_PERIODS] = state.record.periods[member]
+    period = int(orbit[CHECK_PERIOD])
+    if search.slowest_contraction[member] == 0.0:  # else they were kept when the orbit was perturbed
         for q in range(3):
             fine[FINE_FORCES + q] = largest_force(state.record, member, period, q)
-    contraction = coarse_contraction(found[CHECK_CONTRACTION])
+    contraction = coarse_contraction(orbit[CHECK_CONTRACTION])
     orbits = orbits_until_checked(contraction)
     schedule.steps[member], schedule.fine_steps[member] = schedule.fine_steps[member], 0
     begin_member(state, member)

@@ -3,8 +3,8 @@
 Coarse run. An extrapolation reaches at most three times the distance that the contraction factor predicts
 (`FARTHEST_EXTRAPOLATION`). If the change per orbit is not smaller after it than before, the extrapolation is undone,
 and the record goes on from where it was. A chain may approach an unstable orbit before it leaves it, and an
-extrapolation could end on that orbit. So an orbit found by extrapolation is disturbed, and accepted only if the
-disturbance decays. If it decays slowly, multipliers decide (steady/batch/job.py).
+extrapolation could end on that orbit. So an orbit found by extrapolation is perturbed, and accepted only if the
+perturbation decays. If it decays slowly, multipliers decide (steady/batch/job.py).
 
 Fine run. It starts on the orbit of the coarse run and is extrapolated to its own orbit; each extrapolation is checked
 in the same way.
@@ -61,18 +61,18 @@ FARTHEST_EXTRAPOLATION = 3.0
 _ORBITS_TO_GROW = 4
 #: [period n] A batch: most extrapolations of the fine run.
 _MOST_EXTRAPOLATIONS = 6
-#: [period n] A batch: an orbit found by extrapolation is disturbed by this part of the motion.
+#: [period n] A batch: an orbit found by extrapolation is perturbed by this part of the motion.
 _DISTURBANCE = 1e-4
-#: [period n] A batch: orbits in the test of that disturbance.
+#: [period n] A batch: orbits in the test of that perturbation.
 _TEST_ORBITS = 16
 #: [no threshold] Orbits from the second quarter of that test to the last, which are compared.
 _ORBITS_BETWEEN_QUARTERS = _TEST_ORBITS // 2
-#: [period n] A batch: largest part of the disturbance that may be left at the end of the test, relative to its first
+#: [period n] A batch: largest part of the perturbation that may be left at the end of the test, relative to its first
 #: quarter.
 _PART_LEFT = 0.97
-#: [period n] A batch: drive periods without extrapolation after a disturbance that did not decay.
+#: [period n] A batch: drive periods without extrapolation after a perturbation that did not decay.
 _PAUSE_AFTER_FAILED_TEST = 400
-#: [period n] A batch: upper limit of the contraction factor per orbit that is reported for a disturbance that shrank.
+#: [period n] A batch: upper limit of the contraction factor per orbit that is reported for a perturbation that shrank.
 #: Up to 100 beads, multipliers are then computed.
 _LARGEST_REPORTED_CONTRACTION = 0.9999
 #: [period n] A batch: largest contraction factor per drive period that is assumed after an extrapolation. Larger ones
@@ -116,7 +116,7 @@ def check_coarse(state, member):
     last_check[CHECK_PERIOD], last_check[CHECK_CONTRACTION] = detected.period, detected.contraction
     last_check[CHECK_DISTANCE] = detected.distance
     if detected.period > 0 and search.slowest_contraction[member] > 0.0:
-        disturb(state, member, detected.period)
+        perturb(state, member, detected.period)
         return False
     if detected.period > 0:
         return True
@@ -157,14 +157,14 @@ def go_back_and_wait(state, member):
 
 @internal
 def keep_state_before(search, strobe, member):
-    """Keep a member's state, to which it returns if an extrapolation is undone or a disturbance has decayed."""
+    """Keep a member's state, to which it returns if an extrapolation is undone or a perturbation has decayed."""
     copy(strobe[0], search.state_before[member, 0])
     copy(strobe[1], search.state_before[member, 1])
 
 
 @inline_numba
-def disturb(state, member, period):
-    """Disturb a member that seems to be on an orbit, keeping the orbit's state and forces."""
+def perturb(state, member, period):
+    """Perturb a member that seems to be on an orbit, keeping the orbit's state and forces."""
     record, search, work = state.record, state.search, state.work
     keep_state_before(search, record.strobes[member, record.strobe_count[member] - 1], member)
     for q in range(2):
@@ -179,8 +179,8 @@ def disturb(state, member, period):
 
 
 @inline_numba
-def judge_disturbance(state, member):
-    """Whether a member's disturbance has decayed, at the end of the test.
+def judge_perturbation(state, member):
+    """Whether a member's perturbation has decayed, at the end of the test.
 
     The member then goes back to its orbit, and the contraction factor is recorded; else extrapolation pauses.
     """
@@ -275,7 +275,7 @@ def periods_to_next_check(record, member):
 
 @kernel
 def begin_or_check_member(state, member):
-    """Begin a member that is new; else check its regime, or what is left of its disturbance.
+    """Begin a member that is new; else check its regime, or what is left of its perturbation.
 
     Returns whether the member is due. A coarse member whose orbit is found begins its fine run instead, if one is
     wanted. If nothing is decided, the next check is set. A beginning goes through here to be compiled once for all
@@ -289,8 +289,8 @@ def begin_or_check_member(state, member):
     schedule.next_check[member] = record.periods[member] + periods_to_next_check(record, member)
     if search.fine_record[member, FINE_PERIOD] > 0.0:
         return check_fine(state, member)
-    found = judge_disturbance(state, member) if search.tested_period[member] > 0 else check_coarse(state, member)
-    if found and schedule.fine_steps[member] > 0:
+    decided = judge_perturbation(state, member) if search.tested_period[member] > 0 else check_coarse(state, member)
+    if decided and schedule.fine_steps[member] > 0:
         begin_fine_run(state, member)
         return False
-    return found
+    return decided

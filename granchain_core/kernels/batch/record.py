@@ -41,11 +41,11 @@ def append_strobe(record, y, member):
 
 
 @internal
-def set_state(motion, member, there):
-    """Set the state of a member at phase 0 to `there` (2, bodies)."""
-    y, bodies = motion.y, there.shape[1]
+def set_state(motion, member, target):
+    """Set the state of a member at phase 0 to `target` (2, bodies)."""
+    y, bodies = motion.y, target.shape[1]
     for i in range(1, bodies - 1):
-        y[i, member], y[bodies + i, member] = there[0, i], there[1, i]
+        y[i, member], y[bodies + i, member] = target[0, i], target[1, i]
     forget_last_step(motion, member)
 
 
@@ -69,10 +69,10 @@ def largest_force(record, member, n, q):
 
 
 @internal
-def move_member(state, member, there):
-    """Move a member to the state `there` (2, bodies), where its record begins anew."""
+def move_member(state, member, target):
+    """Move a member to the state `target` (2, bodies), where its record begins anew."""
     record = state.record
-    set_state(state.motion, member, there)
+    set_state(state.motion, member, target)
     record.first_strobe[1, member] = record.first_strobe[0, member]
     record.first_strobe[0, member] = record.strobe_count[member]
     append_strobe(record, state.motion.y, member)

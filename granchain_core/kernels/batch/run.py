@@ -76,10 +76,10 @@ def bring_back(state, member):
     total = 0.0
     for i in range(rows):
         total += (y[i, neighbour] - y[i, member]) ** 2
-    start, now = pairs.distance[member], max(sqrt(total), 1e-300)
-    pairs.growth[member, state.record.periods[member] - 1] = log(now / start)
+    wanted, distance = pairs.distance[member], max(sqrt(total), 1e-300)
+    pairs.growth[member, state.record.periods[member] - 1] = log(distance / wanted)
     for i in range(rows):
-        y[i, neighbour] = y[i, member] + (y[i, neighbour] - y[i, member]) * (start / now)
+        y[i, neighbour] = y[i, member] + (y[i, neighbour] - y[i, member]) * (wanted / distance)
 
 
 @kernel

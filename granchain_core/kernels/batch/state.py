@@ -109,11 +109,11 @@ class Search(NamedTuple):
     extrapolate_from (L,)    period from which a transient may be extrapolated
     wait_after_undo (L,)     periods without extrapolation after the next one that is undone
     slowest_contraction (L,)  contraction factor per drive period of the slowest transient that an extrapolation ended,
-                             0 without one; above 0 an orbit that is found must survive a disturbance
+                             0 without one; above 0 an orbit that is found must survive a perturbation
     contraction_before (L,)  the same before the last extrapolation, which may be undone
     change_before (L,)       change per orbit before an extrapolation that is not confirmed yet, else 0
-    tested_period (L,)       period of an orbit that is being disturbed, else 0
-    state_before (L, 2, N+2)  state before the last extrapolation or disturbance
+    tested_period (L,)       period of an orbit that is being perturbed, else 0
+    state_before (L, 2, N+2)  state before the last extrapolation or perturbation
     last_check (L, CHECK_COLUMNS)  result of the last check (begin.py)
     coarse_orbit (L, ORBIT_COLUMNS)  what the coarse run found (begin.py)
     fine_record (L, FINE_COLUMNS)  record of a fine run (begin.py); its period is 0 in a coarse one

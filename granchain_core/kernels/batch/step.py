@@ -1,8 +1,8 @@
 """One Runge–Kutta step of several chains, one in each SIMD lane: four stages, each a sweep along the chains.
 
 In a sweep no contact waits for another one, so that the processor computes several at once. The square-root instruction
-takes one root in three in batches of eight and two in three in batches of four; the others are taken by multiplications
-where simd/functions.py has them. That keeps both units of the processor busy.
+takes one root in three in batches of eight and two in three in batches of four; the others are taken from an
+estimate and a series where simd/functions.py has one. That keeps both the divider and the multiply–add units busy.
 """
 
 from __future__ import annotations
@@ -55,19 +55,19 @@ class LeftBead(NamedTuple):
 
 
 @inline_llvm
-def by_divider(d):
+def by_sqrt(d):
     """√d by the square-root instruction."""
     return root(d)
 
 
 @inline_llvm
-def by_multipliers(d):
-    """√d, d > 0, by multiplications where simd/functions.py has them, else by the instruction."""
+def by_series(d):
+    """√d, d > 0, by an estimate and a series where simd/functions.py has one, else by the instruction."""
     return root_by_series(d)
 
 
 #: How the last of three roots is taken. The shares that measured best: docs/benchmarks.md, "The step of a batch".
-third_root = by_multipliers if BATCH_SIZE == 8 else by_divider
+third_root = by_series if BATCH_SIZE == 8 else by_sqrt
 
 
 @inline_llvm
@@ -154,17 +154,17 @@ class ChainEnds(NamedTuple):
 def run_stage(values, stage, source, driver):
     """One stage at the state `source` with the driver at `driver`; returns its `ChainEnds`."""
     last, u = values.last, load_batch(source, 1)
-    e_first, first_primitive = contact(values, by_multipliers, driver, u, 0, False)
+    e_first, first_primitive = contact(values, by_series, driver, u, 0, False)
     left, v_first = LeftBead(u, e_first, first_primitive), u
     if last > 1:
-        v_first, left = bead(values, by_multipliers, stage, source, 1, left, False)
+        v_first, left = bead(values, by_series, stage, source, 1, left, False)
     for i in range(2, last - 2, 3):
-        _, left = bead(values, by_divider, stage, source, i, left, False)
-        _, left = bead(values, by_multipliers, stage, source, i + 1, left, False)
+        _, left = bead(values, by_sqrt, stage, source, i, left, False)
+        _, left = bead(values, by_series, stage, source, i + 1, left, False)
         _, left = bead(values, third_root, stage, source, i + 2, left, False)
     for i in range(max(2, last - (last - 2) % 3), last):
-        _, left = bead(values, by_divider, stage, source, i, left, False)
-    v_last, left = bead(values, by_divider, stage, source, last, left, True)
+        _, left = bead(values, by_sqrt, stage, source, i, left, False)
+    v_last, left = bead(values, by_sqrt, stage, source, last, left, True)
     return ChainEnds(e_first, v_first if last > 1 else v_last, left.e, v_last)
 
 

@@ -78,10 +78,10 @@ class _Files:
     def load(self, key: Any) -> Any:
         """One specialization, None where there is none that is whole."""
         try:
-            found = pickle.loads(read_verified(self.path(key)))
+            stored = pickle.loads(read_verified(self.path(key)))
         except FileNotFoundError:
             return None
-        return found[3] if found[:3] == (numba.__version__, self._stamp, key) else None
+        return stored[3] if stored[:3] == (numba.__version__, self._stamp, key) else None
 
     def flush(self) -> None:
         """Forget all specializations, as `recompile` of a function asks."""

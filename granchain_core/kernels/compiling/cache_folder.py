@@ -100,9 +100,9 @@ def _holds_kernels(folder: Path) -> bool:
 
 def _close_to_others(base: Path) -> None:
     """Take the right to write from others: earlier versions left it to them in the user's cache where the umask did."""
-    found = base.stat()
-    if hasattr(os, "getuid") and found.st_uid == os.getuid() and found.st_mode & _OTHERS:
-        base.chmod(stat.S_IMODE(found.st_mode) & ~_OTHERS)
+    state = base.stat()
+    if hasattr(os, "getuid") and state.st_uid == os.getuid() and state.st_mode & _OTHERS:
+        base.chmod(stat.S_IMODE(state.st_mode) & ~_OTHERS)
 
 
 def _why_unsafe(base: Path, folder: Path) -> str | None:
@@ -115,12 +115,12 @@ def _why_unsafe(base: Path, folder: Path) -> str | None:
     """
     if not hasattr(os, "getuid"):
         return None
-    for one in (*reversed(base.parents), base, folder):
-        found, sticky = one.lstat(), 0 if one == folder else stat.S_ISVTX
-        if stat.S_ISLNK(found.st_mode):
-            return f"{one} is a link"
-        if found.st_uid not in (0, os.getuid()) or (found.st_mode & _OTHERS and not found.st_mode & sticky):
-            return f"others may write to {one}"
+    for path in (*reversed(base.parents), base, folder):
+        state, sticky = path.lstat(), 0 if path == folder else stat.S_ISVTX
+        if stat.S_ISLNK(state.st_mode):
+            return f"{path} is a link"
+        if state.st_uid not in (0, os.getuid()) or (state.st_mode & _OTHERS and not state.st_mode & sticky):
+            return f"others may write to {path}"
     return None
 
 
@@ -147,8 +147,8 @@ def _is_ours(folder: Path) -> bool:
     """Make the folder, or find it there: no link, with this user as owner and no rights for anybody else."""
     with contextlib.suppress(FileExistsError):
         folder.mkdir(mode=0o700)
-    found = folder.lstat()
-    return stat.S_ISDIR(found.st_mode) and found.st_uid == os.getuid() and stat.S_IMODE(found.st_mode) == 0o700
+    state = folder.lstat()
+    return stat.S_ISDIR(state.st_mode) and state.st_uid == os.getuid() and stat.S_IMODE(state.st_mode) == 0o700
 
 
 def _note_use(base: Path, used: Path) -> None:
@@ -158,8 +158,8 @@ def _note_use(base: Path, used: Path) -> None:
     for folder in base.iterdir():
         if _FOLDERS.fullmatch(folder.name) and folder != used:
             with contextlib.suppress(OSError):  # another process may remove it as well
-                found = folder.lstat()
-                if stat.S_ISDIR(found.st_mode) and time.time() - found.st_mtime > _MONTH:
+                state = folder.lstat()
+                if stat.S_ISDIR(state.st_mode) and time.time() - state.st_mtime > _MONTH:
                     shutil.rmtree(folder, ignore_errors=True)
 
 

@@ -82,6 +82,6 @@ def constants_hash(function: FunctionType) -> str:
 
 
 def _constants(code: CodeType, docstring: str | None) -> str:
-    found = [_constants(one, None) if isinstance(one, CodeType) else repr(one)
-             for one in code.co_consts if one is not docstring or one is None]
-    return repr((code.co_names, found))
+    constants = [_constants(constant, None) if isinstance(constant, CodeType) else repr(constant)
+                 for constant in code.co_consts if constant is not docstring or constant is None]
+    return repr((code.co_names, constants))

@@ -28,7 +28,7 @@ ATTEMPTS = 60
 
 
 class RunContext(NamedTuple):
-    """What the steps of a run share: chain, method, workspace and counters; p of the time transform.
+    """What the steps of a run share: chain, method, workspace and counters; p of the time transformation.
 
     `last` is the number of the last contact, and of beads. Points of the grid are `spacing` apart, and one that is
     missed by at most `near` is passed; each `every`-th is recorded, none where it is 0.
@@ -94,10 +94,10 @@ def accepted_attempt(context, begin, chosen, dt, units):
     the step in ξ, though next to an event their ratio is not constant.
     """
     counts = context.out.counts
-    transform, q, h, limited, pace = transform_at(context.values, begin.closed, chosen), 0.0, dt, False, 1.0
+    transform, q, h, limited, dt_dxi = transform_at(context.values, begin.closed, chosen), 0.0, dt, False, 1.0
     if chosen >= 0:
         q = nonnegative_root(at(begin.rates.overlap, chosen), context.power)
-        pace, _, _ = powers(context.power, q)
+        dt_dxi, _, _ = powers(context.power, q)
         h, limited = size_in_xi(context.power, q, at(begin.rates.rate, chosen), dt)
     start, status = Point(begin.point.u, begin.point.w, splat8(q), splat8(begin.t)), DONE
     while True:
@@ -119,18 +119,18 @@ def accepted_attempt(context, begin, chosen, dt, units):
         if is_too_small(dt, begin.t, context.beta):
             status = STEP_TOO_SMALL
             break
-    end_pace = 1.0
+    end_dt_dxi = 1.0
     if chosen >= 0:
-        end_pace, _, _ = powers(context.power, at(end.q, 0))
-    return status, StepInXi(transform, h, start, begin.rates, pace, end, end_rates, end_pace, square, limited), dt
+        end_dt_dxi, _, _ = powers(context.power, at(end.q, 0))
+    return status, StepInXi(transform, h, start, begin.rates, dt_dxi, end, end_rates, end_dt_dxi, square, limited), dt
 
 
 @inline_numba
 def accepted_step(context, begin, chosen, dt, units, g):
-    """An accepted step past point g of the grid, in which no contact opens but the one its time transform is made for.
+    """An accepted step past point g of the grid. Only the contact of its time transformation opens in it.
 
-    An opening that the step did not aim at is aimed at in another attempt. Returns (status, `CheckedStep`, dt), with dt
-    as in `accepted_attempt`.
+    If another contact would open, the step is tried again with the time transformation of that contact's event.
+    Returns (status, `CheckedStep`, dt), with dt as in `accepted_attempt`.
     """
     slots, work, values, counts = context.slots, context.work, context.values, context.out.counts
     attempts = 1
@@ -145,7 +145,7 @@ def accepted_step(context, begin, chosen, dt, units, g):
             if context.every > 0:
                 forces = end_forces(values, context.driver, step.end, step.end_rates, context.last)
                 if not prepared:
-                    exceeds = may_exceed(in_xi(begin.forces, step.pace), in_xi(forces, step.end_pace), step.h,
+                    exceeds = may_exceed(in_xi(begin.forces, step.dt_dxi), in_xi(forces, step.end_dt_dxi), step.h,
                                          context.out.log.peaks)
             if prepared or exceeds:
                 prepare_dense_rows(values, context.driver, work, step.transform, step.start, step.end, step.h)

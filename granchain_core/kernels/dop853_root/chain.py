@@ -64,7 +64,7 @@ class Dop853RootWorkspace(NamedTuple):
     polynomial: np.ndarray
 
 
-class TimeTransform(NamedTuple):
+class TimeTransformation(NamedTuple):
     """The transformed time ξ: that of the event of `contact` (`active` 1), or the time itself (0).
 
     `others` is 1 for the closed contacts but that one; `stiffness` and `chosen_stiffness` are the stiffness of those
@@ -163,7 +163,7 @@ def transform_of(values, closed, chosen, active, contact):
     """The transformed time next to the event of a contact, for which `chosen` is 1; nowhere, for the time itself."""
     others, pull = closed * (1.0 - chosen), from_left(blank(chosen), chosen) - chosen
     stiffness = repeat_like(chosen, splat8(at(values.stiffness, contact)))
-    return TimeTransform(active, contact, others, others * values.stiffness, chosen * stiffness,
+    return TimeTransformation(active, contact, others, others * values.stiffness, chosen * stiffness,
                          pull_of_damping(values.slots.dissipation, values.damping_over_mass, pull), stiffness * pull)
 
 

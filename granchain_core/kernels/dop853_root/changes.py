@@ -1,4 +1,4 @@
-"""The time transform and size of the next step, and contacts that open or close in a step that was taken."""
+"""The time transformation and the size of the next step; contacts that have opened or closed in an accepted step."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from ..contact_cubic import hermite_turn, hermite_value, turns
 from ..flow.event_time import nonnegative_root
 from ..simd.sums import largest_of, lowest_bit
 from ..simd.vector import at, positive_mask
-from .inside import change_before, take_distance, turn_of
+from .inside import change_before, load_distance, turn_of
 
 #: [step size] dop853-root: time is transformed if the contact's nearest event, at its present speed, is at most this
 #: many steps away.
@@ -37,7 +37,7 @@ _MISSED_PART = 0.25
 
 
 class StepInXi(NamedTuple):
-    """An accepted step in ξ: its time transform, size, start, end, the rates and dt/dξ at both.
+    """An accepted step in ξ: its time transformation, size, start, end, the rates and dt/dξ at both.
 
     `error_squared` is the square of its error, in units of the tolerance, as `attempt` (step.py) gives it. `limited`
     says whether the step was repeated, or made shorter next to an event, so that the next one should not be longer.
@@ -47,10 +47,10 @@ class StepInXi(NamedTuple):
     h: float
     start: Any
     rates: Any
-    pace: float
+    dt_dxi: float
     end: Any
     end_rates: Any
-    end_pace: float
+    end_dt_dxi: float
     error_squared: float
     limited: bool
 
@@ -76,11 +76,11 @@ def nearest_event(rates, closed, scale, dt):
     """The closed contact whose closing or opening is nearest in time, before or after; −1 if none is within
     `_MOST_STEPS_AWAY` steps of dt.
     """
-    speed, still = abs(rates.rate), _REST_DISPLACEMENT * scale
-    away = (abs(rates.overlap) + still) / (speed + _LEAST_SPEED) + _OPEN_AWAY * (1.0 - closed)
-    least = -largest_of(-away)
-    contact = lowest_bit(~positive_mask(away - least))
-    return contact if least < _MOST_STEPS_AWAY * dt and at(speed, contact) * dt > still else -1
+    speed, at_rest = abs(rates.rate), _REST_DISPLACEMENT * scale
+    time_to_event = (abs(rates.overlap) + at_rest) / (speed + _LEAST_SPEED) + _OPEN_AWAY * (1.0 - closed)
+    nearest = -largest_of(-time_to_event)
+    contact = lowest_bit(~positive_mask(time_to_event - nearest))
+    return contact if nearest < _MOST_STEPS_AWAY * dt and at(speed, contact) * dt > at_rest else -1
 
 
 @internal
@@ -99,17 +99,18 @@ def may_touch(d0, s0, d1, s1):
 @inline_numba
 def may_change(step, power, bits, turned):
     """Bits of those contacts in `turned` that may have opened or closed within the step and back."""
-    left, found = turned, 0
+    left, may = turned, 0
     while left != 0:
         c, left = lowest_bit(left), left & (left - 1)
         sign, s0, s1 = -1.0 if (bits >> c) & 1 != 0 else 1.0, at(step.rates.rate, c), at(step.end_rates.rate, c)
-        d0, d1, s0, s1 = at(step.rates.overlap, c), at(step.end_rates.overlap, c), step.pace * s0, step.end_pace * s1
+        d0, d1 = at(step.rates.overlap, c), at(step.end_rates.overlap, c)
+        s0, s1 = step.dt_dxi * s0, step.end_dt_dxi * s1
         if step.transform.active != 0.0 and c == step.transform.contact:
             d0, d1 = at(step.start.q, 0), at(step.end.q, 0)
             s0, s1 = at(step.rates.rate, c) / power, at(step.end_rates.rate, c) / power
         if may_touch(sign * d0, sign * step.h * s0, sign * d1, sign * step.h * s1):
-            found |= 1 << c
-    return found
+            may |= 1 << c
+    return may
 
 
 @inline_llvm
@@ -124,8 +125,8 @@ def changes_in(step, bits, contacts):
     if step.transform.active != 0.0:
         own = 1 << step.transform.contact
         crossed = crossed | own if at(step.end.q, 0) < 0.0 else crossed & ~own
-    every = (1 << contacts) - 1
-    return crossed & every, turned & ~crossed & every
+    all_contacts = (1 << contacts) - 1
+    return crossed & all_contacts, turned & ~crossed & all_contacts
 
 
 @inline_numba
@@ -137,7 +138,7 @@ def first_event(slots, work, step, bits, crossed, turned):
             continue
         sign, high, s0 = -1.0 if (bits >> c) & 1 != 0 else 1.0, 1.0, at(step.rates.rate, c)
         chosen = step.transform.active != 0.0 and c == step.transform.contact
-        take_distance(slots, work, c, chosen, sign)
+        load_distance(slots, work, c, chosen, sign)
         if (crossed >> c) & 1 == 0:
             high, top = turn_of(work.polynomial, 1.0)
             if top <= 0.0:

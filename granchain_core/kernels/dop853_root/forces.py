@@ -66,10 +66,10 @@ def end_forces(values, driver, point, rates, last):
 
 
 @inline_llvm
-def in_xi(forces, pace):
-    """Forces with their slopes in ξ, where dt/dξ is `pace`."""
+def in_xi(forces, dt_dxi):
+    """Forces with their slopes in ξ, where dt/dξ is `dt_dxi`."""
     a, b, c = forces.slopes
-    return EndForces(forces.values, (pace * a, pace * b, pace * c))
+    return EndForces(forces.values, (dt_dxi * a, dt_dxi * b, dt_dxi * c))
 
 
 @internal

@@ -24,7 +24,7 @@ class Polynomial(NamedTuple):
 
 
 @internal
-def take_distance(slots, work, contact, chosen, sign):
+def load_distance(slots, work, contact, chosen, sign):
     """Load the overlap of a contact, or q if the contact is `chosen`, times a sign, into the polynomial."""
     p, begin, dense = work.polynomial, work.begin, work.dense
     if chosen:
@@ -38,7 +38,7 @@ def take_distance(slots, work, contact, chosen, sign):
 
 
 @internal
-def take_time(work, instant):
+def load_time(work, instant):
     """Load the time since an instant into the polynomial."""
     work.polynomial[7] = work.begin.t[0, 0] - instant
     for k in range(7):
@@ -88,14 +88,14 @@ def turn_of(p, sign):
 @internal
 def time_inside(work, x):
     """The time at fraction x of the step."""
-    take_time(work, 0.0)
+    load_time(work, 0.0)
     return polynomial_at(work.polynomial, x)
 
 
 @internal
 def fraction_at(work, instant, high):
     """Fraction of the step, up to `high`, at which the time is `instant`."""
-    take_time(work, instant)
+    load_time(work, instant)
     first, last = work.polynomial[7], polynomial_at(work.polynomial, high)
     if first >= 0.0:
         return 0.0

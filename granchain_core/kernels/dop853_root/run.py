@@ -1,8 +1,15 @@
 """Runs along a short chain with error control. An attempt may pass a contact event, a root of its dense output.
 
-An attempt is made from `StepBegin` until one is accepted (accepted_step.py). The step is the part of it up to the first
-change of a contact, or up to the last point of the grid (`end_of_step`), where the state is that of the dense output.
-The next step begins there.
+The order of one step, `run_dop853_root`:
+
+1. `nearest_event` (changes.py) chooses the contact whose event is near enough to transform the time for it, or none;
+2. `accepted_step` (accepted_step.py) tries steps from the nominal size dt: `size_in_xi` (changes.py) gives the size in
+   ξ, `attempt` (step.py) the step, and dt shrinks until the error is tolerable. If another contact opens in the step,
+   the time is transformed for that contact's event instead, and the attempts begin again;
+3. `end_of_step` takes the part of the step up to the first change of a contact, or up to the last point of the grid.
+   The state there is that of the dense output, and the next step begins there;
+4. `record_step` records largest forces and samples (forces.py);
+5. `growth` gives the next dt.
 """
 
 from __future__ import annotations
@@ -143,12 +150,12 @@ def record_step(context, begin, checked, end, g, row, samples):
     """
     slots, work, out = context.slots, context.work, context.out
     values, driver = context.values, context.driver
-    step, forces, end_pace, exceeds, x = checked.step, checked.forces, checked.step.end_pace, checked.exceeds, end.x
+    step, forces, end_dt_dxi, exceeds, x = checked.step, checked.forces, checked.step.end_dt_dxi, checked.exceeds, end.x
     if end.cut:
         forces = end_forces(values, driver, end.point, end.rates, context.last)
         if step.transform.active != 0.0:
-            end_pace, _, _ = powers(context.power, at(end.point.q, 0))
-    first, last = in_xi(begin.forces, step.pace), in_xi(forces, end_pace)
+            end_dt_dxi, _, _ = powers(context.power, at(end.point.q, 0))
+    first, last = in_xi(begin.forces, step.dt_dxi), in_xi(forces, end_dt_dxi)
     if checked.prepared:
         exceeds = may_exceed(first, last, x * step.h, out.log.peaks)
     if exceeds:

@@ -41,12 +41,12 @@ def step_size(law, transform, h):
 @inline_llvm
 def keep_increment(work, law, transform, h, q, rates, row):
     """Write the increments of one stage, its slopes in ξ times the size of the step; returns them."""
-    pace, _, _ = powers(smooth_power(law), q)
-    dt = h.xi * (1.0 - transform.active + transform.active * pace)
-    whole = repeat_like(rates.du, dt)
+    dt_dxi, _, _ = powers(smooth_power(law), q)
+    dt = h.xi * (1.0 - transform.active + transform.active * dt_dxi)
+    dt_like = repeat_like(rates.du, dt)
     contact = transform.contact
     rise = splat8(at(rates.du, contact)) - splat8(at(rates.du, contact + 1))  # `rates.rate` is known later
-    increment = Point(rates.du * whole, rates.dw * whole, h.root * rise, dt)
+    increment = Point(rates.du * dt_like, rates.dw * dt_like, h.root * rise, dt)
     store(work.increments.u, row, increment.u)
     store(work.increments.w, row, increment.w)
     store(work.increments.q, row, increment.q)

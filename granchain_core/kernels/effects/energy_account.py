@@ -6,7 +6,8 @@ Equation   Ẇ = F_{c=0} v_0,   Q̇ = Σ_c (F_c − F^el_c) δ̇_c;   W − Q �
 Method     Both integrands jump with the dashpot force. Integrated by parts they do not: with dG = g δ̇ dt,
              W = ∫ (e_0 v_0 − G_0 v̇_0) dt + G_0 v_0
              Q = −∫ Σ_c G_c (ẇ_c − ẇ_{c+1}) dt + Σ_c G_c (δ̇_c − γ_c/2),   γ_c = δ̇_c − (w_c − w_{c+1}),
-           because Σ γ_c dG_c is the differential of a quadratic form in G. Body 0 has w_0 = v_0.
+           Body 0 has w_0 = v_0. γ = −L G with a symmetric matrix L, by w = v − (G_{i−1} − G_i)/m, so that
+           Σ γ_c dG_c = d(½ Σ γ_c G_c): hence the factor ½.
            The force x_c that the tension cut adds does work of its own, x_c δ̇_c, which is added to Q̇.
 Absent     nothing is integrated: curves and settling do not need it
 """

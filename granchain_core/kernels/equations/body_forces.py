@@ -38,14 +38,14 @@ def power_lost_on_bead(slots, i, u, v):
 
 
 @inline_llvm
-def add_force_slope(slots, i, slope, u, v, du, du_slope, rate):
+def add_force_slope(slots, i, slope, u, v, du, du_slope, dt_ds):
     """A tangent's slope d(δw)/dx with the share δP/m of bead i added, for numbers and vectors.
 
-    The bead is at displacement u with velocity v, its neighbouring motion δu = `du` away. `rate` is dt/ds, and
+    The bead is at displacement u with velocity v, its neighbouring motion δu = `du` away. `dt_ds` is dt/ds, and
     `du_slope` is d(δu)/ds = δv dt/ds.
     """
     inverse_mass = slots.chain.inverse_mass[i]
-    return add_foundation_slope(slots.foundation, slope, du, inverse_mass * rate)
+    return add_foundation_slope(slots.foundation, slope, du, inverse_mass * dt_ds)
 
 
 @internal

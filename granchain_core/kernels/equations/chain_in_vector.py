@@ -22,19 +22,19 @@ from .body_forces import force_on_bead
 class Width8(NamedTuple):
     """Up to 8 bodies."""
 
-    lanes: int = 8
+    width: int = 8
 
 
 class Width16(NamedTuple):
     """Up to 16 bodies."""
 
-    lanes: int = 16
+    width: int = 16
 
 
 class Width32(NamedTuple):
     """Up to 32 bodies."""
 
-    lanes: int = 32
+    width: int = 32
 
 
 #: The widths there are, by their number of bodies.

@@ -71,14 +71,14 @@ def enter_force_free(tension, trajectory, t):
 @enter_force_free.of(TensionCut)
 def _(tension, trajectory, t):
     slots, drive, y, workspace = trajectory
-    found = False
+    any_force_free = False
     for c in range(tension.force_free.size):
         d, rate = overlap(slots.preload, y, c), workspace.k[0, c] - workspace.k[0, c + 1]
         stiffness, still = slots.chain.stiffness[c], _REST_VELOCITY * workspace.scale[1]
         if d > 0.0 and scaled_force(slots.dissipation, stiffness, d, rate) < -still:
             hold_force_free(tension, slots, y, c)
-            found = True
-    if found:
+            any_force_free = True
+    if any_force_free:
         evaluate(slots, drive.beta, t, y, workspace.k[0], workspace.forces)
 
 
@@ -94,17 +94,17 @@ def leave_force_free(tension, trajectory):
 @leave_force_free.of(TensionCut)
 def _(tension, trajectory):
     slots, _, y, workspace = trajectory
-    dy, found = workspace.k[0], False
+    dy, any_force_free = workspace.k[0], False
     for c in range(tension.force_free.size):
-        found = found or tension.force_free[c] != 0
-    if found:
+        any_force_free = any_force_free or tension.force_free[c] != 0
+    if any_force_free:
         energy_in, lost = ends_of(slots.account, slots, y, dy)
         for c in range(tension.force_free.size):
             tension.force_free[c] = 0
         write_w(slots, y, dy, workspace.forces)
         own_energy_in, own_lost = ends_of(slots.account, slots, y, dy)
         add_to_account(slots.account, y, energy_in - own_energy_in, lost - own_lost)
-    return found
+    return any_force_free
 
 
 @by_slot

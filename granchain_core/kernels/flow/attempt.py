@@ -30,17 +30,18 @@ from ..error_control.step import (
     turning_point,
 )
 from ..status import DONE, EVALUATIONS, NOT_FINITE, REJECTED, STEP_TOO_SMALL
-from .event_time import Time, rate_at, slope_in_s, time_at
+from .event_time import Time, dt_ds_at, slope_in_s, time_at
 
 
 class ContactStatus(NamedTuple):
-    """State of the contacts: `first` (M,) is dy/dt at the step's start, `closed` (N+1,) 1 where a contact is closed.
+    """State of the contacts during a step.
 
-    `log` (events, 2) has contact + 1, positive for a closing and negative for an opening, and the time of each event,
-    `logged` (1,) their number.
+    `slope_at_start` (M,) is dy/dt at the step's start; `closed` (N+1,) is 1 where a contact is closed. `log`
+    (events, 2) has contact + 1, positive for a closing and negative for an opening, and the time of each event;
+    `logged` (1,) is the number of events.
     """
 
-    first: np.ndarray
+    slope_at_start: np.ndarray
     closed: np.ndarray
     log: np.ndarray
     logged: np.ndarray
@@ -55,7 +56,7 @@ class FlowProblem(NamedTuple):
 
 
 class FlowStep(NamedTuple):
-    """A step of a trajectory, of size h in the substituted time s of `time`."""
+    """A step of a trajectory, of size h in the transformed time s of `time`."""
 
     trajectory: Trajectory
     time: Time
@@ -83,10 +84,10 @@ def attempt_in_time(method, problem, time, h):
     """
     trajectory, contacts, tangent = problem
     slots, drive, y, workspace = trajectory
-    rate = rate_at(time, 0.0)
+    dt_ds = dt_ds_at(time, 0.0)
     for i in range(y.size):
-        workspace.k[0, i] = rate * contacts.first[i]
-    record_stage(tangent, y, contacts.first, 0)
+        workspace.k[0, i] = dt_ds * contacts.slope_at_start[i]
+    record_stage(tangent, y, contacts.slope_at_start, 0)
     for s in range(1, STAGES + 1):
         combine(y, h, workspace.k, s, workspace.end)
         slope_in_s(slots, drive.beta, time, C[s] * h, workspace.end, s, workspace)
@@ -137,7 +138,8 @@ def first_event(problem, time, h, excluded, counts):
         was = contacts.closed[c] != 0
         sign = -1.0 if was else 1.0  # the change looked for makes sign·δ positive
         d0, d1 = overlap(slots.preload, y, c), overlap(slots.preload, workspace.end, c)
-        s0, s1 = dt * (contacts.first[c] - contacts.first[c + 1]), dt * (workspace.slope[c] - workspace.slope[c + 1])
+        start, end = contacts.slope_at_start, workspace.slope
+        s0, s1 = dt * (start[c] - start[c + 1]), dt * (end[c] - end[c + 1])
         crossed = was != (d1 > 0.0)
         if not (crossed or may_turn(d0, s0, d1, s1, sign)):
             continue

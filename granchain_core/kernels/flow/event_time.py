@@ -25,7 +25,7 @@ AFTER, PLAIN, BEFORE = 1, 0, -1
 
 
 class Time(NamedTuple):
-    """The substituted time s of a step from `start`, next to `event`: its value `s` at the start, and p, the `power`.
+    """The transformed time s of a step from `start`, next to `event`: its value `s` at the start, and p, the `power`.
 
     `ds` below is by how much s has changed since the start, without its sign; where the kind is `PLAIN`, s is t.
     """
@@ -59,7 +59,7 @@ def nonnegative_root(value, power):
 
 @internal
 def time_from(kind, event, start, power):
-    """The time substitution of a step from `start`, next to `event`."""
+    """The time transformation of a step from `start`, next to `event`."""
     return Time(kind, event, start, nonnegative_root(kind * (start - event), power), power)
 
 
@@ -76,8 +76,8 @@ def time_at(time, ds):
 
 
 @internal
-def rate_at(time, ds):
-    """The rate |dt/ds| after a change ds."""
+def dt_ds_at(time, ds):
+    """|dt/ds| after a change ds."""
     if time.kind == PLAIN:
         return 1.0
     s = time.s + time.kind * ds
@@ -97,6 +97,6 @@ def size_of(time, dt):
 def slope_in_s(slots, beta, time, ds, state, row, workspace):
     """Slope `row` in s, at `state`; the slope in t is left in workspace.slope."""
     evaluate(slots, beta, time_at(time, ds), state, workspace.slope, workspace.forces)
-    rate = rate_at(time, ds)
+    dt_ds = dt_ds_at(time, ds)
     for i in range(state.size):
-        workspace.k[row, i] = rate * workspace.slope[i]
+        workspace.k[row, i] = dt_ds * workspace.slope[i]

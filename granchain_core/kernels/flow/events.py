@@ -13,7 +13,7 @@ from ..effects.preload import overlap
 from ..error_control.step import is_too_small, shrunk
 from ..status import DONE, EVALUATIONS, LOST, NOT_FINITE, REJECTED, STEP_TOO_SMALL
 from .attempt import accepted_in_time, attempt_in_time, first_event
-from .event_time import AFTER, BEFORE, PLAIN, rate_at, size_of, smooth_power, time_at, time_from
+from .event_time import AFTER, BEFORE, PLAIN, dt_ds_at, size_of, smooth_power, time_at, time_from
 
 #: [step size] flow: largest overlap at a located event, in units of the largest displacement. It is a few roundings.
 _LARGEST_EVENT_OVERLAP = 1e-14
@@ -36,7 +36,7 @@ def next_opening(slots, y, contacts):
     contact, first = -1, np.inf
     for c in range(contacts.closed.size):
         if contacts.closed[c] != 0:
-            speed = contacts.first[c] - contacts.first[c + 1]
+            speed = contacts.slope_at_start[c] - contacts.slope_at_start[c + 1]
             d = overlap(slots.preload, y, c)
             if speed < 0.0 and d > 0.0 and -d / speed < first:
                 contact, first = c, -d / speed
@@ -55,7 +55,7 @@ def locate_change(method, problem, time, h, c, counts):
     counts[EVALUATIONS] += STAGES
     for _ in range(_LOCATION_ATTEMPTS):
         d = overlap(slots.preload, workspace.end, c)
-        speed = (workspace.slope[c] - workspace.slope[c + 1]) * rate_at(time, h)
+        speed = (workspace.slope[c] - workspace.slope[c + 1]) * dt_ds_at(time, h)
         located = abs(d) <= _LARGEST_EVENT_OVERLAP * max(1.0, workspace.scale[0])
         if located or speed == 0.0 or abs(d) > 0.5 * h * abs(speed):
             break

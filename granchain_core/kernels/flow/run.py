@@ -73,7 +73,7 @@ def run_flow(method, problem, periods, counts, stop):
                 return CANCELLED, p, trace
             if steps > _MOST_STEPS:
                 return TOO_MANY_STEPS, p, trace
-            evaluate(slots, drive.beta, t, y, contacts.first, workspace.forces)
+            evaluate(slots, drive.beta, t, y, contacts.slope_at_start, workspace.forces)
             status, time, h, contact = flow_step(method, problem, t, last_closing, counts)
             if status != DONE:
                 return status, p, trace

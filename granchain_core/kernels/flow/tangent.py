@@ -26,7 +26,7 @@ from ..equations.body_forces import add_force_slope, add_force_trace
 from ..simd.vector import BLOCK_WIDTH, aligned, blank, load8, store
 from ..step_ends import TINY
 from .attempt import record_stage
-from .event_time import rate_at
+from .event_time import dt_ds_at
 
 
 class StageMotions(NamedTuple):
@@ -121,22 +121,22 @@ def linearise(slots, time, h, contacts, tangent):
     """Tangent stiffness s and damping g of every contact in every stage, times |dt/ds|; returns ∫ trace over a step."""
     trace, inverse_mass, stages = 0.0, slots.chain.inverse_mass, tangent.stages
     for stage in range(STAGES):
-        rate = rate_at(time, C[stage] * h)
+        dt_ds = dt_ds_at(time, C[stage] * h)
         share = h * A[STAGES, stage]
         for c in range(inverse_mass.size - 1):
             acts = contacts.closed[c] != 0 and c >= tangent.first_contact
             d = positive_part(overlap(slots.preload, stages.u[stage], c)) if acts else 0.0
-            tangent.stiffness[stage, c] = rate * elastic_slope(slots.chain.stiffness[c], d) if acts else 0.0
+            tangent.stiffness[stage, c] = dt_ds * elastic_slope(slots.chain.stiffness[c], d) if acts else 0.0
             weight = share * (inverse_mass[c] + inverse_mass[c + 1])
-            trace -= linearise_dashpot(slots.dissipation, tangent.damping[stage], c, d, rate if acts else 0.0, weight)
+            trace -= linearise_dashpot(slots.dissipation, tangent.damping[stage], c, d, dt_ds if acts else 0.0, weight)
         for i in range(1, inverse_mass.size - 1):
             u, v = stages.u[stage, i], stages.v[stage, i]
-            trace = add_force_trace(slots, i, trace, u, v, share * rate * inverse_mass[i])
+            trace = add_force_trace(slots, i, trace, u, v, share * dt_ds * inverse_mass[i])
     return trace
 
 
 @by_slot_inlined
-def linearise_dashpot(law, dampings, c, d, rate, weight):
+def linearise_dashpot(law, dampings, c, d, dt_ds, weight):
     """Store the damping g of contact c, times |dt/ds|, 0 where it is open; returns it times `weight`. Effect absent: 0.
 
     A closed contact stays damped even if rounding makes its overlap negative.
@@ -145,8 +145,8 @@ def linearise_dashpot(law, dampings, c, d, rate, weight):
 
 
 @linearise_dashpot.of(*LAWS)
-def _(law, dampings, c, d, rate, weight):
-    g = rate * damping(law, d + TINY)
+def _(law, dampings, c, d, dt_ds, weight):
+    g = dt_ds * damping(law, d + TINY)
     dampings[c] = g
     return g * weight
 
@@ -172,7 +172,7 @@ def _(law, slope, left, right, inverse_mass, g, i):
 
 
 @inline_llvm
-def block_slope(slots, tangent, stage, rate):
+def block_slope(slots, tangent, stage, dt_ds):
     """Slope of a block at its stage state."""
     inverse_mass, s, g, stages = slots.chain.inverse_mass, tangent.stiffness, tangent.damping[stage], tangent.stages
     n = tangent.state.shape[0] // 2
@@ -181,12 +181,12 @@ def block_slope(slots, tangent, stage, rate):
     for i in range(n):
         ahead = load8(tangent.state, i + 1) if i + 1 < n else blank(here)
         right, inverse = here - ahead, inverse_mass[i + 1]
-        moving = add_dashpot_slope(slots.dissipation, load8(tangent.state, n + i) * rate, left, right, inverse, g, i)
+        moving = add_dashpot_slope(slots.dissipation, load8(tangent.state, n + i) * dt_ds, left, right, inverse, g, i)
         pushed = left * (inverse * s[stage, i]) - right * (inverse * s[stage, i + 1])
         u, v = stages.u[stage, i + 1], stages.v[stage, i + 1]
         store(tangent.slopes, i * STAGES + stage, moving)
         store(tangent.slopes, (n + i) * STAGES + stage,
-              add_force_slope(slots, i + 1, pushed, u, v, here, moving, rate))
+              add_force_slope(slots, i + 1, pushed, u, v, here, moving, dt_ds))
         here, left = ahead, right
 
 
@@ -197,6 +197,6 @@ def propagate_block(slots, time, h, tangent, first):
     for stage in range(STAGES):
         for i in range(rows):
             store(tangent.state, i, stage_value(tangent, stage, i, first))
-        block_slope(slots, tangent, stage, rate_at(time, C[stage] * h))
+        block_slope(slots, tangent, stage, dt_ds_at(time, C[stage] * h))
     for i in range(rows):
         store(tangent.matrix, first + i, stage_value(tangent, STAGES, i, first))

@@ -22,7 +22,7 @@ from ..effects.preload import overlap
 from ..equations.body_forces import add_force_slope
 from ..step_ends import TINY
 from .attempt import record_stage
-from .event_time import rate_at
+from .event_time import dt_ds_at
 from .run import apply_saltation
 from .tangent import StageMotions, new_stage_motions, propagate, write_stage_motion
 
@@ -52,13 +52,13 @@ def _(tangent, state, slope, stage):
 
 
 @inline_numba
-def velocity_slope(slots, rate, u, v, closed, T, out):
+def velocity_slope(slots, dt_ds, u, v, closed, T, out):
     """Slope of all columns T at one stage with displacements u and velocities v, times |dt/ds|."""
     n, columns = T.shape[0] // 2, T.shape[1]
     for i in range(n):
         for q in range(columns):
-            out[i, q] = rate * T[n + i, q]
-            out[n + i, q] = add_force_slope(slots, i + 1, 0.0, u[i + 1], v[i + 1], T[i, q], out[i, q], rate)
+            out[i, q] = dt_ds * T[n + i, q]
+            out[n + i, q] = add_force_slope(slots, i + 1, 0.0, u[i + 1], v[i + 1], T[i, q], out[i, q], dt_ds)
     for c in range(n + 1):
         if closed[c] == 0:
             continue
@@ -71,9 +71,9 @@ def velocity_slope(slots, rate, u, v, closed, T, out):
             if c < n:
                 push -= s * T[c, q] + g * T[n + c, q]
             if c > 0:
-                out[n + c - 1, q] -= rate * slots.chain.inverse_mass[c] * push
+                out[n + c - 1, q] -= dt_ds * slots.chain.inverse_mass[c] * push
             if c < n:
-                out[n + c, q] += rate * slots.chain.inverse_mass[c + 1] * push
+                out[n + c, q] += dt_ds * slots.chain.inverse_mass[c + 1] * push
 
 
 @propagate.of(VelocityTangent)
@@ -87,7 +87,7 @@ def _(tangent, slots, time, h, contacts):
                     value += h * A[stage, earlier] * tangent.slopes[earlier, i, q]
                 tangent.state[i, q] = value
         if stage < STAGES:
-            velocity_slope(slots, rate_at(time, C[stage] * h), tangent.stages.u[stage], tangent.stages.v[stage],
+            velocity_slope(slots, dt_ds_at(time, C[stage] * h), tangent.stages.u[stage], tangent.stages.v[stage],
                            contacts.closed, tangent.state, tangent.slopes[stage])
     for i in range(rows):
         for q in range(columns):

@@ -48,11 +48,11 @@ def closing_rate(before, after, rate, open_rate, own_damping, h):
         for _ in range(2):
             delta = before + h * s * (rate + s * (0.5 * (open_rate - rate + bend) - s * (bend * (1.0 / 3.0))))
             s = between_0_and_1(s - delta / (h * (rate + s * (open_rate - rate + bend - s * bend))))
-        there = rate + s * (open_rate - rate + bend - s * bend)
+        rate_there = rate + s * (open_rate - rate + bend - s * bend)
         left = 1.0 - s
         # ∫δ over the closed part, over h: the trapezium with its slopes at both ends
-        closed = left * (0.5 * after - left * h * (open_rate - own_damping * after - there) * (1.0 / 12.0))
-    return s, there
+        closed = left * (0.5 * after - left * h * (open_rate - own_damping * after - rate_there) * (1.0 / 12.0))
+    return s, rate_there
 
 
 @inline_llvm

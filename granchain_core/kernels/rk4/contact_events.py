@@ -85,8 +85,8 @@ def simpson_excess(r, p, half, one, inner, middle, far):
     `half` is 2^{−p}; `one`, `middle` and `far` are s^p at r, r + 1 and r + 2, `inner` its sum at r + 1/2 and r + 3/2.
     """
     part = r * (one + 4.0 * half * one)
-    whole = one + 4.0 * inner + 2.0 * middle + far
-    return (part + whole) / 6.0 - 1.0 / (p + 1.0) * (r + 2.0) * far
+    full_steps = one + 4.0 * inner + 2.0 * middle + far
+    return (part + full_steps) / 6.0 - 1.0 / (p + 1.0) * (r + 2.0) * far
 
 
 @internal

@@ -61,9 +61,9 @@ def split_short_step(short, trajectory, j, u_end, v_end, out):
         part, start = first * (1.0 - done), load_state(short, BEGIN)
         for _ in range(2):
             stepped = part
-            middle, there = theta + dtheta * (done + 0.5 * part), theta + dtheta * (done + part)
-            event = chain_step(values, driver_displacement(driver, middle), driver_displacement(driver, there),
-                               driver_velocity(driver, there), h * part, start, blank(start.u), blank(start.w))
+            middle, theta_event = theta + dtheta * (done + 0.5 * part), theta + dtheta * (done + part)
+            event = chain_step(values, driver_displacement(driver, middle), driver_displacement(driver, theta_event),
+                               driver_velocity(driver, theta_event), h * part, start, blank(start.u), blank(start.w))
             store_state(short, BEGIN, event)
             out.counts[EVALUATIONS] += 4
             part = nearer_event(slots.dissipation, ends, contact, last, part, 1.0 - done, h)
@@ -72,7 +72,7 @@ def split_short_step(short, trajectory, j, u_end, v_end, out):
         done += stepped
         add_quadrature_errors(slots.dissipation, short.stiffness[0, contact], ends, contact, h, done)
         # after add_quadrature_errors, which gives the overlap the sign that it has after the event
-        update_end_forces_at_event(slots, ends, contact, there, out.log)
+        update_end_forces_at_event(slots, ends, contact, theta_event, out.log)
         middle = theta + dtheta * 0.5 * (1.0 + done)
         end = chain_step(values, driver_displacement(driver, middle), u_end, v_end, h * (1.0 - done), event,
                          chain_correction(values, load_row(short.width, ends, DISPLACEMENT_ERROR)),

@@ -224,8 +224,8 @@ def split(trajectory, j, u_end, v_end, out):
         part = first * (1.0 - done)
         for _ in range(2):
             stepped = part
-            middle, there = theta + dtheta * (done + 0.5 * part), theta + dtheta * (done + part)
-            u, v = driver_displacement(slots.driver, there), driver_velocity(slots.driver, there)
+            middle, theta_event = theta + dtheta * (done + 0.5 * part), theta + dtheta * (done + part)
+            u, v = driver_displacement(slots.driver, theta_event), driver_velocity(slots.driver, theta_event)
             rk4(slots, driver_displacement(slots.driver, middle), driver_velocity(slots.driver, middle),
                 u, v, h * part, y, workspace)
             motion(slots, u, v, end, k[3], workspace.forces)
@@ -237,7 +237,7 @@ def split(trajectory, j, u_end, v_end, out):
         done += stepped
         copy(end, y)
         copy(k[3], k[0])
-        update_forces_across_event(slots, y, k[0], workspace.forces.e, h * stepped, contact, there, out.log)
+        update_forces_across_event(slots, y, k[0], workspace.forces.e, h * stepped, contact, theta_event, out.log)
         add_quadrature_errors(slots.dissipation, slots.chain.stiffness[contact], ends, contact, h, done)
         middle = theta + dtheta * 0.5 * (1.0 + done)
         rk4(slots, driver_displacement(slots.driver, middle), driver_velocity(slots.driver, middle),

@@ -1,7 +1,7 @@
 """Square root, absolute value, gate, maximum and peak choice for a number or for every lane of a vector.
 
 The root of a batch's vector is computed in one of two ways: by the square-root instruction, which runs on the divider,
-or from an approximate inverse root and some terms of the binomial series, which run on the multipliers. The
+or from an approximate inverse root and some terms of the binomial series, which run on the multiply–add units. The
 approximation is `vrsqrt14pd` for eight doubles on processors with AVX-512, and `rsqrtps` for four on any x86. With
 AVX-512 the second way has more than twice the throughput (1.8 ns against 4.4 ns for eight roots). Used side by side,
 the two keep both units busy (batch/step.py).

@@ -182,7 +182,7 @@ def _shifted(left: bool):
     """An intrinsic that shifts two vectors, laid side by side, by one lane to the left or right."""
 
     @intrinsic
-    def shifted(typingctx, here, there):
+    def shifted(typingctx, here, beside):
         width = here.width
         first = width - 1 if left else 1
 

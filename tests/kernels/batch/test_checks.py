@@ -58,7 +58,7 @@ def test_an_orbit_is_believed_where_its_disturbance_decays(rate: float, stable: 
     state = seen(1.0 + offsets, before=1.0, tested_period=1, slowest_contraction=0.9).state
     state.search.last_check[MEMBER, checks.CHECK_PERIOD] = 1.0
     state.work.scale[:] = 1e-12, 1e12
-    assert checks.judge_disturbance.py_func(state, MEMBER) == stable
+    assert checks.judge_perturbation.py_func(state, MEMBER) == stable
     assert state.search.tested_period[MEMBER] == 0 and (state.search.slowest_contraction[MEMBER] > 0.0) == stable
     assert (state.motion.y[1, MEMBER] == 1.0) == stable
     assert (state.search.last_check[MEMBER, checks.CHECK_PERIOD] == 1.0) == stable, "what was not an orbit has no period"
