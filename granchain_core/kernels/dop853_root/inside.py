@@ -106,10 +106,11 @@ def fraction_at(work, instant, high):
 def change_before(p, falls, high):
     """Fraction up to `high` at which a distance becomes positive; 0 where it is so at the start, unless it `falls`.
 
-    A contact that has just changed falls, and may be positive at the start by rounding.
+    A distance that falls at first becomes positive after its minimum only. At the start of a contact that has just
+    changed it is zero but for rounding, which may have either sign and would be taken for the root.
     """
     low, before = 0.0, p[7]
-    if before >= 0.0 and falls:
+    if falls:
         low, lowest = turn_of(p, -1.0)
         before = -lowest
     if before >= 0.0 or low >= high:

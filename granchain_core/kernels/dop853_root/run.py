@@ -197,7 +197,7 @@ def run_dop853_root(method, work, trajectory, sample_range, samples, out):
     bodies, period = slots.chain.inverse_mass.size, drive.period
     context = RunContext(slots, chain_values(work.chain, slots), slots.driver, drive.beta, method, work, out,
                       smooth_power(slots.dissipation), bodies - 2, period / grid, GOAL_TOLERANCE * period, every)
-    g, done, row, dt, renew = sample_range.first, 0, 1, workspace.next_step[0], True
+    g, done, row, dt, new_period = sample_range.first, 0, 1, workspace.next_step[0], True
     events, most_events, idle = 0, EVENTS_PER_CONTACT * (bodies - 1), 0
     begin = begin_of_run(context, g * context.spacing, y, bodies)
     if every > 0:
@@ -206,14 +206,14 @@ def run_dop853_root(method, work, trajectory, sample_range, samples, out):
     while done < points:
         if out.stop[0] != 0:
             return CANCELLED, row if every > 0 else done
-        if renew:
-            begin = with_driver_in_place(context, begin)
+        if new_period:  # within a period its oscillator is as exact as the beads
+            begin, new_period = with_driver_in_place(context, begin), False
         dt = min(dt, method.largest_step)
         units = new_units(context, begin.point, workspace.scale)
         chosen = nearest_event(begin.rates, begin.closed, workspace.scale[0], dt)
         if chosen >= 0 and at(begin.rates.overlap, chosen) <= 0.0 and at(begin.rates.rate, chosen) < 0.0:
             # opened by rounding, or by another event at the same time
-            begin, renew, events = with_contact_toggled(context, begin, chosen), True, events + 1
+            begin, events = with_contact_toggled(context, begin, chosen), events + 1
             if events > most_events:
                 return CHATTER, row if every > 0 else done
             continue
@@ -230,7 +230,7 @@ def run_dop853_root(method, work, trajectory, sample_range, samples, out):
         if every > 0:
             forces, row = record_step(context, begin, checked, end, g, row, samples)
         dt *= growth(checked.step, end)
-        g, done, renew = g + end.passed, done + end.passed, end.contact >= 0
+        g, done = g + end.passed, done + end.passed
         counts[STEPS] += 1
         begin = StepBegin(end.time, end.point, end.rates, forces, begin.bits, begin.closed)
         if end.contact >= 0:
@@ -244,7 +244,7 @@ def run_dop853_root(method, work, trajectory, sample_range, samples, out):
                              drive.beta * begin.t, out.log)
         if begin.t >= period:
             begin = StepBegin(begin.t - period, begin.point, begin.rates, begin.forces, begin.bits, begin.closed)
-            g, events, renew = g - grid, 0, True
+            g, events, new_period = g - grid, 0, True
     write_beads(context, begin, y, bodies)
     workspace.next_step[0] = dt
     evaluate(slots, drive.beta, begin.t, y, workspace.k[0], workspace.forces)

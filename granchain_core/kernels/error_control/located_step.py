@@ -51,19 +51,23 @@ def first_event(step, counts):
     for c in range(slots.chain.stiffness.size):
         d0, d1 = overlap(slots.preload, y, c), overlap(slots.preload, workspace.end, c)
         crossed = (d0 > 0.0) != (d1 > 0.0)
-        sign = -1.0 if d0 > 0.0 else 1.0
-        turns = (not crossed) and may_turn(d0, h * (k[0, c] - k[0, c + 1]), d1, h * (end[c] - end[c + 1]), sign)
+        sign, change = -1.0 if d0 > 0.0 else 1.0, h * (k[0, c] - k[0, c + 1])
+        turns = (not crossed) and may_turn(d0, change, d1, h * (end[c] - end[c + 1]), sign)
         if not (crossed or turns):
             continue
         if not dense_ready:
             counts[EVALUATIONS] += prepare_dense(workspace, step)
             dense_ready = True
-        signed_overlap, high = Overlap(c, sign), 1.0
+        signed_overlap, low, high = Overlap(c, sign), 0.0, 1.0
+        if crossed and sign * change < 0.0:  # moves away first; after an event d0 is rounding, which is no root
+            low = turning_point(Overlap(c, -sign), step)
+            if value_at(signed_overlap, step, low) > 0.0:
+                low = 0.0
         if turns:
             high = turning_point(signed_overlap, step)
             if value_at(signed_overlap, step, high) <= 0.0:
                 continue
-        root = crossing(signed_overlap, step, 0.0, high)
+        root = crossing(signed_overlap, step, low, high)
         if root < first and not is_too_small(0.1 * root * h, t, drive.beta):
             contact, first = c, root
     return contact, first
