@@ -1,10 +1,11 @@
 """The tables of thresholds in docs/regimes.md and other pages, which `python -m tools.update` writes.
 
 A threshold is a constant in `granchain_core` whose `#:` comment begins with a mark: `[period n]` names the regimes that
-it decides, `[rotation]` puts it into the table of docs/rotation-number.md, `[response]` into that of
-docs/orbits.md, `[branch]` into that of docs/branches.md, `[fit]` into that of docs/fit.md, `[attractors]` into that of
-docs/parameter-map.md, `[safety factor]` into that of docs/accuracy.md and `[step size]` into that of docs/method.md. The comment's first sentence is its row; what follows, the reason, stays in
-the code. A number beside thresholds that is none itself is marked `[no threshold]`.
+it decides, `[rotation]` puts it into the table of docs/rotation-number.md, `[response]` into that of docs/orbits.md,
+`[branch]` into that of docs/branches.md, `[fit]` into that of docs/fit.md, `[attractors]` into that of
+docs/parameter-map.md, `[safety factor]` into that of docs/accuracy.md and `[step size]` into that of docs/method.md.
+The comment's first sentence is its row; what follows, the reason, stays in the code. A number beside thresholds that is
+none itself is marked `[no threshold]`.
 """
 
 from __future__ import annotations
