@@ -22,7 +22,7 @@ from .library_internals import check_releases
 from .serve.compiling.compiler import COMPILER
 from .serve.computing.shared import Shared
 from .serve.computing.turns import TURNS
-from .serve.computing.worker_pools import COMPUTING, POOLS, SESSION_WORK, WorkerPool
+from .serve.computing.worker_pools import COMPUTING, POOLS
 from .serve.http.guard import is_guarded
 from .serve.http.health import HANDLERS
 from .serve.http.limits import LARGEST_UPLOAD, USUAL_SESSIONS
@@ -147,11 +147,11 @@ def add_shared_metrics() -> None:
     METRICS.turn_wait = lambda: TURNS.wait
     shared: dict[str, Shared[Any]] = {"picture": PICTURES_SHARED, "curve": CURVES_SHARED}
 
-    def queued(former: bool = False) -> dict[str, float]:
-        return {_pool_name(pool, former): pool.queued + pool.held for pool in POOLS}
+    def queued() -> dict[str, float]:
+        return {pool.name: pool.queued + pool.held for pool in POOLS}
 
-    def busy(former: bool = False) -> dict[str, float]:
-        return {_pool_name(pool, former): pool.busy_threads for pool in POOLS}
+    def busy() -> dict[str, float]:
+        return {pool.name: pool.busy_threads for pool in POOLS}
 
     METRICS.added = (
         Metric("computing", "gauge", "Computations that have a turn, and work under way in the worker pools "
@@ -165,10 +165,6 @@ def add_shared_metrics() -> None:
                                              "or another pool.", busy, "pool"),
         Metric("queue", "gauge", "The sum of `granchain_pool_queued` and `granchain_turns_waiting`; kept for older "
                                  "dashboards.", lambda: TURNS.waiting + sum(queued().values())),
-        Metric("queue_waiting", "gauge", "The former name of `granchain_pool_queued`; there the pool `session_work` is "
-                                         "called `visitors`.", partial(queued, former=True), "queue"),
-        Metric("queue_busy", "gauge", "The former name of `granchain_pool_busy_threads`, with the same names.",
-               partial(busy, former=True), "queue"),
         *(metric for name, cache in shared.items() for metric in (
             Metric(f"{name}_cache_hits_total", "counter", f"Requests for a {name} that was cached or already "
                                                                   "being computed.",
@@ -177,10 +173,6 @@ def add_shared_metrics() -> None:
                    partial(getattr, cache, "misses")),
             Metric(f"{name}_cache_bytes", "gauge", f"Memory of the {name}s that are kept.",
                    partial(getattr, cache, "used")))))
-
-
-def _pool_name(pool: WorkerPool, former: bool) -> str:
-    return "visitors" if former and pool is SESSION_WORK else pool.name
 
 
 def _in_url(address: str) -> str:

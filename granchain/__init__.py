@@ -14,13 +14,10 @@ from typing import TYPE_CHECKING, Any
 
 import granchain_core
 from granchain_core import __version__ as __version__
+from granchain_core.former_names import present
 
 if TYPE_CHECKING:
     from granchain_core import *  # noqa: F403
-    from granchain_core import NumbersFailed as NumbersFailed
-    from granchain_core import continue_branch as continue_branch
-    from granchain_core import periodic_orbit as periodic_orbit
-    from granchain_core import settled as settled
 
     from .notebook import Dashboard, dashboard
     from .pictures import figure
@@ -35,7 +32,7 @@ def __getattr__(name: str) -> Any:
     """A public name, imported when it is first asked for."""
     if name in _OWN:
         return getattr(importlib.import_module(f".{_OWN[name]}", __name__), name)
-    if name in granchain_core.__all__ or name in granchain_core.OLDER_NAMES:
+    if present(name) in granchain_core.__all__:
         return getattr(granchain_core, name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 

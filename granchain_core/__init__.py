@@ -4,7 +4,7 @@
     result = run(scene("sec2").evolve(f=340.0))
 
 This is the public API: what is listed in `__all__` is public, everything else may change. Most commands have a
-function of the same name; README.md lists the others ("Python"), docs/python.md older names, which still work.
+function of the same name; README.md lists the others ("Python"), docs/python.md former names that still work.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 from .errors import BadInput, Cancelled, ComputationError, OverBudget
-from .errors import NumbersFailed as NumbersFailed
+from .former_names import present
 from .scene import Amplitude, Bead, Scene, scene, scene_names
 from .version import __version__
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from .accuracy import WorkPrecision, work_precision
     from .analysis.bands import bands
     from .analysis.basins import Basins, basins
-    from .analysis.bifurcation_diagram import BifurcationDiagram, StrobeDiagram, bifurcation_diagram, strobe_diagram
+    from .analysis.bifurcation_diagram import BifurcationDiagram, bifurcation_diagram
     from .analysis.lyapunov_spectrum import LyapunovSpectrum, lyapunov_spectrum
     from .analysis.pulse import Pulse, pulse
     from .analysis.rotation_number import RotationNumber, rotation_number
@@ -33,10 +33,8 @@ if TYPE_CHECKING:
     from .observers import Observation, observe
     from .orbits import Branch, Orbit
     from .orbits import continue_branch as branch
-    from .orbits import continue_branch as continue_branch
     from .orbits import periodic_orbit as orbit
-    from .orbits import periodic_orbit as periodic_orbit
-    from .parameter_maps import Diagram, ParameterMap, diagram, parameter_map
+    from .parameter_maps import ParameterMap, parameter_map
     from .prescribed_drive import Driven, Signal, drive
     from .results.regime import Regime
     from .results.run import Cost, Run
@@ -48,19 +46,18 @@ if TYPE_CHECKING:
     from .steady.curve.resonance_curve import iter_curve, resonance_curve
     from .steady.settling.outcome import Settled
     from .steady.settling.settle import settle, settling
-    from .steady.settling.settle import settled as settled
     from .store import load, save
 
 #: Public names by module. They are imported at first use, so that `import granchain_core` is quick.
 _MODULES = {
     "runs.to_accuracy": ("run",), "runs.many": ("Runs", "run_many"), "runs.live": ("LiveChain",),
     "results.run": ("Cost", "Run"), "scene.state": ("State",), "execution.stop": ("Stop",),
-    "steady.settling.settle": ("settle", "settled", "settling"), "steady.settling.outcome": ("Settled",),
+    "steady.settling.settle": ("settle", "settling"), "steady.settling.outcome": ("Settled",),
     "results.regime": ("Regime",),
     "steady.curve.curve": ("Curve", "CurvePoint"),
     "steady.curve.resonance_curve": ("iter_curve", "resonance_curve"),
-    "orbits": ("Branch", "Orbit", "continue_branch", "periodic_orbit"), "fitting": ("Fit", "fit"),
-    "parameter_maps": ("Diagram", "ParameterMap", "diagram", "parameter_map"),
+    "orbits": ("Branch", "Orbit", "branch", "orbit"), "fitting": ("Fit", "fit"),
+    "parameter_maps": ("ParameterMap", "parameter_map"),
     "attractor_search": ("Attractor", "Attractors", "attractors"),
     "bifurcation_continuation": ("BifurcationCurve", "bifurcation_curves"),
     "prescribed_drive": ("Driven", "Signal", "drive"), "observers": ("Observation", "observe"),
@@ -68,33 +65,30 @@ _MODULES = {
     "analysis.basins": ("Basins", "basins"), "analysis.spectrum": ("Spectrum", "Transfer", "spectrum", "transfer"),
     "analysis.lyapunov_spectrum": ("LyapunovSpectrum", "lyapunov_spectrum"),
     "analysis.rotation_number": ("RotationNumber", "rotation_number"),
-    "analysis.bifurcation_diagram": ("BifurcationDiagram", "StrobeDiagram", "bifurcation_diagram", "strobe_diagram"),
+    "analysis.bifurcation_diagram": ("BifurcationDiagram", "bifurcation_diagram"),
     "analysis.pulse": ("Pulse", "pulse"), "analysis.bands": ("bands",),
 }
 _MODULE_OF = {name: module for module, names in _MODULES.items() for name in names}
-#: Public names of functions that the modules call by their older names: there `orbit` and `branch` are variables.
-_SHORT = {"orbit": "periodic_orbit", "branch": "continue_branch"}
-
-#: Older names, which still work (docs/python.md).
-OLDER_NAMES = {"settled": "settle", "periodic_orbit": "orbit", "continue_branch": "branch",
-               "diagram": "parameter_map", "Diagram": "ParameterMap", "NumbersFailed": "ComputationError",
-               "strobe_diagram": "bifurcation_diagram", "StrobeDiagram": "BifurcationDiagram"}
+#: What two public functions are called in their modules, where `orbit` and `branch` are variables.
+_IN_MODULE = {"orbit": "periodic_orbit", "branch": "continue_branch"}
 
 __all__ = [
     "Amplitude", "Attractor", "Attractors", "BadInput", "Basins", "Bead", "BifurcationCurve", "BifurcationDiagram",
-    "Branch", "Cancelled", "ComputationError", "Cost", "Curve", "CurvePoint", "Diagram", "Driven", "Fit", "LiveChain",
+    "Branch", "Cancelled", "ComputationError", "Cost", "Curve", "CurvePoint", "Driven", "Fit", "LiveChain",
     "LyapunovSpectrum", "Observation", "Orbit", "OverBudget", "ParameterMap", "Pulse", "Regime", "RotationNumber",
-    "Run", "Runs", "Scene", "Settled", "Signal", "Spectrum", "State", "Stop", "StrobeDiagram", "Transfer",
+    "Run", "Runs", "Scene", "Settled", "Signal", "Spectrum", "State", "Stop", "Transfer",
     "WorkPrecision", "__version__", "attractors", "bands", "basins", "bifurcation_curves", "bifurcation_diagram",
-    "branch", "diagram", "drive", "fit", "iter_curve", "load", "lyapunov_spectrum", "observe", "orbit", "parameter_map",
+    "branch", "drive", "fit", "iter_curve", "load", "lyapunov_spectrum", "observe", "orbit", "parameter_map",
     "pulse", "resonance_curve", "rotation_number", "run", "run_many", "save", "scene", "scene_names", "settle",
-    "settling", "spectrum", "strobe_diagram", "transfer", "work_precision",
+    "settling", "spectrum", "transfer", "work_precision",
 ]
 
 
 def __getattr__(name: str) -> Any:
-    """Import a public name when it is first used."""
-    whole = _SHORT.get(name, name)
-    if whole not in _MODULE_OF:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(importlib.import_module(f".{_MODULE_OF[whole]}", __name__), whole)
+    """Import a public name, or a former one, when it is first used."""
+    public = present(name)
+    if public in _MODULE_OF:
+        return getattr(importlib.import_module(f".{_MODULE_OF[public]}", __name__), _IN_MODULE.get(public, public))
+    if public in __all__:
+        return globals()[public]
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -68,10 +68,6 @@ class ComputationError(ArithmeticError):
         self.cost = cost
 
 
-#: The older name of `ComputationError`.
-NumbersFailed = ComputationError
-
-
 class OverBudget(BadInput):
     """A computation that is refused before it starts, because it would take too long.
 

@@ -10,12 +10,15 @@ import re
 import textwrap
 from pathlib import Path
 
+from app import former_names as own
 from app import library_internals
+from app.former_names import FormerMetric, former_metric
 from app.scripts import FILES
 from app.serve.computing.priorities import ADDED_NICENESS
 from app.serve.computing.worker_pools import POOLS
-from app.serve.monitoring.metrics import FORMER_NAMES, HISTOGRAM, HISTOGRAM_HELP, METRICS
+from app.serve.monitoring.metrics import HISTOGRAM, HISTOGRAM_HELP, METRICS
 from app.server import add_shared_metrics
+from granchain_core import former_names as core
 from granchain_core import scene, scene_names
 from granchain_core.integrate import METHODS
 from granchain_core.prescribed_drive.formulas import FORMULAS
@@ -107,7 +110,21 @@ def table_of_metrics() -> str:
     add_shared_metrics()
     rows = []
     for metric in METRICS.table():
-        label, former = f", label `{metric.label}`" if metric.label else "", FORMER_NAMES.get(metric.full_name)
-        also = f" Also under its former name `{former}`." if former else ""
-        rows.append(f"| `{metric.full_name}`{label} | {metric.kind} | {metric.help}{also} |")
+        label, former = f", label `{metric.label}`" if metric.label else "", former_metric(metric.full_name)
+        rows.append(f"| `{metric.full_name}`{label} | {metric.kind} | {metric.help}{_also(former) if former else ''} |")
     return "\n".join(["| metric | kind | what it is |", "|---|---|---|", *rows, f"| `{HISTOGRAM}` | histogram | {HISTOGRAM_HELP} |"])
+
+
+def _also(former: FormerMetric) -> str:
+    """The former name of a metric, in words."""
+    changed = "".join(f", where `{now}` is `{then}`" for now, then in former.values.items())
+    label = f", with the label `{former.label}`{changed}" if former.label else ""
+    return f" Also under its former name `{former.former}`{label}."
+
+
+def table_of_former_names() -> str:
+    """The table of docs/python.md: every former name that still works, with the present one."""
+    kinds = (("", core.NAMES), ("", core.ATTRIBUTES), ("", core.EXTRAS), ("", core.VARIABLES),
+             ("column ", core.COLUMNS), ("command ", own.COMMANDS), ("option ", own.OPTIONS), ("JSON key ", own.KEYS))
+    rows = [f"| {kind}`{row.name}` | `{row.former}` | {row.removed_in} |" for kind, table in kinds for row in table]
+    return "\n".join(["| name | former name | removed in |", "|---|---|---|", *rows])

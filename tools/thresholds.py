@@ -1,10 +1,11 @@
 """The tables of thresholds in docs/regimes.md and other pages, which `python -m tools.update` writes.
 
 A threshold is a constant in `granchain_core` whose `#:` comment begins with a mark: `[period n]` names the regimes that
-it decides, `[rotation]` puts it into the table of docs/rotation-number.md, `[response]` into that of
-docs/orbits.md, `[branch]` into that of docs/branches.md, `[safety factor]` into that of docs/accuracy.md and
-`[step size]` into that of docs/method.md. The comment's first sentence is its row; what follows, the reason, stays in
-the code. A number beside thresholds that is none itself is marked `[no threshold]`.
+it decides, `[rotation]` puts it into the table of docs/rotation-number.md, `[response]` into that of docs/orbits.md,
+`[branch]` into that of docs/branches.md, `[fit]` into that of docs/fit.md, `[attractors]` into that of
+docs/parameter-map.md, `[safety factor]` into that of docs/accuracy.md and `[step size]` into that of docs/method.md.
+The comment's first sentence is its row; what follows, the reason, stays in the code. A number beside thresholds that is
+none itself is marked `[no threshold]`.
 """
 
 from __future__ import annotations
@@ -58,8 +59,10 @@ def marked_constants() -> tuple[Marked, ...]:
     return tuple(found)
 
 
-def printed(value: float) -> str:
-    """A number to six digits, as a fraction where these are not all."""
+def printed(value: float | tuple[float, ...]) -> str:
+    """A number to six digits, as a fraction where these are not all; several numbers one after another."""
+    if isinstance(value, tuple):
+        return ", ".join(map(printed, value))
     short = re.sub(r"e([+-])0*", lambda power: "e" + power[1].strip("+"), f"{value:g}")
     return short if float(short) == value else str(Fraction(value).limit_denominator(100))
 
@@ -125,6 +128,16 @@ def table_of_safety_factors() -> str:
 def table_of_branches() -> str:
     """The table of docs/branches.md."""
     return _table("branch")
+
+
+def table_of_fits() -> str:
+    """The table of docs/fit.md."""
+    return _table("fit")
+
+
+def table_of_attractors() -> str:
+    """The table of docs/parameter-map.md."""
+    return _table("attractors")
 
 
 def table_of_step_sizes() -> str:

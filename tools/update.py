@@ -8,6 +8,7 @@
   their names in AUTO and MatCont (docs/branches.md, glossary.md), uses of libraries (docs/libraries.md), metrics
   (docs/deployment.md), the map of the code (docs/design.md), the dashboard's messages and worker pools
   (docs/dashboard.md);
+- numbers of the code in sentences of the docs (tools/numbers.py);
 - a row for every new scene in the test of share links (tools/links.py);
 - for every new or changed scene the largest values that its pictures are drawn to (tools/scales.py) and its picture in
   the gallery (tools/gallery.py).
@@ -28,6 +29,7 @@ from tools.lists import (
     list_of_methods,
     table_of_connection_times,
     table_of_drives,
+    table_of_former_names,
     table_of_knobs,
     table_of_libraries,
     table_of_metrics,
@@ -42,10 +44,13 @@ from tools.marks import (
     table_of_regime_marks,
     table_of_special_points,
 )
+from tools.numbers import marks, with_numbers
 from tools.special_kinds import table_of_kinds, table_of_terms
 from tools.thresholds import (
+    table_of_attractors,
     table_of_branches,
     table_of_deciding,
+    table_of_fits,
     table_of_responses,
     table_of_rotation_numbers,
     table_of_safety_factors,
@@ -63,6 +68,8 @@ _TABLES = (
     ("docs/orbits.md", "thresholds", table_of_responses),
     ("docs/branches.md", "kinds of special points", table_of_kinds),
     ("docs/branches.md", "branch constants", table_of_branches),
+    ("docs/fit.md", "constants of a fit", table_of_fits),
+    ("docs/parameter-map.md", "constants of the search", table_of_attractors),
     ("docs/glossary.md", "special points", table_of_terms),
     ("docs/accuracy.md", "safety factors", table_of_safety_factors),
     ("docs/method.md", "methods", list_of_methods),
@@ -81,6 +88,7 @@ _TABLES = (
     ("docs/marks.md", "lines over time", table_of_lines_over_time),
     ("docs/libraries.md", "libraries", table_of_libraries),
     ("docs/deployment.md", "metrics", table_of_metrics),
+    ("docs/python.md", "former names", table_of_former_names),
     ("docs/design.md", "folders", table_of_folders),
     ("docs/design.md", "pages of the dashboard", table_of_pages),
     ("docs/dashboard.md", "messages of the browser", table_of_messages_of_the_browser),
@@ -90,17 +98,21 @@ _TABLES = (
 )
 
 
-#: The pages with such tables.
-PAGES = tuple(dict.fromkeys(page for page, _, _ in _TABLES))
+#: The pages with such tables, and those with numbers of the code in their sentences.
+PAGES = tuple(dict.fromkeys([*(page for page, _, _ in _TABLES),
+                             *(path.relative_to(_ROOT).as_posix() for path in sorted((_ROOT / "docs").glob("*.md"))
+                               if marks(path.read_text(encoding="utf-8")))]))
 
 
 def pages() -> dict[Path, str]:
-    """The pages with a table that follows from the code, and their text as it should be now."""
+    """The pages with a table or numbers that follow from the code, and their text as it should be now."""
     found: dict[Path, str] = {}
     for page, name, table in _TABLES:
         path = _ROOT / page
         text = found[path] if path in found else path.read_text(encoding="utf-8")
         found[path] = with_part(text, name, _COMMAND, table())
+    for path in map(_ROOT.joinpath, PAGES):
+        found[path] = with_numbers(found[path] if path in found else path.read_text(encoding="utf-8"))
     return found
 
 

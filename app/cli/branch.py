@@ -11,6 +11,7 @@ from typing import Any
 
 from granchain_core import BadInput, Cancelled, ComputationError
 from granchain_core.execution.checkpoints import folder_of
+from granchain_core.former_names import EVENTS
 from granchain_core.orbits import CONTINUOUS, Branch, Continuation, HalfBranch, KnobAxis, begin_branch
 from granchain_core.orbits.branch.branch import MOST_POINTS
 from granchain_core.orbits.branch.orbit_checkpoints import OrbitCheckpoints
@@ -82,7 +83,7 @@ def _evidence(found: SpecialPoint) -> dict[str, Any]:
     """On what the kind of a special point rests: the multiplier that passes the circle, or what a contact does."""
     passing = found.multiplier
     return {"multiplier": None if passing is None else [passing.real, passing.imag], "contact": found.contact,
-            "event": found.event, "gained": found.gained, "gained_side": found.gained_side}
+            "event": found.gained and EVENTS[found.gained], "gained": found.gained, "gained_side": found.gained_side}
 
 
 def _normal_form(found: SpecialPoint) -> dict[str, Any] | None:

@@ -23,6 +23,7 @@ from granchain_core import BadInput, Cancelled, ComputationError
 from granchain_core.errors import OverBudget, outcome_of
 from granchain_core.inputs.checks import unknown_name
 
+from ..former_names import present_command
 from . import ending
 from .common import say, show_json
 
@@ -135,9 +136,6 @@ COMMANDS = {
 }
 
 
-#: Commands by an older name, which still works (docs/python.md) and is on no list.
-OLDER_NAMES = {"strobes": "bifurcation-diagram"}
-
 #: Words that ask for the list of commands.
 _HELP = ("-h", "--help")
 
@@ -169,7 +167,7 @@ def do(words: list[str]) -> int:
     try:
         if not words:
             raise BadInput("granchain needs a command, for example 'granchain serve'; 'granchain --help' lists them.")
-        words = [OLDER_NAMES.get(words[0], words[0]), *words[1:]]
+        words = [present_command(words[0]), *words[1:]]
         if words[0] not in COMMANDS and words[0] not in _HELP:
             raise unknown_name(*(("option", words[0], _HELP) if words[0].startswith("-") else
                                  ("command", words[0], COMMANDS)))

@@ -167,7 +167,7 @@ def _curve_json(swept: Any) -> dict[str, Any]:
         "error_estimate": [p.force_errors.output for p in swept.points],
         "error_estimate_elastic": [p.force_errors.elastic for p in swept.points],
         "error_estimate_input": [p.force_errors.input for p in swept.points],
-        **{name: [_plain(getattr(p.regime, name)) for p in swept.points] for name in _EVIDENCE},
+        **{name: [_plain(p.regime.evidence_by_key()[name]) for p in swept.points] for name in _EVIDENCE},
         "wall_s": swept.wall_s,
         **({} if swept.amplitude is None else {"drive_amplitude": [float(a) for a in swept.drive_amplitude]}),
     }

@@ -6,6 +6,7 @@ import argparse
 import math
 from typing import TYPE_CHECKING, Any
 
+from ..former_names import with_former_keys
 from .common import chosen_scene, finite_or_null, in_background, show_json
 from .forces import energy_in_words, warn
 from .options import add_json, add_out, add_scene, whole
@@ -38,7 +39,7 @@ def do(arguments: argparse.Namespace) -> None:
     warn(motion, BUDGET)
     write_files(arguments, f"A pulse along {chosen.name}", found)
     if arguments.json:
-        show_json(_json(found))
+        show_json(with_former_keys("pulse", _json(found)))
     else:
         _show(found)
 
@@ -47,7 +48,7 @@ def _json(found: Pulse) -> dict[str, Any]:
     beads, metres, width = ([finite_or_null(float(x)) for x in values]
                             for values in (found.speed_beads_s, found.speed_m_s, found.width))
     return {"contact": found.contact.tolist(), "time": found.time.tolist(), "force": found.force.tolist(),
-            "speed_beads_s": beads, "speed_m_s": metres, "speed_beads": beads, "speed": metres, "width": width,
+            "speed_beads_s": beads, "speed_m_s": metres, "width": width,
             "velocity": found.velocity.tolist(),
             "error_estimate": found.run.displacement_error, "sampling_error": found.sampling_error,
             "sampling_error_time": found.sampling_error_time,

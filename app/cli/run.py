@@ -140,7 +140,8 @@ def _run_json(result: Run) -> dict[str, Any]:
 
 def _evidence(regime: Regime) -> dict[str, Any]:
     """The numbers behind the regime; null where one was not computed."""
-    return {name: getattr(regime, name) for name in (
+    known = regime.evidence_by_key()
+    return {name: known[name] for name in (
         "periods_run", "decay", "distance", "multiplier", "lyapunov", "lyapunov_periods", "approaches",
         "return_distance", "return_limit", "window_ratios", "orbit_found_by")}
 

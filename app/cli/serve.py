@@ -15,6 +15,7 @@ from pathlib import Path
 
 from granchain_core import BadInput
 
+from ..former_names import names_of_option
 from ..serve.http.limits import ADDRESS_HEADERS, MOST_SESSIONS, USUAL_SESSIONS
 from .options import whole
 from .waiting import Waiting
@@ -42,7 +43,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
                         help="if no other secret is given, sign sessions with one of this process's own")
     parser.add_argument("--allow-embedding", action="append", metavar="ORIGIN",
                         help="an origin, such as https://courses.example.org, whose pages may show it in a frame")
-    parser.add_argument("--max-sessions", "--most-visitors", type=whole, default=USUAL_SESSIONS, metavar="N",
+    parser.add_argument(*names_of_option("--max-sessions"), type=whole, default=USUAL_SESSIONS, metavar="N",
                         help="pages that may be open at once")
     parser.add_argument("--behind-proxy", action="store_true",
                         help="take the visitor's address from X-Real-IP or X-Forwarded-For, which a proxy sets; where "

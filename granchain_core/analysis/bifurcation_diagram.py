@@ -209,12 +209,6 @@ def bifurcation_diagram(scene: Scene, knob: str, values: Sequence[float] | np.nd
     return diagram
 
 
-#: The older name of `bifurcation_diagram`.
-strobe_diagram = bifurcation_diagram
-#: The older name of `BifurcationDiagram`.
-StrobeDiagram = BifurcationDiagram
-
-
 def _points(chains: list[tuple[float, Scene]], start: str, keep: int, stop: Stop | None) -> Iterator[StrobePoint]:
     if start == "rest":
         ended = Stop()

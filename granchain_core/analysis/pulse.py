@@ -10,11 +10,12 @@ V² δ(ξ) = ∫ Λ(ξ − s) δ(s)^{3/2} ds with Λ(s) = max(0, 1 − |s|), δ 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..errors import BadInput
+from ..former_names import former_columns, with_former_names
 from ..results.run import Run, require_run
 from ..scene import Scene
 from ..scene.description import hertz_stiffness
@@ -52,6 +53,7 @@ def solitary_speed(scene: Scene, force: float, constant: float = SOLITARY_BY_FOR
     return float(constant * hertz_stiffness(bead, bead) ** (1.0 / 3.0) * force ** (1.0 / 6.0) / math.sqrt(bead.mass))
 
 
+@with_former_names
 @dataclass(frozen=True, eq=False, repr=False)
 class Pulse(Labelled):
     """The first pulse in every contact between two beads, 1 to N − 1.
@@ -108,16 +110,6 @@ class Pulse(Labelled):
         return self.speed_beads_s * (radii[:-1] + radii[1:])
 
     @property
-    def speed(self) -> np.ndarray:
-        """The older name of `speed_beads_s`."""
-        return self.speed_beads_s
-
-    @property
-    def speed_in_metres(self) -> np.ndarray:
-        """The older name of `speed_m_s`."""
-        return self.speed_m_s
-
-    @property
     def scene(self) -> Scene:
         """The chain it runs along."""
         return self.run.scene
@@ -132,9 +124,9 @@ class Pulse(Labelled):
             "speed_beads_s": Column(self.speed_beads_s, at, "1/s",
                                     "speed of the first maximum in beads per second, NaN at both ends"),
             "speed_m_s": Column(self.speed_m_s, at, "m/s", "speed of the first maximum, NaN at both ends"),
-            "speed": Column(self.speed_beads_s, at, "1/s", "older name of speed_beads_s"),
-            "speed_in_metres": Column(self.speed_m_s, at, "m/s", "older name of speed_m_s"),
             "width": Column(self.width, at, "1", "width at half height in beads, NaN at both ends")}
+        columns |= {former: replace(columns[name], meaning=f"former name of {name}")
+                    for former, name in former_columns("pulse").items()}
         fastest = {"velocity": Column(self.velocity, ("bead",), "m/s", "largest velocity until the pulse has passed")}
         return Table("pulse", along, columns), Table("beads", bead_axis(self.scene.N), fastest)
 

@@ -30,25 +30,26 @@ from ..steady.steady_state import SteadyState
 from .attractor import Attractor, Attractors, Origin
 from .sameness import Found, found, merged
 
-#: Frequencies of a sweep before the one asked for.
+#: [attractors] Frequencies of a sweep before the one asked for.
 _SWEEP_POINTS = 8
-#: Drive periods at each of them.
+#: [attractors] Drive periods at each frequency of a sweep, and from rest for the size of the box of random states.
 _PASS_PERIODS = 150
-#: Distance from the frequency asked for at which a sweep begins, relative to it.
+#: [attractors] Distance from the frequency asked for at which a sweep begins, relative to it.
 _SWEEP_RANGE = 0.08
-#: Size of the box of random states, in units of the largest displacement and velocity that any bead has at phase 0 in
-#: the first `_PASS_PERIODS` of the motion from rest.
+#: [attractors] Size of the box of random states, over the largest displacement and velocity of any bead at phase 0 from
+#: rest. These are taken over the first `_PASS_PERIODS`.
 _BOX_SIZE = 1.5
-#: Displacement from an unstable orbit, relative to the motion.
+#: [attractors] Displacement from an unstable orbit, relative to the motion.
 _DEPARTURE = 1e-2
-#: Drive periods before the next check: enough to leave an orbit with |μ| = 1.003.
+#: [attractors] Drive periods after a displacement from an unstable orbit before the next check. They are enough to
+#: leave an orbit with |μ| = 1.003.
 _DEPARTURE_PERIODS = 3000
-#: Drive periods that a motion that does not repeat is run on, to see whether it comes to an orbit after all: on the way
-#: to a locked orbit of long period it may wander for thousands beside a closed curve.
+#: [attractors] Drive periods that a motion that does not repeat is run on, to see whether it comes to an orbit after
+#: all. On the way to a locked orbit of long period it may wander for thousands beside a closed curve.
 _LATER_PERIODS = 6400
-#: Most times that motions are run on, for either reason.
+#: [attractors] Most times that motions are run on, for either reason.
 _MOST_ROUNDS = 3
-#: Most random states.
+#: [attractors] Most random states.
 MOST_STATES = 10_000
 
 

@@ -18,17 +18,19 @@ from ..scene import Scene
 from ..scene.state import State
 from ..steady.steady_state import SteadyState
 
-#: Largest difference of states that is explained by one stated error. It is the error of the output force, which stands
-#: in for that of the states and is infinite where the force is zero.
+#: [attractors] Largest difference of states that one stated error explains. It is the error of the output force, which
+#: stands in for that of the states and is infinite where the force is zero.
 _LARGEST_DIFFERENCE = 1e-3
-#: Orbits found by Newton's method that agree to this, over 1 − |μ|, are the same.
+#: [attractors] Error of an orbit that Newton's method has found, times 1 − |μ|: orbits that agree within the sum of
+#: both are the same.
 _ORBIT_DIFFERENCE = 1e-7
-#: 1 − |μ| of an orbit counts as at least this.
+#: [attractors] Least value that 1 − |μ| of an orbit counts as.
 _LEAST_CONTRACTION = 1e-3
-#: Sections are different if their distance exceeds that between neighbouring states of one section by this factor.
+#: [attractors] Sections are different if their distance exceeds the distance between neighbouring states of one section
+#: by this factor.
 _SECTION_FACTOR = 3.0
-#: States in the section of a motion that is not periodic, taken after as many further periods, and in the longer ones
-#: that are compared where sections differ.
+#: [attractors] States in the section of a motion that is not periodic, and in the longer sections that are compared
+#: where these differ. They are taken after as many further periods.
 _STATES_OF_SECTION = (400, 1600, 6400)
 #: Tolerance for the section of an orbit that Newton's method has found.
 _DOP853_SETTING = dop853_setting(1e-11)

@@ -23,11 +23,11 @@ from .search import STEP, Problem, Target, descend, search
 from .tables import data_table, landscape_table, parameter_table, profile_table
 from .targets import Evaluation, FeatureTarget, SeriesTarget
 
-#: Probability of a χ² as large, if the model were true, below which the verdict is that it cannot.
+#: [fit] The verdict is *cannot* if the probability of a χ² as large, were the model true, is below this.
 CANNOT = 0.01
-#: Most parameters; every one has a profile, for which all others are searched again and again.
+#: [fit] Most parameters. Every one has a profile, for which all others are searched again and again.
 MOST_FREE = 30
-#: Times that the search goes on from a better point that a profile found.
+#: [fit] Times that the search goes on from a better point that a profile found.
 _AGAIN = 4
 
 

@@ -10,15 +10,15 @@ from scipy.stats import chi2, f
 
 from .search import Problem, descend
 
-#: The part of repetitions in which an interval holds the truth.
+#: [fit] Part of repetitions in which an interval holds the truth.
 LEVEL = 0.95
-#: Most steps towards each end of an interval.
+#: [fit] Most steps towards each end of an interval.
 _MOST_STEPS = 8
-#: Most evaluations of a descent on the way.
+#: [fit] Most evaluations of a descent on the way to an end of an interval.
 _DESCENT_CALLS = 6
-#: Distance of √Δχ² from its limit at which the end is found, relative to the limit.
+#: [fit] Distance of √Δχ² from its limit at which the end of an interval is found, relative to the limit.
 _ROOT_TOLERANCE = 0.03
-#: A misfit lower than the least so far by this, in its unit, is another minimum.
+#: [fit] A misfit lower than the least so far by this, in its unit, is another minimum.
 _BETTER_BY = 0.3
 
 

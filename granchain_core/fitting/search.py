@@ -25,17 +25,18 @@ from .records import RecordsTarget
 from .targets import CurveTarget, Evaluation, FeatureTarget, SeriesTarget
 
 Target = CurveTarget | SeriesTarget | RecordsTarget | FeatureTarget
-#: Step of derivatives, in parts of the bounds: above the noise of a curve's points (1e-5), below a peak's width.
+#: [fit] Step of derivatives, in parts of the bounds. It is above the noise of a curve's points (1e-5) and below a
+#: peak's width.
 STEP = 2e-3
-#: Initial points from which the search descends in a round.
+#: [fit] Initial points from which the search descends in a round.
 _STARTS = 3
-#: Most evaluations of a descent from one of them.
+#: [fit] Most evaluations of a descent from one of these points.
 _DESCENT_CALLS = 20
-#: Most evaluations of the simplex for every parameter.
+#: [fit] Most evaluations of the simplex for every parameter.
 _SIMPLEX_CALLS = 40
-#: Least distance of two starts in a parameter, as a fraction of the range between its bounds.
+#: [fit] Least distance of two starts in a parameter, as a fraction of the range between its bounds.
 _APART_BY = 0.1
-#: Most rounds of the search, each with twice as many initial points.
+#: [fit] Most rounds of the search, each with twice as many initial points.
 _MOST_ROUNDS = 3
 
 

@@ -26,22 +26,22 @@ from ..steady.curve.resonance_curve import resonance_curve
 from ..steady.settling.settle import settle
 from .trains import Train, moved
 
-#: Relative standard deviation assigned to the largest force of a motion that is not periodic.
+#: [fit] Relative standard deviation of the largest force of a motion that is not periodic.
 SCATTER = 0.2
-#: The residual of a point whose computation failed, in standard deviations.
+#: [fit] Residual of a point whose computation failed, in standard deviations.
 FAILED = 20.0
-#: Standard deviation assumed where neither errors nor repeats are known, as a fraction of the largest force; the misfit
+#: [fit] Standard deviation where neither errors nor repeats are known, as a fraction of the largest force. The misfit
 #: is then scaled so that it has the size of its degrees of freedom.
 ASSUMED = 0.05
-#: Forces below this fraction of the largest have the absolute error of a force of this fraction.
+#: [fit] Forces below this fraction of the largest have the absolute error of a force of this fraction.
 _SMALLEST = 1e-3
-#: Least relative scatter of repeats that is believed: closer agreement may be chance.
+#: [fit] Least relative scatter of repeats that is believed. Closer agreement may be chance.
 _LEAST_SCATTER = 1e-4
-#: Samples of a model's train in a drive period.
+#: [fit] Samples of a model's train in a drive period.
 _TRAIN = 768
-#: The most of them, for sensors with a bandwidth.
+#: [fit] Most samples of a model's train in a drive period, for sensors with a bandwidth.
 _MOST_TRAIN = 8192
-#: Most samples of a series that are compared; a longer one is thinned out evenly.
+#: [fit] Most samples of a series that are compared; a longer one is thinned out evenly.
 _COMPARED = 4000
 
 

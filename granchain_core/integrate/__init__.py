@@ -1,5 +1,6 @@
 """Time integration: from a scene to scaled numbers, the table of methods, the engine that carries a state, batches."""
 
+from ..former_names import of_module
 from .counts import Counts
 from .engine import Engine
 from .methods import (
@@ -11,7 +12,8 @@ from .methods import (
     following_setting,
     method_for,
 )
-from .methods import Setting as Setting
 
 __all__ = ["METHODS", "Counts", "Engine", "Method", "MethodSetting", "dop853_setting", "fixed_step_setting",
            "following_setting", "method_for"]
+
+__getattr__ = of_module(__name__)

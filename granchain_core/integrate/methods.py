@@ -89,10 +89,6 @@ class MethodSetting:
         return scaled.period / self.steps_per_period(scaled, samples)
 
 
-#: Older name of `MethodSetting`, which still works.
-Setting = MethodSetting
-
-
 @dataclass(frozen=True)
 class StepCost:
     """Seconds per accepted step: `fixed`, plus `per_contact` for each contact, rejected steps included.

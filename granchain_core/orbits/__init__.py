@@ -1,5 +1,6 @@
 """Periodic orbits as fixed points of the stroboscopic map: its derivative, Newton's method, multipliers, modes."""
 
+from ..former_names import of_module
 from .branch.axis import CONTINUOUS, KnobAxis
 from .branch.branch import Branch, Continuation, begin_branch, continue_branch
 from .branch.check import check_branch
@@ -13,11 +14,10 @@ from .orbit import Orbit
 from .response import Response, response
 from .search import orbit_near_motion
 
-#: The older name of `HalfBranch`.
-Arm = HalfBranch
-
 __all__ = [
-    "CONTINUOUS", "Arm", "Branch", "BranchPoint", "Continuation", "HalfBranch", "KnobAxis", "NormalForm", "Orbit",
+    "CONTINUOUS", "Branch", "BranchPoint", "Continuation", "HalfBranch", "KnobAxis", "NormalForm", "Orbit",
     "Response", "SpecialPoint", "begin_branch", "check_branch", "continue_branch", "orbit_near_motion",
     "periodic_orbit", "random_state", "response", "switch_to_doubled",
 ]
+
+__getattr__ = of_module(__name__)

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..execution.stop import Stop
+from ..former_names import with_former_names
 from ..results.regime import modulus_words
 from ..scene import Scene
 from ..scene.state import State
@@ -27,6 +28,7 @@ from .stroboscopic_map import FLOW_METHOD
 ROUNDING = 1e-13
 
 
+@with_former_names
 @dataclass(frozen=True, eq=False, repr=False)
 class Orbit(Labelled):
     """A periodic orbit with its Floquet multipliers.
@@ -82,11 +84,6 @@ class Orbit(Labelled):
     observer_monodromy: np.ndarray | None = None
     period_note: str = ""
     distance_of_motion: float | None = None
-
-    @property
-    def changes(self) -> np.ndarray:
-        """The older name of `contact_events`."""
-        return self.contact_events
 
     @functools.cached_property
     def multiplier_errors(self) -> np.ndarray | None:

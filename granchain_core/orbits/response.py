@@ -13,6 +13,7 @@ from math import pi
 
 import numpy as np
 
+from ..former_names import with_former_names
 from ..integrate import Engine, dop853_setting
 from ..integrate.methods import DOP853
 from ..results.regime import Regime
@@ -31,6 +32,7 @@ _SAMPLES = 480
 _TOLERANCE = 1e-9
 
 
+@with_former_names
 @dataclass(frozen=True)
 class Response:
     """The pulse ratio: strong pushes of the driver per number of periods, whether they are in step, and the evidence.
@@ -49,11 +51,6 @@ class Response:
     peak_phase: float
     returning: float
     transmission: float
-
-    @property
-    def kind(self) -> str:
-        """The older name of `in_step`: "resonance" in step, "anti-resonance" not in step, else ""."""
-        return "" if self.in_step is None else "resonance" if self.in_step else "anti-resonance"
 
     @property
     def sentence(self) -> str:
@@ -97,6 +94,6 @@ def recorded(orbit: Orbit) -> Run:
     engine.start(orbit.state)
     samples = engine.record(orbit.period * _SAMPLES)
     leading = float(np.abs(orbit.multipliers).max())
-    regime = Regime(name="periodic", period=orbit.period, decay=None, distance=None, periods_run=orbit.period,
-                    multiplier=leading)
+    regime = Regime(name="periodic", period=orbit.period, observed_contraction=None, distance=None,
+                    periods_run=orbit.period, multiplier=leading)
     return run_from(engine, samples, 0, regime, None, Cost.of(0.0, engine.counts, DOP853), start=GIVEN_STATE)

@@ -1,13 +1,13 @@
 """The parameter map: regime and largest forces over two knobs, every cell from rest.
 
-`diagram` and `Diagram` are older names of `parameter_map` and `ParameterMap`. The bifurcation diagram, over one knob,
-is in `analysis/bifurcation_diagram.py`.
+The bifurcation diagram, over one knob, is in `analysis/bifurcation_diagram.py`.
 """
 
+from ..former_names import of_module
 from .cells import ParameterMap
 from .compute import iter_parameter_map, parameter_map
 from .grid import Axis, Grid
 
-Diagram, diagram, iter_diagram = ParameterMap, parameter_map, iter_parameter_map
-
 __all__ = ["Axis", "Grid", "ParameterMap", "iter_parameter_map", "parameter_map"]
+
+__getattr__ = of_module(__name__)

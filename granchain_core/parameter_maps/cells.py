@@ -159,8 +159,9 @@ class ParameterMap(Labelled):
         if not 0 <= cell["regime"] < CELL_REGIMES.index("failed"):
             return None
         lyapunov = None if np.isnan(cell["lyapunov"]) else (float(cell["lyapunov"]), float(cell["lyapunov_error"]))
-        decay, multiplier = (None if np.isnan(cell[name]) else float(cell[name]) for name in ("decay", "multiplier"))
+        contraction, multiplier = (None if np.isnan(cell[name]) else float(cell[name])
+                                   for name in ("decay", "multiplier"))
         measured = None if np.isnan(cell["lyapunov_periods"]) else int(cell["lyapunov_periods"])
-        return Regime(name=CELL_REGIMES[cell["regime"]], period=int(cell["period"]) or None, decay=decay, distance=None,
-                      periods_run=int(cell["periods_run"]), lyapunov=lyapunov, multiplier=multiplier,
-                      lyapunov_periods=measured)
+        return Regime(name=CELL_REGIMES[cell["regime"]], period=int(cell["period"]) or None,
+                      observed_contraction=contraction, distance=None, periods_run=int(cell["periods_run"]),
+                      lyapunov=lyapunov, multiplier=multiplier, lyapunov_periods=measured)

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from typing import Any
 
+from ..former_names import with_former_names
 from ..kernels.strobes.periodicity import assumed_contraction
 
 #: What a motion can be called.
@@ -15,8 +18,11 @@ NEVER_REPEATING = ("quasi-periodic", "chaotic")
 FOUND_BY = ("settling", "Newton", "extrapolation")
 #: [all] A distance is taken to shrink by |μ| per orbit, at most 1 less this (`Regime.assumed_contraction`).
 LEAST_BELOW_1 = 1e-6
+#: What files and JSON call `Regime.observed_contraction`: their keys do not change.
+CONTRACTION_KEY = "decay"
 
 
+@with_former_names
 @dataclass(frozen=True)
 class Regime:
     """The kind of a motion, and the evidence for it.
@@ -27,8 +33,9 @@ class Regime:
         One of `NAMES`.
     period : int or None
         Period of the motion in drive periods; None if it is not periodic.
-    decay : float or None
-        The older name of `observed_contraction`, which files and JSON have.
+    observed_contraction : float or None
+        Factor by which changes shrank per orbit, 1 if they did not shrink; None if it was not observed. Files and JSON
+        call it `decay`.
     distance : float or None
         Bound on the relative distance to the orbit.
     periods_run : int
@@ -68,7 +75,7 @@ class Regime:
 
     name: str
     period: int | None
-    decay: float | None
+    observed_contraction: float | None
     distance: float | None
     periods_run: int
     lyapunov: tuple[float, float] | None = None
@@ -86,8 +93,8 @@ class Regime:
     def unsettled(cls, periods_run: int, lyapunov: tuple[float, float] | None = None,
                   lyapunov_periods: int | None = None) -> Regime:
         """A motion whose regime is not known after `periods_run` periods."""
-        return cls(name="unsettled", period=None, decay=None, distance=None, periods_run=periods_run, lyapunov=lyapunov,
-                   lyapunov_periods=lyapunov_periods)
+        return cls(name="unsettled", period=None, observed_contraction=None, distance=None, periods_run=periods_run,
+                   lyapunov=lyapunov, lyapunov_periods=lyapunov_periods)
 
     @classmethod
     def undriven(cls, periods_run: int) -> Regime:
@@ -96,12 +103,23 @@ class Regime:
         Its name is "unsettled": files and the command line's JSON have one of `NAMES`, a list that scripts rely on.
         `driven`, which both have too, tells it from a driven motion that has not settled.
         """
-        return cls(name="unsettled", period=None, decay=None, distance=None, periods_run=periods_run, driven=False)
+        return cls(name="unsettled", period=None, observed_contraction=None, distance=None, periods_run=periods_run,
+                   driven=False)
 
-    @property
-    def observed_contraction(self) -> float | None:
-        """Factor by which changes shrank per orbit, 1 if they did not shrink; None if it was not observed."""
-        return self.decay
+    def to_json(self) -> dict[str, Any]:
+        """The fields by the keys that files and JSON have."""
+        return {CONTRACTION_KEY if name == "observed_contraction" else name: value
+                for name, value in asdict(self).items()}
+
+    def evidence_by_key(self) -> dict[str, Any]:
+        """The fields, and how the orbit was found, by the keys that the command line's JSON has."""
+        return {**self.to_json(), "orbit_found_by": self.orbit_found_by}
+
+    @classmethod
+    def from_json(cls, kept: Mapping[str, Any]) -> Regime:
+        """The regime with these keys of files, whose values have been checked."""
+        return cls(**{"observed_contraction" if name == CONTRACTION_KEY else name: value
+                      for name, value in kept.items()})
 
     @property
     def orbit_found_by(self) -> str | None:
@@ -122,11 +140,6 @@ class Regime:
         if self.multiplier is not None:
             return min(1.0 - LEAST_BELOW_1, self.multiplier)
         return assumed_contraction(self.observed_contraction or 0.0)
-
-    @property
-    def contraction(self) -> float:
-        """The older name of `assumed_contraction`."""
-        return self.assumed_contraction
 
     @property
     def evidence(self) -> str:

@@ -252,7 +252,7 @@ class Run(RecordedMotion):
                 "status": self.status, "start": self.start,
                 "warnings": json.dumps(overlap_warnings(self.scene, self.overlap.max(axis=0))),
                 "energy_residual": or_nan(self.energy_residual), "samples_per_period": self.samples,
-                "cost": json.dumps(asdict(self.cost)), "regime": json.dumps(asdict(self.regime)),
+                "cost": json.dumps(asdict(self.cost)), "regime": json.dumps(self.regime.to_json()),
                 **{name: getattr(self, name) for name in MAXIMA},
                 **dict(zip(RUN_ERRORS, self.force_errors.row, strict=True))}
 

@@ -90,7 +90,7 @@ def find_period(strobes: np.ndarray, longest: int = LONGEST_LOCKED_PERIOD, round
         return Regime.unsettled(periods_run)
     if 0.0 < decay < 1.0:
         distance = max(distance, rounding * decay / (1.0 - decay))
-    return Regime(name="periodic", period=int(period), decay=None if decay < 0.0 else float(decay),
+    return Regime(name="periodic", period=int(period), observed_contraction=None if decay < 0.0 else float(decay),
                   distance=float(distance), periods_run=periods_run)
 
 
@@ -158,14 +158,14 @@ def regime_from_exponents(exponents: np.ndarray, periods: int, strobes: np.ndarr
     """
     mean, error = mean_and_error(exponents)
     if grows(mean, error, periods):
-        return Regime(name="chaotic", period=None, decay=None, distance=None, periods_run=periods_run,
+        return Regime(name="chaotic", period=None, observed_contraction=None, distance=None, periods_run=periods_run,
                       lyapunov=(mean, error), lyapunov_periods=periods)
     if not is_neutral(mean, error, periods):
         return Regime.unsettled(periods_run, (mean, error), periods)
     windows, distance, limit = _windows(strobes), return_distance(strobes), return_limit(strobes)
     name = "quasi-periodic" if _neither_converges_nor_departs(windows) and distance < limit else "unsettled"
-    return Regime(name=name, period=None, decay=None, distance=None, periods_run=periods_run, lyapunov=(mean, error),
-                  lyapunov_periods=periods, return_distance=distance, return_limit=limit,
+    return Regime(name=name, period=None, observed_contraction=None, distance=None, periods_run=periods_run,
+                  lyapunov=(mean, error), lyapunov_periods=periods, return_distance=distance, return_limit=limit,
                   window_ratios=_window_ratios(windows))
 
 

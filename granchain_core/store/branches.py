@@ -21,12 +21,13 @@ from typing import Any
 import h5py
 import numpy as np
 
+from ..former_names import EVENTS
 from ..hdf5 import File, opened
 from ..hdf5.border import entries, finite, one_of, within
 from ..hdf5.plain import Refused
 from ..orbits import Branch, BranchPoint, HalfBranch, KnobAxis, SpecialPoint
 from ..orbits.branch.normal_forms import CRITICALITIES, EARLIER_REASONS, NOT_DECIDED, REASONS, NormalForm
-from ..orbits.branch.special import EVENTS, SPECIAL_KINDS
+from ..orbits.branch.special import SPECIAL_KINDS
 from ..orbits.branch.tables import NO_CONTACT, branch_tables
 from ..scene import Amplitude
 from ..steady.regime_criteria import LONGEST_LOCKED_PERIOD

@@ -107,6 +107,6 @@ def _pair(first: float, second: float) -> tuple[float, float] | None:
 def _point(scene: Scene, numbers: np.ndarray, period: int, name: str, outcome: str,
            proven: dict[str, Any]) -> CurvePoint:
     frequency, input_force, output_force, elastic, *errors = map(float, numbers)
-    regime = Regime(name, int(period) or None, **proven)
+    regime = Regime.from_json({"name": name, "period": int(period) or None, **proven})
     return CurvePoint(frequency, output_force, elastic, input_force, regime,
                       ForceErrors(*(or_none(error) for error in errors)), rest(scene), status=outcome)

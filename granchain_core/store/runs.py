@@ -136,7 +136,7 @@ def _regime(file: File) -> Regime:
         values["lyapunov"] = _pair("regime.lyapunov", lyapunov, "mean", "error")
     if ratios is not None:
         values["window_ratios"] = _pair("regime.window_ratios", ratios, "smallest", "largest")
-    return Regime(**{**values, "followed": bool(values["followed"]), "driven": values["driven"] is not False})
+    return Regime.from_json({**values, "followed": bool(values["followed"]), "driven": values["driven"] is not False})
 
 
 def _pair(place: str, found: object, first: str, second: str) -> tuple[float, ...]:

@@ -55,12 +55,10 @@ def test_nesterenkos_wave_has_both_closed_forms() -> None:
 
 
 def test_a_speed_has_its_unit_in_its_name() -> None:
-    """Both names with a unit differ by the distance of the beads; the older names are the same numbers."""
+    """They differ by the distance of the beads."""
     found = pulse(recorded("impact"))
     radius = found.scene.beads[0].radius
     np.testing.assert_allclose(found.speed_m_s[1:-1], 2.0 * radius * found.speed_beads_s[1:-1])
-    np.testing.assert_array_equal(found.speed, found.speed_beads_s)
-    np.testing.assert_array_equal(found.speed_in_metres, found.speed_m_s)
 
 
 def test_the_pulse_of_an_impact_is_the_solitary_wave() -> None:

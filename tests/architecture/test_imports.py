@@ -84,7 +84,7 @@ def test_no_import_goes_in_a_circle() -> None:
 USES = {folder.replace("/", "."): re.findall(r"`(\w+)`", uses) for folder, uses in re.findall(
     r"^\| `app/([\w/]+)` \| [^|]+ \| ([^|]+) \|$", (ROOT / "docs" / "design.md").read_text(encoding="utf-8"), re.MULTILINE)}
 #: Modules beside the folders that any folder may use; the others are above all.
-SHARED = {"format", "frames", "library_internals", "scripts"}
+SHARED = {"format", "former_names", "frames", "library_internals", "scripts"}
 
 
 #: Folders whose own folders the map orders. Others may use all of them; of a folder of `pages`, `dashboard` alone.
@@ -129,7 +129,7 @@ def test_a_folder_of_the_app_imports_only_what_the_map_says(folder: str) -> None
         if mine in SHARED:
             assert theirs in SHARED, f"{module} imports {name}"
         elif module == "app.cli.serve":
-            assert name in ("app.server", "app.library_internals", "app.cli.common", "app.cli.options", "app.cli.waiting",
+            assert name in ("app.server", "app.former_names", "app.library_internals", "app.cli.common", "app.cli.options", "app.cli.waiting",
                             "app.serve.http.limits"), f"{module} imports {name}"
         elif mine in USES:
             fits = allowed(mine) | ({one for one in USES if one.startswith("pages.")} if mine == "dashboard" else set())

@@ -97,7 +97,7 @@ def test_the_point_is_where_the_branch_encloses_one(kind: str, start: float, end
     found = bifurcation_point(branch.axis.scene_at(begun.knob), kind, branch.state(begun), period)
     low, high = special.interval
     assert high - low < 2e-5 * special.knob
-    before, after = (np.abs(one.multipliers[max(special.before.unstable, special.after.unstable) - 1])
+    before, after = (np.abs(one.multipliers[max(special.before.unstable_multipliers, special.after.unstable_multipliers) - 1])
                      for one in (special.before, special.after))
     # the curve's |μ| is 1 to 1e-6; at a fold the knob turns, and such an error of μ moves it by the square of that
     unsure = 0.0 if kind == "fold" else 1e-6 * (high - low) / abs(after - before)

@@ -29,7 +29,6 @@ def test_each_orbit_has_its_number_of_unstable_multipliers(said: list[str]) -> N
     assert [(row[2], int(row[3])) for row in rows] \
         == [("stable" if point.stable else "unstable", point.unstable_multipliers) for point in found.points]
     assert {row[3] for row in rows} == {"0", "1"}
-    assert [point.unstable for point in found.points] == [point.unstable_multipliers for point in found.points]
 
 
 def test_special_points_are_in_words_and_a_grazing_has_its_side(said: list[str]) -> None:

@@ -102,9 +102,10 @@ def test_modules_named_in_the_docs_can_be_found():
     assert lost == []
 
 
-def test_the_glossary_names_a_place_for_every_term():
-    """Each row has a term, what it is, and at least one file or page."""
-    rows = re.findall(r"^\| (?!symbol|---)(.+) \|$", (ROOT / "docs" / "glossary.md").read_text("utf-8"), re.MULTILINE)
+def test_the_glossary_and_the_words_of_the_code_name_a_place_for_every_term():
+    """Each row has a term, what it is, and at least one file or page; no term is on both pages."""
+    text = "".join((ROOT / "docs" / f"{page}.md").read_text("utf-8") for page in ("glossary", "words-of-the-code"))
+    rows = re.findall(r"^\| (?!symbol|---)(.+) \|$", text, re.MULTILINE)
     cells = [re.split(r"(?<!\\) ?\| ", row) for row in rows]
     assert all(len(row) == 4 and row[1] and row[2] and re.search(r"[\w/]+\.(py|md)", row[3]) for row in cells)
     terms = [row[1] for row in cells]
@@ -113,7 +114,7 @@ def test_the_glossary_names_a_place_for_every_term():
 
 def test_the_file_of_a_term_of_the_web_has_the_word():
     """A term that has moved to another file would keep its row otherwise."""
-    section = (ROOT / "docs" / "glossary.md").read_text("utf-8").partition("## Web and server")[2].partition("\n## ")[0]
+    section = (ROOT / "docs" / "words-of-the-code.md").read_text("utf-8").partition("## Web and server")[2].partition("\n## ")[0]
     rows = re.findall(r"^\| [^|]+ \| ([^|]+) \| [^|]+ \| ([^|]+) \|$", section, re.MULTILINE)[1:]
     assert len(rows) > 12
     for term, place in rows:

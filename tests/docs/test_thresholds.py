@@ -16,16 +16,12 @@ from documents import ROOT
 
 from granchain_core import orbit, scene
 from granchain_core.analysis import lyapunov_spectrum
-from granchain_core.integrate.fixed import SHORT_CHAIN
 from granchain_core.kernels.batch import checks, record
 from granchain_core.observers.drift import TRANSLATION
-from granchain_core.orbits.branch import ends, normal_forms, special, steps
-from granchain_core.parameter_maps import scheduled
 from granchain_core.results.regime import Regime
-from granchain_core.steady import exponent_measurements, regime_criteria, residuals
-from granchain_core.steady.batch import job, jobs_in_batch, threads
-from granchain_core.steady.curve import resonance_curve
-from granchain_core.steady.settling import nearby_orbit, regime_decisions, single_chain
+from granchain_core.steady import regime_criteria
+from granchain_core.steady.settling import nearby_orbit, regime_decisions
+from tools.numbers import with_numbers
 from tools.thresholds import _REGIMES, marked_constants, printed
 
 OBSERVERS, GLOSSARY = (" ".join((ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8").split())
@@ -34,7 +30,7 @@ OBSERVERS, GLOSSARY = (" ".join((ROOT / "docs" / f"{name}.md").read_text(encodin
 
 def test_every_mark_has_a_table() -> None:
     """A mark that no table knows would leave its constant out of all pages."""
-    known = {*_REGIMES, "rotation", "response", "branch", "safety factor", "step size", "no threshold"}
+    known = {*_REGIMES, "rotation", "response", "branch", "fit", "attractors", "safety factor", "step size", "no threshold"}
     assert {mark for one in marked_constants() for mark in one.mark.split(", ")} <= known
 
 
@@ -53,110 +49,33 @@ def test_how_a_threshold_is_printed(value: float, as_printed: str) -> None:
     assert printed(value) == as_printed
 
 
-def test_the_text_on_branches_has_the_values_of_the_constants() -> None:
-    """Beside the generated table the numbers stand where they are explained."""
-    text = " ".join((ROOT / "docs" / "branches.md").read_text(encoding="utf-8").split())
-    said = {
-        r"t turns by about ([\d.]+)°": steps._TURN_OF_STEP, r"about ([\d.]+) % of the step away": 100.0 * steps._MISS_OF_STEP,
-        r"goes farther than ([\d.]+) % of the step": 100.0 * steps.LARGEST_CORRECTION,
-        r"if t turns by more than ([\d.]+)°": steps._LARGEST_TURN, r"The longest step is ([\d.]+),": steps.LONGEST_STEP,
-        r"the shortest ([\de-]+)\.": steps.SHORTEST_STEP, r"method aims at ([\de-]+);": residuals.RESIDUAL_GOAL,
-        r"below ([\de-]+) the orbit is accepted": residuals.ACCEPTED_RESIDUAL,
-        r"whose knobs differ by at most ([\de-]+) of the knob \(": special.RELATIVE_WIDTH,
-        r"for at most (\d+) levels of bisection": special._MOST_LEVELS,
-        r"back to the starting orbit within ([\de-]+):": ends._CLOSING_DISTANCE,
-        r"first differences only: ξ = ([\de-]+)\.": normal_forms._SMALL_AMPLITUDE,
-        r"The others have ξ = ([\de-]+),": normal_forms._AMPLITUDE,
-        r"differ by more than (\d+) % of their mean": 100.0 * normal_forms._LARGEST_ERROR,
-        r"another multiplier is within ([\de-]+) of the unit circle": normal_forms._AT_CIRCLE,
-        r"\|μᵏ − 1\| < ([\d.]+) for a k": normal_forms._STRONG_RESONANCE,
-    }
-    for pattern, value in said.items():
-        found = re.findall(pattern, text)
-        assert len(found) == 1 and float(found[0]) == pytest.approx(value, rel=1e-12), pattern
-
-
-def test_docstrings_and_pages_say_up_to_how_many_beads_there_are_multipliers() -> None:
+def test_docstrings_say_up_to_how_many_beads_there_are_multipliers() -> None:
     most = nearby_orbit.MOST_BEADS_WITH_MULTIPLIERS
     for file, times in (("granchain_core/orbits/orbit.py", 3), ("granchain_core/analysis/lyapunov_spectrum.py", 1)):
         assert re.findall(r"(\d+) beads", (ROOT / file).read_text(encoding="utf-8")) == times * [str(most)], file
-    for page, words in (("orbits", f"Up to {most} beads the whole derivative"), ("stability", f"of more than {most} beads only"),
-                        ("regimes", f"up to {most} beads if the claim"), ("regimes", f"*Run:* up to {most} beads")):
-        assert words in " ".join((ROOT / "docs" / f"{page}.md").read_text(encoding="utf-8").split()), page
     assert f"20 to {lyapunov_spectrum.MOST_SPECTRUM_PERIODS:,}." in str(lyapunov_spectrum.lyapunov_spectrum.__doc__)
     assert lyapunov_spectrum._BLOCKS == 20
 
 
-PARTS = {2: "half", 3: "a third", 4: "a quarter"}
-NUMBERS = {2: "two", 3: "three", 4: "four"}
-#: The exponent below which P would be above `_LONGEST_COMPARISON`, as it is printed.
-SMALLEST_EXPONENT = round(regime_criteria._BOUNDED_GROWTH / regime_criteria._LONGEST_COMPARISON, 4)
+def test_docstrings_have_the_values_of_the_constants() -> None:
+    """Of a growth since the motion was examined, and of an extrapolation."""
+    said = " ".join(str(regime_criteria.clearly_chaotic.__doc__).split())
+    periods, growth = re.findall(r"After (\d+) periods a growth of ([\d.]+) a period", said)[0]
+    assert (int(periods), float(growth)) == (regime_decisions.EXAMINED_AFTER, regime_criteria.CLEAR_GROWTH)
+    multiplied = float(re.findall(r"multiplied a distance by ([\de]+)\.", said)[0])
+    assert multiplied == float(f"{math.exp(regime_criteria.CLEAR_GROWTH * regime_decisions.EXAMINED_AFTER):.0e}")
+    assert checks.FARTHEST_EXTRAPOLATION == 3 and "at most three times the distance that the contraction factor" in " ".join(
+        Path(str(checks.__file__)).read_text(encoding="utf-8").split())
 
 
-@pytest.mark.parametrize(("file", "said"), [
-    ("docs/design.md", {
-        r"empties every ([\d.]+) ms": 1e3 * threads._INTERVAL,
-        r"each task is a block of (\d+) points": resonance_curve.POINTS_IN_TASK,
-        r"at most (\d+) periods before Python looks": regime_decisions.EXAMINED_AFTER,
-        r"motion continues with (a \w+) of the step": PARTS[job.FINE_STEPS_PER_COARSE],
-        r"coarse steps for (\d+) periods beside": exponent_measurements.MEASURED_PERIODS,
-        r"at best to ([\de-]+) \(`CURVE_ACCURACY`": single_chain.CURVE_ACCURACY}),
-    ("docs/orbits.md", {
-        r"stops at a residual of ([\de-]+),": residuals.RESIDUAL_GOAL,
-        r"If it ends above ([\de-]+), it fails": residuals.ACCEPTED_RESIDUAL,
-        r"is less exact, has ([\de-]+) and": residuals.FIXED_STEP_RESIDUAL_GOAL,
-        r"is less exact, has 1e-9 and ([\de-]+)\.": residuals.ACCEPTED_FIXED_STEP_RESIDUAL}),
-    ("docs/parameter-map.md", {r"sends blocks of (\d+) cells": scheduled.CELLS_IN_TASK}),
-    ("docs/regime-evidence.md", {
-        r"The measurement begins after (\d+) periods": regime_decisions.EXAMINED_AFTER,
-        r"with at least (\d+) strobes": regime_criteria.SLOW_RECORD,
-        r"Its first (\d+) periods do not count": exponent_measurements.TURNING_PERIODS}),
-    ("docs/regimes.md", {
-        r"drive periods, at most \| (\d+); \d+ for a draft": regime_decisions.MOST_SETTLING_PERIODS,
-        r"\| \d+; (\d+) for a draft": jobs_in_batch._DRAFT_PERIODS,
-        r"for a draft \| (\d+); [\d,]+ near an unstable": regime_decisions.MOST_SETTLING_PERIODS,
-        r"; ([\d,]+) near an unstable orbit \|": f"{regime_decisions.MOST_SETTLING_PERIODS * regime_decisions._DEPARTURE_FACTOR:,}",
-        r"The orbit near the motion\.\* After (\d+) periods Newton": regime_decisions.EXAMINED_AFTER,
-        r"not decided after (\d+) periods is settled alone": regime_decisions.MOST_SETTLING_PERIODS,
-        r"above 0, below ([\d.]+) \| P would be above `_LONGEST_COMPARISON`": SMALLEST_EXPONENT,
-        r"computed it is r, at most ([\d.]+), and": Regime("periodic", 1, 1.0, None, 1).assumed_contraction,
-        r"decay was seen it is ([\d.]+) \(": Regime("periodic", 1, None, None, 1).assumed_contraction,
-        r"\| ([\d.]+) or more \| measured": SMALLEST_EXPONENT,
-        r"below ([\d.]+) \+ 3σ": SMALLEST_EXPONENT,
-        r"Up to (\d+) periods the limit": regime_criteria._BOUNDED_GROWTH / regime_criteria._LARGEST_NEUTRAL_EXPONENT}),
-    ("granchain_core/steady/regime_criteria.py", {
-        r"After (\d+) periods a growth": regime_decisions.EXAMINED_AFTER,
-        r"a growth of ([\d.]+) a period": regime_criteria.CLEAR_GROWTH,
-        r"multiplied a distance by ([\de]+)\.": float(f"{math.exp(regime_criteria.CLEAR_GROWTH * regime_decisions.EXAMINED_AFTER):.0e}")}),
-    ("docs/cost.md", {
-        r"such a cell runs (\d+) periods or more": regime_decisions.EXAMINED_AFTER,
-        r"exponent, (\d+) periods at a time": exponent_measurements.MEASURED_PERIODS,
-        r"up to (\d+) periods for the coarse run": regime_decisions.MOST_SETTLING_PERIODS,
-        r"from rest; (\d+) points are one task": resonance_curve.POINTS_IN_TASK,
-        r"blocks of (\d+) points": resonance_curve.POINTS_IN_TASK,
-        r"blocks of (\d+) cells": scheduled.CELLS_IN_TASK, r"; (\d+) cells are one task": scheduled.CELLS_IN_TASK}),
-    ("docs/hard-cases.md", {r"irregular run \((\d+) periods of two": exponent_measurements.MEASURED_PERIODS}),
-    ("docs/glossary.md", {r"up to (\d+) beads in one vector": SHORT_CHAIN}),
-    ("granchain_core/kernels/batch/checks.py", {
-        r"at most (\w+) times the distance that the contraction factor": NUMBERS[int(checks.FARTHEST_EXTRAPOLATION)]}),
-], ids=lambda given: given if isinstance(given, str) else "")
-def test_prose_has_the_values_of_the_constants(file: str, said: dict[str, float | str]) -> None:
-    """Numbers in sentences of the docs and of docstrings, where a name in their place would not be read."""
-    text = " ".join((ROOT / file).read_text(encoding="utf-8").split())
-    for pattern, value in said.items():
-        found = re.findall(pattern, text)
-        assert len(found) == 1, pattern
-        if isinstance(value, str):
-            assert found[0] == value, pattern
-        else:
-            assert float(found[0]) == pytest.approx(value, rel=1e-12), pattern
-
-
-def test_the_definitions_have_the_values_of_the_constants_they_name() -> None:
-    text = " ".join((ROOT / "docs" / "regimes.md").read_text(encoding="utf-8").split())
-    named = re.findall(r"([\d.]+) is `(_?[A-Z_]+)`", text)
-    assert {name for _, name in named} == {"STANDARD_ERRORS", "_BOUNDED_GROWTH", "_LARGEST_NEUTRAL_EXPONENT"}
-    assert all(float(value) == getattr(regime_criteria, name) for value, name in named)
+def test_a_number_before_a_mark_is_the_constants() -> None:
+    assert with_numbers("5<!--steps._LARGEST_TURN-->°, 1<!--steps.LARGEST_CORRECTION:%--> %") \
+        == "30<!--steps._LARGEST_TURN-->°, 30<!--steps.LARGEST_CORRECTION:%--> %"
+    assert with_numbers("a half<!--job.FINE_STEPS_PER_COARSE:part--> of 1<!--periods_of_departure-->") \
+        == "a third<!--job.FINE_STEPS_PER_COARSE:part--> of 16,000<!--periods_of_departure-->"
+    for unknown in ("steps.NO_SUCH", "no_such", "advance.no"):
+        with pytest.raises(KeyError):
+            with_numbers(f"5<!--{unknown}-->")
 
 
 @pytest.mark.parametrize(("accuracy", "noise"), [(1e-8, 1e-7), (1e-5, 1e-6)])

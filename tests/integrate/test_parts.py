@@ -5,15 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from granchain_core import Cancelled, Scene, Stop, integrate, scene
+from granchain_core import Cancelled, Scene, Stop, scene
 from granchain_core.integrate import METHODS, Engine, MethodSetting, fixed, fixed_step_setting
 
 SHORT = scene("sec2")
 LONG = scene("sec2").evolve(N=200)
-
-
-def test_the_older_name_of_a_setting_still_works() -> None:
-    assert integrate.Setting is MethodSetting
 
 
 def motion(chain: Scene, samples: int) -> dict[str, np.ndarray]:

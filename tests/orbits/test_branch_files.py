@@ -31,8 +31,8 @@ def whole() -> Branch:
 
 def assert_same(one: Branch, other: Branch) -> None:
     """Equal to the last bit, special points and next steps included."""
-    assert [arm.step for arm in one.arms] == [arm.step for arm in other.arms]
-    assert [arm.reason for arm in one.arms] == [arm.reason for arm in other.arms]
+    assert [arm.step for arm in one.half_branches] == [arm.step for arm in other.half_branches]
+    assert [arm.reason for arm in one.half_branches] == [arm.reason for arm in other.half_branches]
     for mine, its in zip([*one.points, *(p for s in one.special for p in (s.before, s.after))],
                          [*other.points, *(p for s in other.special for p in (s.before, s.after))], strict=True):
         for name in ("x", "tangent", "multipliers", "closings", "slope"):
@@ -40,7 +40,7 @@ def assert_same(one: Branch, other: Branch) -> None:
         for name in ("knob", "arclength", "residuals", "liouville", "max_input_force", "max_output_force",
                      "max_output_force_elastic"):
             assert getattr(mine, name) == getattr(its, name)
-    special = [[(s.kind, s.knob, s.interval, s.multiplier, s.contact, s.event, str(s.normal_form)) for s in b.special]
+    special = [[(s.kind, s.knob, s.interval, s.multiplier, s.contact, s.gained, str(s.normal_form)) for s in b.special]
                for b in (one, other)]
     assert special[0] == special[1]
 
@@ -49,7 +49,7 @@ def assert_same(one: Branch, other: Branch) -> None:
 def test_a_branch_that_was_saved_goes_on_as_if_it_had_never_stopped(tmp_path: Path, whole: Branch, after: int) -> None:
     stopped = Continuation(begun()).run(most_points=after)
     file = save_branch(stopped, tmp_path / "b.h5")
-    assert all(len(arm.points) == after for arm in stopped.arms)
+    assert all(len(arm.points) == after for arm in stopped.half_branches)
     resumed = load_branch(file)
     assert_same(resumed, stopped)
     Continuation(resumed).run()
@@ -74,7 +74,7 @@ def test_a_cancelled_branch_stays_whole_and_can_be_continued(whole: Branch) -> N
 
     with pytest.raises(Cancelled):
         Continuation(branch, stop).run(on_point=cancel)
-    assert len(branch.points) < len(whole.points) and not all(arm.ended for arm in branch.arms)
+    assert len(branch.points) < len(whole.points) and not all(arm.ended for arm in branch.half_branches)
     Continuation(branch).run()
     assert_same(branch, whole)
 
@@ -85,7 +85,7 @@ def test_xarray_opens_a_branch_with_its_units(tmp_path: Path, whole: Branch) -> 
         assert data.knob.dims == ("point",) and data.knob.attrs["units"] == "Hz"
         assert data.max_output_force_elastic.attrs["units"] == "N"
         assert data.state.dims == ("point", "component") and data.closings.dims == ("point", "contact")
-        assert list(data.stable.values) == [int(p.stable) for arm in whole.arms for p in arm.points]
+        assert list(data.stable.values) == [int(p.stable) for arm in whole.half_branches for p in arm.points]
     with xarray.open_dataset(file, engine="h5netcdf", group="special") as data:
         assert (data.knob_low <= data.knob).all() and (data.knob <= data.knob_high).all()
         assert "period_doubling" in set(data.kind.values)
@@ -109,10 +109,10 @@ def test_a_branch_that_cannot_be_followed_says_so_with_residuals(monkeypatch: py
         raise ComputationError("Newton's residuals were 1e-3, 2e-3.", "no-convergence")
 
     monkeypatch.setattr(BranchEquations, "solve_near", nothing)
-    assert list(Continuation(branch)) == [] and branch.arms[0].ended == "lost"
-    assert branch.arms[0].step < SHORTEST_STEP
+    assert list(Continuation(branch)) == [] and branch.half_branches[0].ended == "lost"
+    assert branch.half_branches[0].step < SHORTEST_STEP
     for words in ("could not be followed beyond f = 2000 Hz", "1e-3, 2e-3", "residuals at the last orbit"):
-        assert words in branch.arms[0].reason
+        assert words in branch.half_branches[0].reason
 
 
 @pytest.mark.parametrize(("words", "sentence"), [
@@ -169,6 +169,6 @@ def test_the_command_goes_on_from_its_file(tmp_path: Path, capsys: pytest.Captur
 def test_only_a_doubling_is_switched_at() -> None:
     found = granchain_core.branch(scene("sec2"), "f", 340.0, 348.0, 1)
     grazing = next(s for s in found.special if s.kind == "grazing")
-    assert grazing.contact == 1 and grazing.gained == "open interval" and grazing.event == "separation"
+    assert grazing.contact == 1 and grazing.gained == "open interval"
     with pytest.raises(BadInput, match="not at a grazing"):
         switch_to_doubled(found, grazing)

@@ -23,8 +23,8 @@ from granchain_core.store import load_branch, save_branch
 def stands(shown: Scene, found: Branch) -> None:
     """The branch has reached its end, is right everywhere, and its last orbit is that of a search of its own."""
     last = found.points[-1]
-    assert found.arms[0].ended == "reached" and last.knob == found.axis.end and check_branch(found) == []
-    assert found.summary()[1] == found.arms[0].reason  # which says "reached" itself
+    assert found.half_branches[0].ended == "reached" and last.knob == found.axis.end and check_branch(found) == []
+    assert found.summary()[1] == found.half_branches[0].reason  # which says "reached" itself
     direct = orbit(shown.evolve(**{found.axis.knob: last.knob}), 1, found.state(last))
     np.testing.assert_allclose(direct.state.displacement, found.state(last).displacement, rtol=1e-8, atol=1e-18)
 
@@ -65,8 +65,8 @@ def test_a_file_from_before_goes_on_in_its_own_coordinate(tmp_path: Path) -> Non
     seed, axis = begun.points[0], replace(begun.axis, by_overlap=False)
     ratio = axis.slope(1.0) / begun.axis.slope(1.0)
     tangent = np.append(seed.tangent[:-1], seed.tangent[-1] / ratio)
-    begun.arms[0].points[0] = replace(seed, tangent=tangent / np.linalg.norm(tangent), slope=seed.slope * ratio)
-    old = Branch(axis, 1, begun.arms)
+    begun.half_branches[0].points[0] = replace(seed, tangent=tangent / np.linalg.norm(tangent), slope=seed.slope * ratio)
+    old = Branch(axis, 1, begun.half_branches)
     Continuation(old).run(4)
     file = save_branch(old, tmp_path / "old.h5")
     with h5py.File(file) as written:
@@ -76,7 +76,7 @@ def test_a_file_from_before_goes_on_in_its_own_coordinate(tmp_path: Path) -> Non
     for one, other in zip(Continuation(resumed).run().points, Continuation(old).run().points, strict=True):
         np.testing.assert_array_equal(one.tangent, other.tangent)
         assert one.knob == other.knob
-    assert resumed.arms[0].ended == "reached"
+    assert resumed.half_branches[0].ended == "reached"
 
 
 @pytest.mark.parametrize("changes", [{"N": 3, "f": 1500.0}, {"N": 2, "f": 2000.0}])
@@ -88,7 +88,7 @@ def test_the_end_without_damping_is_no_special_point(changes: dict[str, object],
     last = found.points[-1]
     on_circle = np.abs(np.abs(last.multipliers) - 1.0) < 1e-9
     assert on_circle.any() and not last.damped and found.points[-2].damped
-    assert last.unstable == (np.abs(last.multipliers[~on_circle]) > 1.0).sum()
+    assert last.unstable_multipliers == (np.abs(last.multipliers[~on_circle]) > 1.0).sum()
     assert all(one.knob > 1.0 for one in found.special)
     assert "counts as on it" in found.summary()[-1]
     again = load_branch(save_branch(found, tmp_path / "b.h5"))
@@ -103,7 +103,7 @@ def test_without_damping_stability_changes_only_where_multipliers_leave_the_circ
     kinds = [one.kind for one in found.special if one.kind != "grazing"]
     assert kinds == ["period_doubling"]
     for point in found.points:
-        assert point.unstable == (np.abs(point.multipliers) > 1.001).sum()
+        assert point.unstable_multipliers == (np.abs(point.multipliers) > 1.001).sum()
 
 
 @pytest.mark.parametrize(("name", "frequency", "amplitude"), [("rig", 100.0, 1e-9), ("sec2", 84.0, 1e-8)])

@@ -187,7 +187,7 @@ def test_beyond_a_torus_point_the_chain_leaves_its_orbit() -> None:
     assert torus.multiplier is not None and torus.multiplier.imag > 0.1
     stable = [p for p in found.points if p.knob > torus.knob and p.stable][-1]
     unstable = found.points[-1]
-    assert unstable.unstable == 2
+    assert unstable.unstable_multipliers == 2
     assert came_to(found, stable)[0] < 1e-4 and came_to(found, unstable)[0] > 1e-3
 
 

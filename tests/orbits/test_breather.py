@@ -103,10 +103,10 @@ def test_its_multipliers_are_among_those_of_the_whole_chain() -> None:
 
 
 def test_bright_and_faint_states_coexist_between_two_folds() -> None:
-    arm = branch(CHAIN, "A0", 1e-9, 1.2e-7, 1).arms[0]
+    arm = branch(CHAIN, "A0", 1e-9, 1.2e-7, 1).half_branches[0]
     folds = [one.knob for one in arm.special if one.kind == "fold"]
     assert arm.ended == "reached" and folds == pytest.approx([95e-9, 74e-9], abs=1e-9)
-    at = np.array([(point.knob, point.unstable, point.max_output_force) for point in arm.points])
+    at = np.array([(point.knob, point.unstable_multipliers, point.max_output_force) for point in arm.points])
     between = at[(at[:, 0] > 75e-9) & (at[:, 0] < 94e-9)]
     stable = between[between[:, 1] == 0]
     assert np.ptp(stable[:, 2]) > 1.0  # [N]: two states, a newton apart

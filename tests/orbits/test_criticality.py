@@ -61,7 +61,7 @@ def test_the_doubled_orbit_is_on_the_side_that_the_criticality_says(doubling: Br
     foot, amplitude = special.before, 2e-4
     away = np.append(doubling_direction(once, foot.x, foot.knob), 0.0)
     solved = twice.solve(once.point(foot.x, foot.knob) + amplitude * away, away)
-    unstable = special.before if special.before.unstable > special.after.unstable else special.after
+    unstable = special.before if special.before.unstable_multipliers > special.after.unstable_multipliers else special.after
     beyond = (twice.value(solved.z) - special.knob) * (unstable.knob - special.knob) > 0.0
     assert abs(twice.value(solved.z) - special.knob) > 0.5 * (special.interval[1] - special.interval[0])
     assert beyond == (criticality == "supercritical")

@@ -125,7 +125,7 @@ def test_an_orbit_whose_displacements_vanish_at_phase_0_is_found() -> None:
 def test_its_branch_is_found_too() -> None:
     """Relative to displacements at phase 0 the residual of the seed stayed at 1e-7, and there was no branch."""
     found = granchain_core.branch(VANISHING, "f", VANISHING.f, VANISHING.f + 0.5, 1)
-    assert found.arms[0].ended == "reached" and check_branch(found) == []
+    assert found.half_branches[0].ended == "reached" and check_branch(found) == []
 
 
 def test_its_multiplier_is_right_where_the_chain_settles() -> None:

@@ -93,7 +93,7 @@ def test_contacts_that_never_open_or_never_close_have_their_own_counts() -> None
 def test_a_branch_that_comes_back_to_the_least_value_of_its_knob_ends_there() -> None:
     """At that value the knob cannot decrease further, though its coordinate can."""
     found = branch(scene("sec2"), "k", 0.0, 1e5, 1, most_points=100)
-    assert found.arms[0].ended == "returned" and found.points[-1].knob == 0.0
+    assert found.half_branches[0].ended == "returned" and found.points[-1].knob == 0.0
     assert (found.column("knob")[1:-1] > 0.0).all()
 
 

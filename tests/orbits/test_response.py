@@ -21,7 +21,6 @@ def test_orbits_of_peaks_are_in_step_and_those_of_valleys_are_not(frequency: flo
     # docs/lecture.md, `sec2`: peaks 1:1 … 1:5 and the valleys between them; the stop band begins at 1970 Hz
     found = response(orbit(at(frequency)))
     assert (found.strong, found.periods) == ratio and found.in_step is in_step
-    assert found.kind == {True: "resonance", False: "anti-resonance", None: ""}[in_step]  # the older name
 
 
 def test_at_the_first_peak_the_push_meets_the_reflected_pulse() -> None:

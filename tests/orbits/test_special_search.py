@@ -18,8 +18,8 @@ def followed() -> Branch:
 
 
 def fingerprint(found: list[SpecialPoint]) -> list[tuple[object, ...]]:
-    """Kind, contact and event of special points, without their places."""
-    return [(one.kind, one.contact, one.event) for one in found]
+    """Kind, contact and gained interval of special points, without their places."""
+    return [(one.kind, one.contact, one.gained) for one in found]
 
 
 @pytest.fixture(scope="module")

@@ -96,7 +96,7 @@ def test_a_batch_of_orbits_starts_branches(client: Any) -> None:
     alone = orbit(chains[1], 1)
     assert (found[1].state.displacement == alone.state.displacement).all()
     followed = branch(chains[1], "f", 2000.0, 2010.0, found[1].period, found[1].state)
-    assert followed.arms[0].ended == "reached"
+    assert followed.half_branches[0].ended == "reached"
     assert list(found.to_pandas()["f"]) == [1900.0, 2000.0, 0.5]
 
 

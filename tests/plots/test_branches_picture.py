@@ -81,7 +81,7 @@ def test_special_points_are_told_with_their_uncertainty(branch: Branch) -> None:
 
 
 def test_what_grows_piece_by_piece_is_what_is_drawn_at_once(branch: Branch) -> None:
-    arm, growth = branch.arms[0], BranchRows(max(p.max_output_force_elastic for p in branch.points))
+    arm, growth = branch.half_branches[0], BranchRows(max(p.max_output_force_elastic for p in branch.points))
     rows: dict[str, list[float]] = {"x": [], "y": [], "place": []}
     lines: dict[tuple[str, int], list[float]] = {}
     for i, point in enumerate(arm.points):

@@ -63,11 +63,6 @@ def test_both_packages_have_the_same_names_but_for_pictures_and_dashboard() -> N
         granchain.sceen  # noqa: B018
 
 
-@pytest.mark.parametrize(("older", "name"), granchain_core.OLDER_NAMES.items())
-def test_older_names_are_the_same_functions(older: str, name: str) -> None:
-    assert getattr(granchain, older) is getattr(granchain_core, older) is getattr(granchain_core, name)
-
-
 def alone(program: str) -> str:
     """What a program prints in a process of its own."""
     return subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True, timeout=120).stdout

@@ -41,7 +41,7 @@ def test_an_error_of_the_map_moves_its_fixed_point_by_more(monkeypatch: pytest.M
     monkeypatch.setattr(recording, "refined_orbit", called_as(recording.refined_orbit, (engine, 0.0)))
     stated = []
     for decay in (0.1, 0.9):
-        settling.regime = replace(settling.regime, decay=decay, multiplier=None)
+        settling.regime = replace(settling.regime, observed_contraction=decay, multiplier=None)
         stated.append(recording.recorded_orbit(settling, 16, 0.0, "rest").run.displacement_error)
     assert stated[1] == pytest.approx(9.0 * stated[0], rel=1e-12)
 

@@ -21,7 +21,7 @@ def test_changes_lost_in_rounding_leave_a_distance() -> None:
     """A decay by 0.97 that went below a rounding of 1e-7: the distance left may be 1e-7·0.97/0.03, and is stated."""
     states = 1.0 + 0.97 ** np.arange(600)[:, None, None] * np.ones((1, 2, 3))
     found = regime_criteria.find_period(states, rounding=1e-7)
-    assert found.name == "periodic" and found.decay == pytest.approx(0.97, abs=0.01)
+    assert found.name == "periodic" and found.observed_contraction == pytest.approx(0.97, abs=0.01)
     assert found.distance is not None and found.distance >= 1e-7 * 0.96 / 0.04
 
 
@@ -31,7 +31,7 @@ def test_a_long_locked_orbit_is_periodic() -> None:
     states = np.stack([np.stack([turns.real, turns.imag], 1), np.stack([turns.imag, -turns.real], 1)], 1)
     found = regime_criteria.find_period(states)
     assert (found.name, found.period) == ("periodic", 18)
-    assert found.decay == pytest.approx(0.9**18, rel=0.1)
+    assert found.observed_contraction == pytest.approx(0.9**18, rel=0.1)
 
 
 def test_growth_within_its_error_is_no_chaos() -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -37,7 +37,7 @@ def test_the_evidence_for_a_regime_comes_back_and_may_be_missing(tmp_path: Path,
                    return_distance=0.01, return_limit=0.15, window_ratios=(0.99, 1.01))
     kept = replace(result, regime=rich)
     assert load(save(kept, tmp_path / "a.h5")).regime == rich
-    old = {name: value for name, value in asdict(rich).items() if not name.startswith(("return", "window", "lyapunov_"))}
+    old = {name: value for name, value in rich.to_json().items() if not name.startswith(("return", "window", "lyapunov_"))}
     attributes = {**kept.attributes(), "regime": json.dumps(old)}
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(type(kept), "attributes", lambda self: attributes)

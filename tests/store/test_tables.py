@@ -72,7 +72,7 @@ def result(kind: str) -> Labelled:
 
 
 def test_every_public_class_with_numbers_is_among_them() -> None:
-    classes = {name for name in granchain_core.__all__ if name not in granchain_core.OLDER_NAMES and isinstance(getattr(granchain_core, name), type) and
+    classes = {name for name in granchain_core.__all__ if isinstance(getattr(granchain_core, name), type) and
                issubclass(getattr(granchain_core, name), Labelled)}
     assert classes == {kind.split()[0] for kind in RESULTS}
 

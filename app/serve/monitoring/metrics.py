@@ -13,6 +13,7 @@ from typing import Literal, NamedTuple
 
 from granchain_core.version import __version__
 
+from ...former_names import former_metric
 from .process import cpu_seconds, most_descriptors, open_descriptors, os_threads, resident_memory, start_time
 
 #: Upper bounds of the histogram of answers [s].
@@ -40,15 +41,6 @@ COUNTERS = {
     "refused_messages": "Messages that no page sends, too many frames, and too much that waits to be sent; each closed "
                         "its connection.",
     "errors": "Unexpected failures; each is in the log.",
-}
-
-
-#: Former names of metrics, which `/metrics` still has.
-FORMER_NAMES = {
-    "granchain_sessions": "granchain_visitors",
-    "granchain_sessions_opened_total": "granchain_visits_total",
-    "granchain_refused_sessions_total": "granchain_refused_visitors_total",
-    "process_resident_memory_bytes": "granchain_resident_memory_bytes",
 }
 
 
@@ -175,12 +167,11 @@ class Metrics:
         lines: list[str] = []
         for metric in self.table():
             value = metric.read()
-            for name in filter(None, (metric.full_name, FORMER_NAMES.get(metric.full_name))):
-                lines += [f"# HELP {name} {metric.help}", f"# TYPE {name} {metric.kind}"]
-                if isinstance(value, Mapping):
-                    lines.extend(f'{name}{{{metric.label}="{key}"}} {_written(one)}' for key, one in value.items())
-                else:
-                    lines.append(f"{name} {_written(value)}")
+            lines += _lines(metric.full_name, metric, metric.label, value)
+            if former := former_metric(metric.full_name):
+                was = {former.values.get(key, key): one for key, one in value.items()} if isinstance(value, Mapping) \
+                    else value
+                lines += _lines(former.former, metric, former.label or metric.label, was)
         lines += [f"# HELP {HISTOGRAM} {HISTOGRAM_HELP}", f"# TYPE {HISTOGRAM} histogram"]
         total = 0
         for bound, count in zip((*BUCKETS, float("inf")), self.answers, strict=True):
@@ -189,6 +180,14 @@ class Metrics:
             lines.append(f'{HISTOGRAM}_bucket{{le="{upper}"}} {total}')
         lines += [f"{HISTOGRAM}_sum {_written(self.answers_total)}", f"{HISTOGRAM}_count {total}"]
         return "\n".join(lines) + "\n"
+
+
+def _lines(name: str, metric: Metric, label: str, value: float | Mapping[str, float]) -> list[str]:
+    """A metric under a name, with its help text."""
+    head = [f"# HELP {name} {metric.help}", f"# TYPE {name} {metric.kind}"]
+    if isinstance(value, Mapping):
+        return head + [f'{name}{{{label}="{key}"}} {_written(one)}' for key, one in value.items()]
+    return [*head, f"{name} {_written(value)}"]
 
 
 def _written(value: float) -> str:

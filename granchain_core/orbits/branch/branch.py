@@ -18,6 +18,7 @@ import numpy as np
 
 from ...errors import BadInput
 from ...execution.stop import Stop
+from ...former_names import with_former_names
 from ...inputs.checks import whole_number
 from ...scene import Amplitude, Scene
 from ...scene.state import State
@@ -36,6 +37,7 @@ from .tables import branch_tables
 MOST_POINTS = 20_000
 
 
+@with_former_names
 @dataclass(frozen=True, eq=False, repr=False)
 class Branch(Labelled):
     """A branch of periodic orbits over one knob.
@@ -68,11 +70,6 @@ class Branch(Labelled):
     period: int
     half_branches: tuple[HalfBranch, ...]
     period_note: str = ""
-
-    @property
-    def arms(self) -> tuple[HalfBranch, ...]:
-        """The older name of `half_branches`."""
-        return self.half_branches
 
     @property
     def scene(self) -> Scene:

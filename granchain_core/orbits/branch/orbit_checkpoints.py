@@ -14,12 +14,13 @@ from typing import Any
 import numpy as np
 
 from ...execution.checkpoints import Kept, digest_of
+from ...former_names import EVENTS
 from .axis import STATIC_OVERLAP, KnobAxis
 from .branch import Branch
 from .half_branch import HalfBranch
 from .normal_forms import EARLIER_REASONS, NormalForm
 from .point import BranchPoint
-from .special import EVENTS, SpecialPoint
+from .special import SpecialPoint
 
 #: Entries of a point that are arrays.
 _ARRAYS = ("x", "tangent", "multipliers", "closings", "slope", "turns")
@@ -109,7 +110,8 @@ def special_as_json(one: SpecialPoint) -> dict[str, Any]:
     """A special point as JSON has it; `special_from_json` gives it back to the last bit."""
     multiplier = None if one.multiplier is None else [complex(one.multiplier).real, complex(one.multiplier).imag]
     return {"kind": one.kind, "knob": one.knob, "interval": list(one.interval), "before": _as_json(one.before),
-            "after": _as_json(one.after), "multiplier": multiplier, "contact": one.contact, "event": one.event,
+            "after": _as_json(one.after), "multiplier": multiplier, "contact": one.contact,
+            "event": one.gained and EVENTS[one.gained],
             "normal_form": None if one.normal_form is None else asdict(one.normal_form)}
 
 

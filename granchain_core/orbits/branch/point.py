@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...errors import ComputationError
+from ...former_names import with_former_names
 from ...integrate import Engine, dop853_setting
 from ...integrate.scaling import scale_chain
 from ...kernels.error_control.orbit_record import OrbitRecord, record_orbit
@@ -32,6 +33,7 @@ _CLOSED = -1
 CONTACT, TURN_SIGN, TIME, OVERLAP = range(4)
 
 
+@with_former_names
 @dataclass(frozen=True, eq=False)
 class BranchPoint:
     """A periodic orbit on a branch.
@@ -68,11 +70,6 @@ class BranchPoint:
     def unstable_multipliers(self) -> int:
         """Number of multipliers outside the unit circle; without damping, outside by more than `ON_CIRCLE`."""
         return int((np.abs(self.multipliers) >= self._circle).sum())
-
-    @property
-    def unstable(self) -> int:
-        """The older name of `unstable_multipliers`."""
-        return self.unstable_multipliers
 
     @property
     def _circle(self) -> float:

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...errors import ComputationError
+from ...former_names import with_former_names
 from .axis import KnobAxis
 from .between import Between
 from .normal_forms import NOT_DECIDED, NormalForm
@@ -53,8 +54,6 @@ SPECIAL_KINDS = tuple(kind.name for kind in KINDS)
 #: Where stability changes.
 BIFURCATIONS = SPECIAL_KINDS[:3]
 _WORDS = {kind.name: kind.words for kind in KINDS}
-#: What a contact has once more on one side of a grazing, and how JSON and files spell it.
-EVENTS = {"closed interval": "touch", "open interval": "separation"}
 #: [branch] Width of an interval that is narrow enough, relative to the knob or to a thousandth of the range's larger
 #: end.
 RELATIVE_WIDTH = 1e-5
@@ -76,6 +75,7 @@ _LEVELS_TO_MIDDLE = 5
 _MOST_LEVELS = 60
 
 
+@with_former_names
 @dataclass(frozen=True, eq=False)
 class SpecialPoint:
     """A special point: its kind, the interval of the knob that holds it, and the two orbits around it.
@@ -96,11 +96,6 @@ class SpecialPoint:
     contact: int | None = None
     gained: str | None = None
     normal_form: NormalForm | None = None
-
-    @property
-    def event(self) -> str | None:
-        """The older name of `gained`, as JSON and files spell it: "touch" for a closed interval, else "separation"."""
-        return None if self.gained is None else EVENTS[self.gained]
 
     @property
     def gained_side(self) -> str | None:
@@ -322,7 +317,7 @@ def _passing(a: BranchPoint, b: BranchPoint) -> list[complex]:
 
 
 def _gained(a: BranchPoint, b: BranchPoint, contact: int) -> str:
-    """The interval of a contact that one of two orbits has and the other has not, a key of `EVENTS`."""
+    """Of a contact, the "closed interval" or "open interval" that one of two orbits has and the other has not."""
     more, fewer = _more_and_fewer(a, b, contact)
     if _closings(fewer, contact) == 0:
         return "open interval" if fewer.closings[contact] < 0 else "closed interval"

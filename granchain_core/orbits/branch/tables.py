@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ...former_names import EVENTS
 from ...scene.quantities import QUANTITIES
 from ...tables import MAXIMA, Column, Table, axis, contact_axis, force_columns
 from ...tables.words import multiplier_columns
@@ -98,7 +99,7 @@ def _special(over: KnobAxis, special: Sequence[SpecialPoint], half_branches: Seq
                                   "multiplier that passes the unit circle, real part"),
         "multiplier_imag": Column(multipliers.imag, along, "1", "its imaginary part"),
         "contact": Column(contacts, along, "1", "contact that grazes, -1 if none"),
-        "event": Column(words([s.event or "" for s in special]), along, "",
+        "event": Column(words(["" if s.gained is None else EVENTS[s.gained] for s in special]), along, "",
                         "what the contact has once more on one side: touch (a closed interval) or separation (an open "
                         "one)"),
         "criticality": Column(words([form.criticality for form in forms]), along, "",

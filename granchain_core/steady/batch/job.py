@@ -233,14 +233,16 @@ def _with_period(regime: Regime, period: int) -> Regime:
     if regime.period is None or period == regime.period:
         return regime
     seen = regime.observed_contraction
-    return replace(regime, period=period, decay=None if seen is None else seen ** (period / regime.period))
+    contraction = None if seen is None else seen ** (period / regime.period)
+    return replace(regime, period=period, observed_contraction=contraction)
 
 
 def _periodic(check: np.ndarray, slowest_decay: float, periods_run: int) -> Regime:
     """The periodic regime of a coarse run, from its last check; `followed` where extrapolations led to it."""
     period, contraction, distance = check
-    return Regime(name="periodic", period=int(period), decay=float(contraction) if contraction >= 0.0 else None,
-                  distance=float(distance), periods_run=periods_run, followed=bool(slowest_decay > 0.0),
+    seen = float(contraction) if contraction >= 0.0 else None
+    return Regime(name="periodic", period=int(period), observed_contraction=seen, distance=float(distance),
+                  periods_run=periods_run, followed=bool(slowest_decay > 0.0),
                   followed_by="extrapolation" if slowest_decay > 0.0 else None)
 
 

@@ -37,7 +37,7 @@ def _packed(points: list[CurvePoint]) -> bytes:
 
 def _as_json(point: CurvePoint) -> dict[str, Any]:
     state = point.state
-    return {**{name: float(getattr(point, name)) for name in _NUMBERS}, "regime": asdict(point.regime),
+    return {**{name: float(getattr(point, name)) for name in _NUMBERS}, "regime": point.regime.to_json(),
             "force_errors": asdict(point.force_errors), "failure": point.failure, "status": point.status,
             "state": [state.displacement.tolist(), state.velocity.tolist(), state.phase]}
 
@@ -47,6 +47,6 @@ def _point(record: dict[str, Any]) -> CurvePoint:
     for name in ("lyapunov", "window_ratios"):  # the second is missing where an earlier version wrote
         regime[name] = tuple(regime[name]) if regime.get(name) else None
     displacement, velocity, phase = record["state"]
-    return CurvePoint(**{name: record[name] for name in _NUMBERS}, regime=Regime(**regime),
+    return CurvePoint(**{name: record[name] for name in _NUMBERS}, regime=Regime.from_json(regime),
                       force_errors=ForceErrors(**record["force_errors"]), failure=record["failure"],
                       status=record["status"], state=State(np.array(displacement), np.array(velocity), phase))

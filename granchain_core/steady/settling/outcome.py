@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 from ...results.regime import Regime
 from ...results.run import GIVEN_STATE, Run
@@ -65,7 +65,7 @@ class Settled(Labelled):
 
     def attributes(self) -> dict[str, Attribute]:
         """The attributes of its run, with the regime of the steady state."""
-        return {**self.run.attributes(), "regime": json.dumps(asdict(self.regime))}
+        return {**self.run.attributes(), "regime": json.dumps(self.regime.to_json())}
 
     def summary(self) -> list[str]:
         """Regime, largest forces and errors."""

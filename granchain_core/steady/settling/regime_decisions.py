@@ -102,14 +102,14 @@ class Decisions:
         if orbit.stable:
             return Decision(_on(orbit, regime), orbit.point.x if unconfirmed else None)
         return self._beside(orbit, regime) or Decision(
-            replace(regime, name="unsettled", period=None, distance=None, decay=None))
+            replace(regime, name="unsettled", period=None, distance=None, observed_contraction=None))
 
     def _beside(self, orbit: NearbyOrbit, regime: Regime) -> Decision | None:
         """The decision by an orbit near the motion, if it allows one."""
         if orbit.approached():
-            return Decision(replace(regime, name="periodic", period=orbit.period, multiplier=orbit.modulus, decay=None,
-                                    distance=orbit.orbit_error, followed=True, followed_by="Newton",
-                                    approaches=None), orbit.point.x)
+            return Decision(replace(regime, name="periodic", period=orbit.period, multiplier=orbit.modulus,
+                                    observed_contraction=None, distance=orbit.orbit_error, followed=True,
+                                    followed_by="Newton", approaches=None), orbit.point.x)
         self._leaves = self._leaves or orbit.unstable
         if not orbit.unstable or self._departures >= _MOST_DEPARTURES:
             return None
@@ -141,8 +141,8 @@ def _decays_clearly(regime: Regime) -> bool:
 def _on(orbit: NearbyOrbit, regime: Regime) -> Regime:
     """The periodic regime of a motion on a stable orbit that Newton's method has found from it."""
     # that of the longer period says nothing of a shorter one
-    decay = regime.observed_contraction if orbit.period == regime.period else None
-    return replace(regime, period=orbit.period, multiplier=orbit.modulus, decay=decay)
+    seen = regime.observed_contraction if orbit.period == regime.period else None
+    return replace(regime, period=orbit.period, multiplier=orbit.modulus, observed_contraction=seen)
 
 
 def _orbits_beside(engine: Engine, strobes: np.ndarray) -> Iterator[NearbyOrbit]:

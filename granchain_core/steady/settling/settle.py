@@ -130,7 +130,3 @@ def _checked(scene: Scene, samples: int) -> int:
     """The number of samples as an int. Raises `BadInput` for another number, or for no scene."""
     require_scene(scene)
     return whole_number("samples =", samples, 1, MOST_SAMPLES)
-
-
-#: The older name of `settle`.
-settled = settle

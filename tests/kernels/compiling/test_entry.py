@@ -63,7 +63,7 @@ def test_a_workspace_of_another_type_has_a_specialization_of_its_own() -> None:
 def test_curves_and_branches() -> None:
     chain = scene("sec2").evolve(N=2, f=2000.0)
     assert len(resonance_curve(chain, np.linspace(500.0, 3000.0, 12)).points) == 12
-    assert branch(chain, "f", 1900.0, 2100.0, most_points=5).arms[0].points
+    assert branch(chain, "f", 1900.0, 2100.0, most_points=5).half_branches[0].points
 
 
 def test_an_argument_of_another_type_is_refused() -> None:

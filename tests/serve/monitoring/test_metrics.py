@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 import waiting
 
-from app import server
+from app import former_names, server
 from app.serve.computing.cpu_time import CpuTime
 from app.serve.computing.turns import Turns
 from app.serve.computing.worker_pools import (
@@ -23,7 +23,7 @@ from app.serve.computing.worker_pools import (
     SESSION_WORK,
     WorkerPool,
 )
-from app.serve.monitoring.metrics import COUNTERS, FORMER_NAMES, METRICS, Metric, Metrics
+from app.serve.monitoring.metrics import COUNTERS, METRICS, Metric, Metrics
 from granchain_core import Stop, __version__
 
 ROOT = Path(__file__).parents[3]
@@ -129,11 +129,12 @@ def test_the_release_that_answers_is_named() -> None:
 def test_what_was_renamed_is_found_as_it_was_called() -> None:
     server.add_shared_metrics()
     names = {metric.full_name for metric in METRICS.table()}
-    assert set(FORMER_NAMES) <= names and not names & {*FORMER_NAMES.values()}
+    assert {row.name for row in former_names.METRICS} <= names and not names & {row.former for row in former_names.METRICS}
     text = METRICS.text()
-    for name, former in FORMER_NAMES.items():
-        found = [re.search(rf"^{one} (\S+)$", text, re.MULTILINE) for one in (name, former)]
-        assert found[0] is not None and found[1] is not None and found[0][1] == found[1][1], former
+    for row in former_names.METRICS:
+        if not row.label:
+            found = [re.search(rf"^{one} (\S+)$", text, re.MULTILINE) for one in (row.name, row.former)]
+            assert found[0] is not None and found[1] is not None and found[0][1] == found[1][1], row.former
     for pool in POOLS:
         name = "visitors" if pool is SESSION_WORK else pool.name
         assert f'\ngranchain_queue_busy{{queue="{name}"}} ' in text and f'\ngranchain_queue_waiting{{queue="{name}"}} ' in text

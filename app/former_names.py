@@ -1,0 +1,66 @@
+"""Former names of the command line and the server that still work, a row for each. Delete a row, and its name is gone.
+
+docs/python.md lists those of commands, options and keys of JSON, docs/deployment.md those of metrics.
+granchain_core/former_names.py has the others.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any, NamedTuple
+
+from granchain_core.former_names import FormerName
+
+#: Commands; former ones are on no list.
+COMMANDS = (FormerName("strobes", "bifurcation-diagram", "stays"),)
+#: Options.
+OPTIONS = (FormerName("--most-visitors", "--max-sessions", "stays"),)
+#: Keys of JSON, after the command that prints them.
+KEYS = (
+    FormerName("pulse.speed_beads", "pulse.speed_beads_s", "stays"),
+    FormerName("pulse.speed", "pulse.speed_m_s", "stays"),
+)
+
+
+class FormerMetric(NamedTuple):
+    """A former name of a metric; its label, and its values of the label that have changed, where they have."""
+
+    former: str
+    name: str
+    label: str = ""
+    values: Mapping[str, str] = MappingProxyType({})
+
+
+#: Metrics.
+METRICS = (
+    FormerMetric("granchain_visitors", "granchain_sessions"),
+    FormerMetric("granchain_visits_total", "granchain_sessions_opened_total"),
+    FormerMetric("granchain_refused_visitors_total", "granchain_refused_sessions_total"),
+    FormerMetric("granchain_resident_memory_bytes", "process_resident_memory_bytes"),
+    FormerMetric("granchain_queue_waiting", "granchain_pool_queued", "queue", {"session_work": "visitors"}),
+    FormerMetric("granchain_queue_busy", "granchain_pool_busy_threads", "queue", {"session_work": "visitors"}),
+)
+
+_COMMANDS = {row.former: row.name for row in COMMANDS}
+_METRICS = {row.name: row for row in METRICS}
+
+
+def present_command(word: str) -> str:
+    """The present name of a command, which may be `word` itself."""
+    return _COMMANDS.get(word, word)
+
+
+def names_of_option(name: str) -> tuple[str, ...]:
+    """An option's name and its former names."""
+    return (name, *(row.former for row in OPTIONS if row.name == name))
+
+
+def with_former_keys(command: str, said: dict[str, Any]) -> dict[str, Any]:
+    """A command's JSON object with the former names of its keys."""
+    return said | {row.last: said[row.name.rpartition(".")[2]] for row in KEYS if row.former.startswith(f"{command}.")}
+
+
+def former_metric(name: str) -> FormerMetric | None:
+    """The former name of a metric, if it has one."""
+    return _METRICS.get(name)

@@ -1,0 +1,110 @@
+"""Former names that still work, a row for each. Delete a row, and its name is gone from code, files and docs.
+
+Everything is called by its present name elsewhere: modules, classes, tables of files and the environment take former
+names from here, and docs/python.md lists them. app/former_names.py has those of the command line and the server.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+from typing import Any, NamedTuple, TypeVar
+
+_Class = TypeVar("_Class", bound=type)
+
+#: What JSON and files say for `SpecialPoint.gained`.
+EVENTS = {"closed interval": "touch", "open interval": "separation"}
+
+
+class FormerName(NamedTuple):
+    """A former name beside the present one, and the version that removes it; "stays" if none does.
+
+    `values` has the former values where those have changed too.
+    """
+
+    former: str
+    name: str
+    removed_in: str = "1.0"
+    values: Mapping[Any, Any] = MappingProxyType({})
+
+    @property
+    def last(self) -> str:
+        """The former name without its class or table."""
+        return self.former.rpartition(".")[2]
+
+    def of(self, owner: Any) -> Any:
+        """The value under the former name, from the owner of the present name."""
+        value = getattr(owner, self.name.rpartition(".")[2])
+        return self.values.get(value, value) if self.values else value
+
+
+#: Names in modules of this package.
+NAMES = (
+    FormerName("settled", "settle"),
+    FormerName("periodic_orbit", "orbit"),
+    FormerName("continue_branch", "branch"),
+    FormerName("diagram", "parameter_map"),
+    FormerName("Diagram", "ParameterMap"),
+    FormerName("iter_diagram", "iter_parameter_map"),
+    FormerName("strobe_diagram", "bifurcation_diagram"),
+    FormerName("StrobeDiagram", "BifurcationDiagram"),
+    FormerName("NumbersFailed", "ComputationError"),
+    FormerName("Arm", "HalfBranch"),
+    FormerName("Setting", "MethodSetting"),
+)
+#: Attributes of classes.
+ATTRIBUTES = (
+    FormerName("Branch.arms", "Branch.half_branches"),
+    FormerName("BranchPoint.unstable", "BranchPoint.unstable_multipliers"),
+    FormerName("SpecialPoint.event", "SpecialPoint.gained", values=EVENTS),
+    FormerName("Response.kind", "Response.in_step", values={True: "resonance", False: "anti-resonance", None: ""}),
+    FormerName("Orbit.changes", "Orbit.contact_events"),
+    FormerName("Regime.contraction", "Regime.assumed_contraction"),
+    FormerName("Regime.decay", "Regime.observed_contraction"),
+    FormerName("Pulse.speed", "Pulse.speed_beads_s"),
+    FormerName("Pulse.speed_in_metres", "Pulse.speed_m_s"),
+)
+#: Columns in the tables of results, and so in files.
+COLUMNS = (
+    FormerName("pulse.speed", "pulse.speed_beads_s", "stays"),
+    FormerName("pulse.speed_in_metres", "pulse.speed_m_s", "stays"),
+)
+#: Environment variables.
+VARIABLES = (FormerName("GRANCHAIN_LANES", "GRANCHAIN_BATCH_SIZE", "stays"),)
+#: Extras of the package, which pyproject.toml has.
+EXTRAS = (FormerName("granchain[files]", "granchain[frames]"),)
+
+ALL = (*NAMES, *ATTRIBUTES, *COLUMNS, *VARIABLES, *EXTRAS)
+
+_PRESENT = {row.former: row.name for row in NAMES}
+
+
+def present(name: str) -> str:
+    """The present name of something in a module, which may be `name` itself."""
+    return _PRESENT.get(name, name)
+
+
+def of_module(module: str) -> Callable[[str], Any]:
+    """The `__getattr__` of a module: former names of what the module has."""
+
+    def found(name: str) -> Any:
+        has = vars(sys.modules[module])
+        if name in _PRESENT and _PRESENT[name] in has:
+            return has[_PRESENT[name]]
+        raise AttributeError(f"module {module!r} has no attribute {name!r}")
+
+    return found
+
+
+def with_former_names(one: _Class) -> _Class:
+    """Class decorator: the attributes under their former names too."""
+    for row in ATTRIBUTES:
+        if row.former.startswith(f"{one.__name__}."):
+            setattr(one, row.last, property(row.of, doc=f"The former name of `{row.name.rpartition('.')[2]}`."))
+    return one
+
+
+def former_columns(table: str) -> dict[str, str]:
+    """The former names of a table's columns, each with the present one."""
+    return {row.last: row.name.rpartition(".")[2] for row in COLUMNS if row.former.startswith(f"{table}.")}
