@@ -186,9 +186,9 @@ class Controller:
         """See `PageHost`."""
         return self.curves.measured(measured)
 
-    def show_measured_series(self, found: Overlay | None) -> None:
+    def show_measured_series(self, overlay: Overlay | None) -> None:
         """See `PageHost`."""
-        self.views.trains.measured(found)
+        self.views.trains.measured(overlay)
 
     def show(self, scene: Scene, state: State | None = None, mode: str = "settled") -> None:
         """See `PageHost`."""

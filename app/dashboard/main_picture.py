@@ -142,11 +142,11 @@ class MainPicture:
     # In a worker thread
 
     @staticmethod
-    def _answers(work: Callable[[TurnFlag], Iterator[Settled | LiveStep]], asked: _PictureRequest | None,
+    def _answers(work: Callable[[TurnFlag], Iterator[Settled | LiveStep]], request: _PictureRequest | None,
                  stop: TurnFlag) -> Iterator[_Answer]:
         """The pictures of `work`, each with the request that it answers."""
         for picture in work(stop):
-            yield _Answer(picture, asked)
+            yield _Answer(picture, request)
 
     def _keep_newest(self, result: object) -> None:
         """Keep a new picture for the event loop, in place of an older picture that the loop has not fetched."""
@@ -167,12 +167,12 @@ class MainPicture:
         if newest is not None:
             self._accept(*newest)
 
-    def _accept(self, result: Settled | LiveStep, asked: _PictureRequest | None = None) -> None:
+    def _accept(self, result: Settled | LiveStep, request: _PictureRequest | None = None) -> None:
         """Offer a picture to the browser, if it belongs to the present mode and scene."""
         live = isinstance(result, LiveStep)
         if live != (self._session.mode == "live") or result.run.scene.name != self._session.scene.name:
             return
-        self._count_answer(asked)
+        self._count_answer(request)
         if isinstance(result, Settled):
             self._session.settled = result
             self._picture_ready(result)
@@ -188,11 +188,11 @@ class MainPicture:
         self._asked = None
         self._host.show_failure(error)
 
-    def _count_answer(self, asked: _PictureRequest | None) -> None:
+    def _count_answer(self, request: _PictureRequest | None) -> None:
         """Count how long the first picture of a request took, and say so if the server is busy with many sessions."""
-        if asked is None or asked.number <= self._answered:
+        if request is None or request.number <= self._answered:
             return
-        self._answered, seconds = asked.number, time.monotonic() - asked.at
+        self._answered, seconds = request.number, time.monotonic() - request.at
         METRICS.answered(seconds)
         words = f"The server is busy: this picture took {seconds:.1f} s." if METRICS.busy else ""
         self._views.status_line.update_state(busy=words)

@@ -262,11 +262,11 @@ class TurnFlag(Flag):
 
     def in_turns(self, results: Iterable[Result]) -> Iterator[Result]:
         """The results, each computed while a turn is held."""
-        found = iter(results)
+        remaining = iter(results)
         while True:
             with self.held():
                 try:
-                    result = next(found)
+                    result = next(remaining)
                 except StopIteration:
                     return
             self._spent = math.inf

@@ -178,7 +178,8 @@ class Metrics:
             for name in filter(None, (metric.full_name, FORMER_NAMES.get(metric.full_name))):
                 lines += [f"# HELP {name} {metric.help}", f"# TYPE {name} {metric.kind}"]
                 if isinstance(value, Mapping):
-                    lines.extend(f'{name}{{{metric.label}="{key}"}} {_written(one)}' for key, one in value.items())
+                    lines.extend(f'{name}{{{metric.label}="{key}"}} {_written(number)}'
+                                 for key, number in value.items())
                 else:
                     lines.append(f"{name} {_written(value)}")
         lines += [f"# HELP {HISTOGRAM} {HISTOGRAM_HELP}", f"# TYPE {HISTOGRAM} histogram"]
