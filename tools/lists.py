@@ -14,7 +14,7 @@ from app import library_internals
 from app.scripts import FILES
 from app.serve.computing.priorities import ADDED_NICENESS
 from app.serve.computing.worker_pools import POOLS
-from app.serve.monitoring.metrics import FORMER_NAMES, HISTOGRAM, HISTOGRAM_HELP, METRICS
+from app.serve.monitoring.metrics import FORMER_NAMES, HISTOGRAMS, METRICS, STAGE_TIMES
 from app.server import add_shared_metrics
 from granchain_core import scene, scene_names
 from granchain_core.integrate import METHODS
@@ -110,4 +110,5 @@ def table_of_metrics() -> str:
         label, former = f", label `{metric.label}`" if metric.label else "", FORMER_NAMES.get(metric.full_name)
         also = f" Also under its former name `{former}`." if former else ""
         rows.append(f"| `{metric.full_name}`{label} | {metric.kind} | {metric.help}{also} |")
-    return "\n".join(["| metric | kind | what it is |", "|---|---|---|", *rows, f"| `{HISTOGRAM}` | histogram | {HISTOGRAM_HELP} |"])
+    rows += [f"| `{name}`{', label `stage`' if name == STAGE_TIMES else ''} | histogram | {text} |" for name, text in HISTOGRAMS.items()]
+    return "\n".join(["| metric | kind | what it is |", "|---|---|---|", *rows])

@@ -75,7 +75,7 @@ class Controller:
             "ready": self._ready, "window-shown": lambda _: self.pictures.restart(),
             "compact": lambda m: views.set_compact(bool(m.get("value"))),
             "visible": self._visible,
-            "painted": lambda m: self.pictures.painted(m.get("number")),
+            "painted": lambda m: self.pictures.painted(m.get("number"), m.get("took")),
             **self._scenes.actions,
             "gallery": self._send_gallery,
             **self.sentences.actions,

@@ -155,6 +155,7 @@ class Chain {
   }
 
   load(frames) {
+    const arrived = performance.now();
     Object.assign(frames, unpack(frames).series);
     document.getElementById("dashboard").classList.remove("starting");
     this.showScale(frames);
@@ -170,11 +171,12 @@ class Chain {
     this.clock.show(frames);
     this.mark();
     // Bokeh paints in the next animation frame.
-    requestAnimationFrame(() => afterFrame(() => this.painted(frames)));
+    requestAnimationFrame(() => afterFrame(() => this.painted(frames, performance.now() - arrived)));
   }
 
-  painted({ number, live, sent }) {
-    this.model.send_msg({ do: "painted", number });
+  // `took` is the time since this picture arrived [ms]. The server cannot measure it, and clocks of two machines differ.
+  painted({ number, live, sent }, took) {
+    this.model.send_msg({ do: "painted", number, took });
     window.granchain.emit("painted", { number, live, lag: Date.now() - 1000 * sent });
   }
 

@@ -6,6 +6,7 @@ import asyncio
 import math
 import threading
 import time
+from bisect import bisect_left
 from collections import deque
 from collections.abc import Callable, Mapping
 from functools import partial
@@ -15,12 +16,27 @@ from granchain_core.version import __version__
 
 from .process import cpu_seconds, most_descriptors, open_descriptors, os_threads, resident_memory, start_time
 
-#: Upper bounds of the histogram of answers [s].
+#: Upper bounds of both histograms [s].
 BUCKETS = (0.025, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0)
-#: The name and the help text of this histogram.
-HISTOGRAM = "granchain_answer_seconds"
-HISTOGRAM_HELP = ("From the action of a change of scene, knob, start or mode on the event loop until its first picture "
-                  "is offered to the browser: without network and painting.")
+#: The stages of a picture in their order, and what the time of each is.
+STAGES = {
+    "kernels": "waiting for kernels that are being compiled",
+    "turn": "waiting to compute: for the computation before it, a thread, a time slice (turn)",
+    "compute": "computing",
+    "prepare": "making the arrays that are drawn",
+    "loop": "waiting for the event loop",
+    "pace": "waiting until the browser has painted earlier pictures",
+    "travel": "on the way to the browser and back, with waits for the event loops of both",
+    "paint": "in the browser's script until it is on the screen",
+}
+#: The histograms: name and help text.
+ANSWERS, STAGE_TIMES = "granchain_answer_seconds", "granchain_picture_stage_seconds"
+HISTOGRAMS = {
+    ANSWERS: "Latency from the action of a change of scene, knob, start or mode on the event loop until its first "
+             "picture is offered to the browser: without network and painting.",
+    STAGE_TIMES: "Time of each stage of these pictures that were painted: "
+                 f"{'; '.join(f'`{stage}`, {words}' for stage, words in STAGES.items())}.",
+}
 #: Time between two measurements of the event loop's lag [s].
 _LAG_INTERVAL = 0.25
 #: Number of measurements that are kept, of ten seconds.
@@ -72,6 +88,29 @@ class Metric(NamedTuple):
         return f"{self.prefix}_{self.name}"
 
 
+class Histogram:
+    """Durations counted by `BUCKETS`; the caller holds a lock."""
+
+    def __init__(self) -> None:
+        self.counts = [0] * (len(BUCKETS) + 1)
+        self.total = 0.0
+
+    def add(self, seconds: float) -> None:
+        """Count a duration."""
+        self.counts[bisect_left(BUCKETS, seconds)] += 1
+        self.total += seconds
+
+    def lines(self, name: str, label: str = "") -> list[str]:
+        """The lines of Prometheus's text format; `label` is a label and its value."""
+        lines, count = [], 0
+        for bound, counted in zip((*BUCKETS, math.inf), self.counts, strict=True):
+            count += counted
+            upper = "+Inf" if bound == math.inf else f"{bound:g}"
+            lines.append(f'{name}_bucket{{{label}{"," * bool(label)}le="{upper}"}} {count}')
+        labels = f"{{{label}}}" if label else ""
+        return [*lines, f"{name}_sum{labels} {_written(self.total)}", f"{name}_count{labels} {count}"]
+
+
 class Metrics:
     """Counts since the start; answers are times from a change to the first picture of it. Any thread may count."""
 
@@ -80,8 +119,8 @@ class Metrics:
         self.sessions = 0
         self.opened = 0
         self.counted = dict.fromkeys(COUNTERS, 0)
-        self.answers = [0] * (len(BUCKETS) + 1)
-        self.answers_total = 0.0
+        self.answers = Histogram()
+        self.stages = {stage: Histogram() for stage in STAGES}
         self._lags: deque[float] = deque(maxlen=_LAGS_KEPT)
         #: Metrics of other modules; the server sets them.
         self.added: tuple[Metric, ...] = ()
@@ -106,10 +145,14 @@ class Metrics:
 
     def answered(self, seconds: float) -> None:
         """Count a first picture that came `seconds` after its request."""
-        bucket = next((i for i, bound in enumerate(BUCKETS) if seconds <= bound), len(BUCKETS))
         with self._lock:
-            self.answers[bucket] += 1
-            self.answers_total += seconds
+            self.answers.add(seconds)
+
+    def picture_painted(self, seconds: Mapping[str, float]) -> None:
+        """Count the stages of a picture that is on the screen, by their names in `STAGES`."""
+        with self._lock:
+            for stage, duration in seconds.items():
+                self.stages[stage].add(duration)
 
     def lagged(self, seconds: float) -> None:
         """Record that an iteration of the event loop was `seconds` late."""
@@ -138,7 +181,7 @@ class Metrics:
             self.lagged(max(0.0, time.monotonic() - due))
 
     def table(self) -> list[Metric]:
-        """All metrics but the histogram."""
+        """All metrics but the histograms."""
         return [
             Metric("build_info", "gauge", "Always 1; the label says which release of granchain answers.",
                    lambda: {__version__: 1}, "version"),
@@ -182,13 +225,13 @@ class Metrics:
                                  for key, number in value.items())
                 else:
                     lines.append(f"{name} {_written(value)}")
-        lines += [f"# HELP {HISTOGRAM} {HISTOGRAM_HELP}", f"# TYPE {HISTOGRAM} histogram"]
-        total = 0
-        for bound, count in zip((*BUCKETS, float("inf")), self.answers, strict=True):
-            total += count
-            upper = "+Inf" if bound == float("inf") else f"{bound:g}"
-            lines.append(f'{HISTOGRAM}_bucket{{le="{upper}"}} {total}')
-        lines += [f"{HISTOGRAM}_sum {_written(self.answers_total)}", f"{HISTOGRAM}_count {total}"]
+        for name, text in HISTOGRAMS.items():
+            lines += [f"# HELP {name} {text}", f"# TYPE {name} histogram"]
+            if name == ANSWERS:
+                lines += self.answers.lines(name)
+            else:
+                for stage, histogram in self.stages.items():
+                    lines += histogram.lines(name, f'stage="{stage}"')
         return "\n".join(lines) + "\n"
 
 
