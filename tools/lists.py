@@ -14,7 +14,7 @@ from app import library_internals
 from app.scripts import FILES
 from app.serve.computing.priorities import ADDED_NICENESS
 from app.serve.computing.worker_pools import POOLS
-from app.serve.monitoring.metrics import FORMER_NAMES, HISTOGRAMS, METRICS, STAGE_TIMES
+from app.serve.monitoring.metrics import FORMER_NAMES, HISTOGRAMS, METRICS, STAGE_TIMES, STAGES
 from app.server import add_shared_metrics
 from granchain_core import scene, scene_names
 from granchain_core.integrate import METHODS
@@ -100,6 +100,12 @@ def table_of_worker_pools() -> str:
     rows = [f"| `{pool.name.upper()}` | {pool.workers} | {f'+{ADDED_NICENESS}' if pool.low_priority else '0'} | "
             f"{pool.per_owner_limit or '–'} | {pool.purpose} |" for pool in POOLS]
     return "\n".join(["| pool | threads | nice value | work of one session at once | what runs there |", "|---|---|---|---|---|", *rows])
+
+
+def table_of_picture_stages() -> str:
+    """The table of docs/deployment.md: the stages of a picture, and what helps if one takes long."""
+    return "\n".join(["| stage | what happens | if it takes long |", "|---|---|---|",
+                      *(f"| `{name}` | {stage.what} | {stage.remedy} |" for name, stage in STAGES.items())])
 
 
 def table_of_metrics() -> str:

@@ -10,6 +10,7 @@ from documents import ROOT
 from app.serve.computing.worker_pools import LONG
 from app.serve.monitoring import metrics
 from app.serve.monitoring.metrics import HISTOGRAMS, METRICS
+from app.serve.monitoring.picture_stages import SLOW_PICTURE
 from app.server import add_shared_metrics
 
 pytestmark = pytest.mark.quick
@@ -48,6 +49,7 @@ def test_the_advice_of_monitoring_has_the_thresholds_of_the_code() -> None:
         assert f"| `granchain_{name}` above {value:g} " in TEXT
     words = " ".join(TEXT.split())
     assert f"the largest lag with {metrics._BUSY_STALL:g} s, the other two with {metrics._BUSY_WAIT:g} s." in words
+    assert f"for each picture that took more than {SLOW_PICTURE:g} s" in words
     assert {8: "one of eight threads"}[LONG.workers] in words
 
 

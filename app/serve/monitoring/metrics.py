@@ -18,24 +18,35 @@ from .process import cpu_seconds, most_descriptors, open_descriptors, os_threads
 
 #: Upper bounds of both histograms [s].
 BUCKETS = (0.025, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0)
-#: The stages of a picture in their order, and what the time of each is.
+
+
+class Stage(NamedTuple):
+    """A stage of a picture: what happens in it, and what an operator does if it takes long."""
+
+    what: str
+    remedy: str
+
+
+#: The stages of a picture, by the label that `/metrics` gives them.
 STAGES = {
-    "kernels": "waiting for kernels that are being compiled",
-    "turn": "waiting to compute: for the computation before it, a thread, a time slice (turn)",
-    "compute": "computing",
-    "prepare": "making the arrays that are drawn",
-    "loop": "waiting for the event loop",
-    "pace": "waiting until the browser has painted earlier pictures",
-    "travel": "on the way to the browser and back, with waits for the event loops of both",
-    "paint": "in the browser's script until it is on the screen",
+    "turn": Stage("it waits for the session's computation before it, for a thread and for a time slice (turn)",
+                  "more cores, or another machine"),
+    "kernels": Stage("it waits for kernels that are being compiled", "compile them beforehand with `granchain warm`"),
+    "compute": Stage("it is computed, or a session waits for the same picture of another",
+                     "nothing: the visitor's chain is long"),
+    "prepare": Stage("the arrays that are drawn are made", "more cores: other threads have them"),
+    "loop": Stage("it waits for the event loop", "another process: a process uses one core for its event loop"),
+    "pace": Stage("it waits until the browser has painted earlier pictures", "nothing: see `travel` and `paint`"),
+    "travel": Stage("it is sent and its acknowledgement comes back; both wait for an event loop",
+                    "look at the network and at `granchain_event_loop_lag_seconds`"),
+    "paint": Stage("the browser draws it", "nothing: the visitor's computer is slow"),
 }
 #: The histograms: name and help text.
 ANSWERS, STAGE_TIMES = "granchain_answer_seconds", "granchain_picture_stage_seconds"
 HISTOGRAMS = {
     ANSWERS: "Latency from the action of a change of scene, knob, start or mode on the event loop until its first "
              "picture is offered to the browser: without network and painting.",
-    STAGE_TIMES: "Time of each stage of these pictures that were painted: "
-                 f"{'; '.join(f'`{stage}`, {words}' for stage, words in STAGES.items())}.",
+    STAGE_TIMES: "Time of each stage of these pictures, counted when the picture is on the screen.",
 }
 #: Time between two measurements of the event loop's lag [s].
 _LAG_INTERVAL = 0.25
