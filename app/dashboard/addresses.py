@@ -15,7 +15,7 @@ from ..session.pins import Pin, read_pin
 from ..session.session import Session
 from ..session.share import BROWSER_FIELDS, PINS, QUESTION, START, decode
 from ..session.starts import read_start
-from .table import overlay_names, tab_names
+from .table import FORMER_NAMES, overlay_names, tab_names
 
 T = TypeVar("T")
 
@@ -29,7 +29,8 @@ def apply_address(session: Session, query: str) -> tuple[State | None, list[str]
 
     Returns the state in which the motion begins (None is rest), and a sentence for every refused field.
     """
-    places = {"tab": tab_names(), "page": tab_names(), "embed": ("1",)}
+    names = (*tab_names(), *FORMER_NAMES)
+    places = {"tab": names, "page": names, "embed": ("1",)}
     scene, fields, sentences = decode(query, {**places, "story": story_places(overlay_names())})
     session.scene = scene
     session.story_to_settle = False
@@ -38,7 +39,7 @@ def apply_address(session: Session, query: str) -> tuple[State | None, list[str]
         session.scene, session.story_to_settle = step.scene, bool(step.via)
         fields = {**({"curves": step.curves} if step.curves else {}), **fields}
     session.apply_view(fields)
-    session.place = {name: fields[name] for name in places if name in fields}
+    session.place = {name: FORMER_NAMES.get(fields[name], fields[name]) for name in places if name in fields}
     if session.place.get("page", "") not in ("", *overlay_names()):  # a page without an overlay has a tab alone
         session.place["tab"] = session.place.pop("page")
     session.story = fields.get("story", "")
