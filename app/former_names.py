@@ -1,6 +1,6 @@
 """Former names of the command line and the server that still work, a row for each. Delete a row, and its name is gone.
 
-docs/python.md lists those of commands, options and keys of JSON, docs/deployment.md those of metrics.
+docs/python.md lists those of commands, options, tabs and keys of JSON, docs/deployment.md those of metrics.
 granchain_core/former_names.py has the others.
 """
 
@@ -16,6 +16,8 @@ from granchain_core.former_names import FormerName
 COMMANDS = (FormerName("strobes", "bifurcation-diagram", "stays"),)
 #: Options.
 OPTIONS = (FormerName("--most-visitors", "--max-sessions", "stays"),)
+#: Tabs of the dashboard, which links that were sent still have.
+TABS = (FormerName("hard", "hard-cases", "stays"),)
 #: Keys of JSON, after the command that prints them.
 KEYS = (
     FormerName("pulse.speed_beads", "pulse.speed_beads_s", "stays"),
@@ -44,11 +46,17 @@ METRICS = (
 
 _COMMANDS = {row.former: row.name for row in COMMANDS}
 _METRICS = {row.name: row for row in METRICS}
+_TABS = {row.former: row.name for row in TABS}
 
 
 def present_command(word: str) -> str:
     """The present name of a command, which may be `word` itself."""
     return _COMMANDS.get(word, word)
+
+
+def present_tab(name: str) -> str:
+    """The present name of a tab, which may be `name` itself."""
+    return _TABS.get(name, name)
 
 
 def names_of_option(name: str) -> tuple[str, ...]:

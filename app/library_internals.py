@@ -59,7 +59,7 @@ def tables() -> dict[str, tuple[Internal, ...]]:
 
 def check_releases() -> None:
     """Log what the installed releases lack, a line a row."""
-    for row, name in (one for table in tables().values() for one in missing(table)):
+    for row, name in (missed for table in tables().values() for missed in missing(table)):
         log.warning("a library has no %s: %s", name, row.without)
 
 
@@ -73,8 +73,8 @@ def missing_in_import(problem: ImportError) -> MissingPart | None:
 
 def missing(table: Iterable[Internal]) -> list[tuple[Internal, str]]:
     """The rows of which the installed release lacks something, with the dotted name of the first that it lacks."""
-    found = ((row, next(_missing(row), None)) for row in table)
-    return [(row, name) for row, name in found if name is not None]
+    first_missing = ((row, next(_missing(row), None)) for row in table)
+    return [(row, name) for row, name in first_missing if name is not None]
 
 
 def _missing(row: Internal) -> Iterator[str]:
@@ -91,24 +91,24 @@ def _find(path: str) -> Any:
     parts = path.split(".")
     for length in range(len(parts), 0, -1):
         try:
-            found: Any = importlib.import_module(".".join(parts[:length]))
+            value: Any = importlib.import_module(".".join(parts[:length]))
         except ImportError:
             continue
         for name in parts[length:]:
-            found = getattr(found, name, None)
-        return found
+            value = getattr(value, name, None)
+        return value
     return None
 
 
 @cache
 def _attributes(owner: type) -> frozenset[str]:
     """The attributes that instances of a class have beside those of the class itself, as far as its code shows them."""
-    found: set[str] = set()
-    for one in owner.__mro__:
-        found.update(vars(one).get("__annotations__", ()))
-        for method in vars(one).values():
-            found.update(_set_by(getattr(method, "__code__", None)))
-    return frozenset(found)
+    names: set[str] = set()
+    for base in owner.__mro__:
+        names.update(vars(base).get("__annotations__", ()))
+        for method in vars(base).values():
+            names.update(_set_by(getattr(method, "__code__", None)))
+    return frozenset(names)
 
 
 def _set_by(code: CodeType | None) -> Iterator[str]:

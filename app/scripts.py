@@ -15,12 +15,12 @@ _HERE = Path(__file__).resolve().parent
 
 def files_by_name(pattern: str, folder: Path = _HERE) -> dict[str, Path]:
     """The files below a folder that match, by name. Raises `ValueError` for two of one name."""
-    found: dict[str, Path] = {}
+    paths: dict[str, Path] = {}
     for path in sorted(folder.rglob(pattern)):
-        if path.name in found:
-            raise ValueError(f"{path} and {found[path.name]} have one name; modules and styles are found by name.")
-        found[path.name] = path
-    return found
+        if path.name in paths:
+            raise ValueError(f"{path} and {paths[path.name]} have one name; modules and styles are found by name.")
+        paths[path.name] = path
+    return paths
 
 
 #: Every module by its name.

@@ -16,7 +16,7 @@ from app.former_names import FormerMetric, former_metric
 from app.scripts import FILES
 from app.serve.computing.priorities import ADDED_NICENESS
 from app.serve.computing.worker_pools import POOLS
-from app.serve.monitoring.metrics import HISTOGRAM, HISTOGRAM_HELP, METRICS
+from app.serve.monitoring.metrics import HISTOGRAMS, METRICS, STAGE_TIMES, STAGES
 from app.server import add_shared_metrics
 from granchain_core import former_names as core
 from granchain_core import scene, scene_names
@@ -105,6 +105,12 @@ def table_of_worker_pools() -> str:
     return "\n".join(["| pool | threads | nice value | work of one session at once | what runs there |", "|---|---|---|---|---|", *rows])
 
 
+def table_of_picture_stages() -> str:
+    """The table of docs/deployment.md: the stages of a picture, and what helps if one takes long."""
+    return "\n".join(["| stage | what happens | if it takes long |", "|---|---|---|",
+                      *(f"| `{name}` | {stage.what} | {stage.remedy} |" for name, stage in STAGES.items())])
+
+
 def table_of_metrics() -> str:
     """The table of docs/deployment.md: every metric of the server, its kind and its help text."""
     add_shared_metrics()
@@ -112,7 +118,8 @@ def table_of_metrics() -> str:
     for metric in METRICS.table():
         label, former = f", label `{metric.label}`" if metric.label else "", former_metric(metric.full_name)
         rows.append(f"| `{metric.full_name}`{label} | {metric.kind} | {metric.help}{_also(former) if former else ''} |")
-    return "\n".join(["| metric | kind | what it is |", "|---|---|---|", *rows, f"| `{HISTOGRAM}` | histogram | {HISTOGRAM_HELP} |"])
+    rows += [f"| `{name}`{', label `stage`' if name == STAGE_TIMES else ''} | histogram | {text} |" for name, text in HISTOGRAMS.items()]
+    return "\n".join(["| metric | kind | what it is |", "|---|---|---|", *rows])
 
 
 def _also(former: FormerMetric) -> str:
@@ -125,6 +132,6 @@ def _also(former: FormerMetric) -> str:
 def table_of_former_names() -> str:
     """The table of docs/python.md: every former name that still works, with the present one."""
     kinds = (("", core.NAMES), ("", core.ATTRIBUTES), ("", core.EXTRAS), ("", core.VARIABLES),
-             ("column ", core.COLUMNS), ("command ", own.COMMANDS), ("option ", own.OPTIONS), ("JSON key ", own.KEYS))
+             ("column ", core.COLUMNS), ("command ", own.COMMANDS), ("tab ", own.TABS), ("option ", own.OPTIONS), ("JSON key ", own.KEYS))
     rows = [f"| {kind}`{row.name}` | `{row.former}` | {row.removed_in} |" for kind, table in kinds for row in table]
     return "\n".join(["| name | former name | removed in |", "|---|---|---|", *rows])

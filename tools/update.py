@@ -34,6 +34,7 @@ from tools.lists import (
     table_of_libraries,
     table_of_metrics,
     table_of_orders,
+    table_of_picture_stages,
     table_of_scenes,
     table_of_worker_pools,
 )
@@ -89,6 +90,7 @@ _TABLES = (
     ("docs/libraries.md", "libraries", table_of_libraries),
     ("docs/deployment.md", "metrics", table_of_metrics),
     ("docs/python.md", "former names", table_of_former_names),
+    ("docs/deployment.md", "stages of a picture", table_of_picture_stages),
     ("docs/design.md", "folders", table_of_folders),
     ("docs/design.md", "pages of the dashboard", table_of_pages),
     ("docs/dashboard.md", "messages of the browser", table_of_messages_of_the_browser),

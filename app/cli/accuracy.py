@@ -28,40 +28,41 @@ def do(arguments: argparse.Namespace) -> None:
     check_files(arguments)
     chosen = chosen_scene(arguments)
     progress = show_percent if sys.stderr.isatty() else None
-    found = in_background(lambda stop: work_precision(chosen, stop, progress), reports=True)
-    write_files(arguments, f"What accuracy costs for {chosen.name}", found)
+    result = in_background(lambda stop: work_precision(chosen, stop, progress), reports=True)
+    write_files(arguments, f"What accuracy costs for {chosen.name}", result)
     if arguments.json:
-        show_json(_accuracy_json(found))
+        show_json(_accuracy_json(result))
     else:
-        _show_accuracy(found)
+        _show_accuracy(result)
 
 
-def _accuracy_json(found: Any) -> dict[str, Any]:
+def _accuracy_json(result: Any) -> dict[str, Any]:
     """The measurement as one JSON object; "naive" is what plain steps in (u, v) make of the output force."""
-    naive = [{"method": one.method, "steps_per_period": one.steps, "output_force_error": finite_or_null(one.error),
-              "failure": one.failure} for one in found.lesson.drawn]
+    naive = [{"method": drawing.method, "steps_per_period": drawing.steps,
+              "output_force_error": finite_or_null(drawing.error), "failure": drawing.failure}
+             for drawing in result.lesson.drawn]
     return {
-        "reference": {"method": found.reference, "agreement": finite_or_null(found.agreement),
-                      "second": found.second, "disagreement": found.disagreement},
-        "rows": [{**asdict(row), "error": finite_or_null(row.error)} for row in found.rows],
+        "reference": {"method": result.reference, "agreement": finite_or_null(result.agreement),
+                      "second": result.second, "disagreement": result.disagreement},
+        "rows": [{**asdict(row), "error": finite_or_null(row.error)} for row in result.rows],
         "naive": naive,
     }
 
 
-def _show_accuracy(found: Any) -> None:
+def _show_accuracy(result: Any) -> None:
     """The measurement as a table, with the cheapest ways to three accuracies and the naive forces below it."""
-    print(f"reference: {found.reference}")
-    print(f"second reference: {found.second}: " + (found.disagreement or f"agrees to {found.agreement:.1e}"))
+    print(f"reference: {result.reference}")
+    print(f"second reference: {result.second}: " + (result.disagreement or f"agrees to {result.agreement:.1e}"))
     print("method          setting                   error     time_ms  evaluations")
-    for row in found.rows:
+    for row in result.rows:
         if row.failure:
             print(f"{row.method:14}  {row.setting:22}  failed: {row.failure}")
             continue
         print(f"{row.method:14}  {row.setting:22}  {row.error:8.1e}  {1e3 * row.wall_s:8.2f}  {row.rhs:11d}")
     for error in (1e-3, 1e-6, 1e-9):
-        best = found.cheapest(error)
+        best = result.cheapest(error)
         if best is not None:
             print(f"the cheapest way to {error:g} is {best.method}, {best.setting}: {1e3 * best.wall_s:.2f} ms")
-    for one in found.lesson.drawn if found.lesson else ():
-        drawn = one.failure or f"off by {100 * one.error:.2g} % of the largest"
-        print(f"output force by {one.method} with {one.steps} steps a period: {drawn}")
+    for drawing in result.lesson.drawn if result.lesson else ():
+        drawn = drawing.failure or f"off by {100 * drawing.error:.2g} % of the largest"
+        print(f"output force by {drawing.method} with {drawing.steps} steps a period: {drawn}")

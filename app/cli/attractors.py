@@ -39,31 +39,32 @@ def do(arguments: argparse.Namespace) -> None:
     check_range("--random-states", arguments.random_states, 0, MOST_STATES)
     check_range("--seed", arguments.seed, 0, 2**63 - 1)
     progress = show_percent if sys.stderr.isatty() else None
-    found = in_background(lambda stop: attractors(chosen, arguments.random_states, arguments.seed, stop, progress),
-                          reports=True)
-    write_files(arguments, f"Attractors of {chosen.name}", found)
+    result = in_background(lambda stop: attractors(chosen, arguments.random_states, arguments.seed, stop, progress),
+                           reports=True)
+    write_files(arguments, f"Attractors of {chosen.name}", result)
     if arguments.json:
-        show_json(_json(found, arguments))
+        show_json(_json(result, arguments))
         return
     print("share        max_output_force_N  stable  starts  motion")
-    for one in found:
-        print(f"{one.share_words:>11}  {one.max_output_force:18.6g}  {_stability(one):>6}  {len(one.origins):6d}  "
-              f"{one.regime.sentence}")
-    say(f"{chosen.name}: {len(found)} found from rest, both sweeps and {arguments.random_states} random states.")
-    for sentence in failed_sentence(found.failed):
+    for attractor in result:
+        print(f"{attractor.share_words:>11}  {attractor.max_output_force:18.6g}  {_stability(attractor):>6}  "
+              f"{len(attractor.origins):6d}  {attractor.regime.sentence}")
+    say(f"{chosen.name}: {len(result)} found from rest, both sweeps and {arguments.random_states} random states.")
+    for sentence in failed_sentence(result.failed):
         say(f"{sentence}. The shares count them.")
 
 
-def _stability(one: Attractor) -> str:
-    return "–" if one.stable is None else "yes" if one.stable else "no"
+def _stability(attractor: Attractor) -> str:
+    return "–" if attractor.stable is None else "yes" if attractor.stable else "no"
 
 
-def _json(found: Attractors, arguments: argparse.Namespace) -> dict[str, Any]:
+def _json(result: Attractors, arguments: argparse.Namespace) -> dict[str, Any]:
     """All steady states as one JSON object; shares are null where no random state was drawn."""
-    return {"scene": found.scene.name, "knobs": found.scene.knobs, "random_states": arguments.random_states,
-            "seed": arguments.seed, "failed": [origin.name for origin in found.failed], "attractors": [{
-                "regime": one.regime.name, "period": one.regime.period, "stable": one.stable,
-                **forces_json(one), "error_estimate": one.force_errors.output,
-                "error_estimate_elastic": one.force_errors.elastic, "error_estimate_input": one.force_errors.input,
-                "share": one.share, "share_error": one.share_error,
-                "starts": [origin.name for origin in one.origins]} for one in found]}
+    return {"scene": result.scene.name, "knobs": result.scene.knobs, "random_states": arguments.random_states,
+            "seed": arguments.seed, "failed": [origin.name for origin in result.failed], "attractors": [{
+                "regime": attractor.regime.name, "period": attractor.regime.period, "stable": attractor.stable,
+                **forces_json(attractor), "error_estimate": attractor.force_errors.output,
+                "error_estimate_elastic": attractor.force_errors.elastic,
+                "error_estimate_input": attractor.force_errors.input,
+                "share": attractor.share, "share_error": attractor.share_error,
+                "starts": [origin.name for origin in attractor.origins]} for attractor in result]}

@@ -19,11 +19,11 @@ def do(arguments: argparse.Namespace) -> None:
     from granchain_core import bands
 
     chosen = chosen_scene(arguments)
-    found = bands(chosen)
+    edges = bands(chosen)
     if arguments.json:
-        show_json({"bands": found, "cut_off": found[-1][1]})
+        show_json({"bands": edges, "cut_off": edges[-1][1]})
         return
     print(f"{chosen.name}: linear waves in an infinite chain of these beads, precompressed by {chosen.F0:g} N")
-    for number, (low, high) in enumerate(found, start=1):
+    for number, (low, high) in enumerate(edges, start=1):
         print(f"band {number}: {low:.6g} to {high:.6g} Hz")
-    print(f"cut-off {found[-1][1]:.6g} Hz")
+    print(f"cut-off {edges[-1][1]:.6g} Hz")

@@ -38,40 +38,40 @@ def do(arguments: argparse.Namespace) -> None:
     (x, x_ends, x_spaced), (y, y_ends, y_spaced) = (
         values_from(option, text, MOST_CELLS) for option, text in (("--x", arguments.x), ("--y", arguments.y)))
     progress = show_percent if sys.stderr.isatty() else None
-    found = in_background(lambda stop: basins(chosen, (x, x_spaced(*x_ends)), (y, y_spaced(*y_ends)), stop, progress),
-                          reports=True)
-    write_files(arguments, f"Basins of {chosen.name}", found)
+    result = in_background(lambda stop: basins(chosen, (x, x_spaced(*x_ends)), (y, y_spaced(*y_ends)), stop, progress),
+                           reports=True)
+    write_files(arguments, f"Basins of {chosen.name}", result)
     if arguments.json:
-        show_json(_json(found))
+        show_json(_json(result))
         return
     print("share  max_output_force_N  motion")
-    for share, one in zip(found.shares, found.attractors, strict=True):
-        print(f"{100.0 * share:4.0f}%  {one.max_output_force:18.6g}  {one.regime.sentence}")
-    failed = found.number < 0
+    for share, attractor in zip(result.shares, result.attractors, strict=True):
+        print(f"{100.0 * share:4.0f}%  {attractor.max_output_force:18.6g}  {attractor.regime.sentence}")
+    failed = result.number < 0
     if failed.any():
         print(f"{100.0 * failed.mean():4.0f}%  {'':18}  no steady state: {failed.sum()} of {failed.size} starts "
-              f"failed, the first {_why(found, int(failed.argmax()))}")
+              f"failed, the first {_why(result, int(failed.argmax()))}")
 
 
-def _why(found: Basins, number: int) -> str:
+def _why(result: Basins, number: int) -> str:
     """Where the start with this number is in the plane, and why it has no steady state: it is computed once more."""
     from granchain_core import ComputationError, State, settle
 
-    row, column = divmod(number, len(found.x[1]))
-    start = {"u": np.zeros(found.scene.N), "v": np.zeros(found.scene.N)}
-    for (name, values), place in ((found.x, column), (found.y, row)):
+    row, column = divmod(number, len(result.x[1]))
+    start = {"u": np.zeros(result.scene.N), "v": np.zeros(result.scene.N)}
+    for (name, values), place in ((result.x, column), (result.y, row)):
         start[name[0]][int(name[1:]) - 1] = values[place]
-    where = f"at {found.x[0]} = {found.x[1][column]:g}, {found.y[0]} = {found.y[1][row]:g}"
+    where = f"at {result.x[0]} = {result.x[1][column]:g}, {result.y[0]} = {result.y[1][row]:g}"
     try:
-        in_background(lambda stop: settle(found.scene, State(start["u"], start["v"]), stop=stop))
+        in_background(lambda stop: settle(result.scene, State(start["u"], start["v"]), stop=stop))
     except ComputationError as problem:
         return f"{where}. {problem}"
     return f"{where}, after it had left an unstable orbit."
 
 
-def _json(found: Basins) -> dict[str, Any]:
-    return {"x": {"coordinate": found.x[0], "values": found.x[1].tolist()},
-            "y": {"coordinate": found.y[0], "values": found.y[1].tolist()}, "number": found.number.tolist(),
-            "attractors": [{"share": float(share), "regime": one.regime.name, "period": one.regime.period,
-                            "max_output_force": one.max_output_force, "stable": one.stable}
-                           for share, one in zip(found.shares, found.attractors, strict=True)]}
+def _json(result: Basins) -> dict[str, Any]:
+    return {"x": {"coordinate": result.x[0], "values": result.x[1].tolist()},
+            "y": {"coordinate": result.y[0], "values": result.y[1].tolist()}, "number": result.number.tolist(),
+            "attractors": [{"share": float(share), "regime": attractor.regime.name, "period": attractor.regime.period,
+                            "max_output_force": attractor.max_output_force, "stable": attractor.stable}
+                           for share, attractor in zip(result.shares, result.attractors, strict=True)]}

@@ -41,26 +41,27 @@ def do(arguments: argparse.Namespace) -> None:
     check_range("--bead", arguments.bead, 1, chosen.N)
     knob, ends, spaced = values_from("--over", arguments.over, MOST_VALUES)
     progress = show_percent if sys.stderr.isatty() else None
-    found = in_background(lambda stop: bifurcation_diagram(chosen, knob, spaced(*ends), arguments.start,
-                                                           arguments.keep, stop, progress), reports=True)
-    for point in found.points:
+    result = in_background(lambda stop: bifurcation_diagram(chosen, knob, spaced(*ends), arguments.start,
+                                                            arguments.keep, stop, progress), reports=True)
+    for point in result.points:
         if point.failure:
             say(f"{knob} = {point.value:g}: {point.failure}")
-    write_files(arguments, f"Bifurcation diagram of {chosen.name}", found, bead=arguments.bead)
+    write_files(arguments, f"Bifurcation diagram of {chosen.name}", result, bead=arguments.bead)
     if arguments.json:
-        show_json(_json(found, arguments.bead))
+        show_json(_json(result, arguments.bead))
         return
     print(f"{knob:>12}  distinct    error  regime")
-    for point in found.points:
+    for point in result.points:
         error = "–" if point.strobe_error is None else f"{point.strobe_error:.1e}"
         print(f"{point.value:12.6g}  {point.distinct(arguments.bead):8d}  {error:>7}  "
               f"{point.failure or point.regime.sentence}")
 
 
-def _json(found: BifurcationDiagram, bead: int) -> dict[str, Any]:
-    return {"knob": found.knob, "start": found.start, "bead": bead, "values": [point.value for point in found.points],
-            "regime": [point.regime.name for point in found.points],
-            "period": [point.regime.period for point in found.points],
-            "strobe_error": [point.strobe_error for point in found.points],
-            "displacement": [point.strobes[:, 0, bead - 1].tolist() for point in found.points],
-            "velocity": [point.strobes[:, 1, bead - 1].tolist() for point in found.points]}
+def _json(result: BifurcationDiagram, bead: int) -> dict[str, Any]:
+    return {"knob": result.knob, "start": result.start, "bead": bead,
+            "values": [point.value for point in result.points],
+            "regime": [point.regime.name for point in result.points],
+            "period": [point.regime.period for point in result.points],
+            "strobe_error": [point.strobe_error for point in result.points],
+            "displacement": [point.strobes[:, 0, bead - 1].tolist() for point in result.points],
+            "velocity": [point.strobes[:, 1, bead - 1].tolist() for point in result.points]}

@@ -50,48 +50,48 @@ def do(arguments: argparse.Namespace) -> None:
     """Follow a branch of periodic orbits and report it."""
     check_files(arguments)
     check_points(arguments.points, 2, MOST_POINTS)
-    found = _followed(arguments)
-    write_picture(arguments.picture, f"A branch of {found.axis.scene.name}", found)
-    for half in found.half_branches:
+    branch = _followed(arguments)
+    write_picture(arguments.picture, f"A branch of {branch.axis.scene.name}", branch)
+    for half in branch.half_branches:
         say(f"{len(half.points)} orbits {_way(half)}: {half.reason or 'stopped after the number of orbits asked for'}")
-    say_if(found.period_note)
+    say_if(branch.period_note)
     if arguments.json:
-        show_json(branch_json(found))
+        show_json(branch_json(branch))
     else:
-        _show(found)
+        _show(branch)
 
 
-def branch_json(found: Branch) -> dict[str, Any]:
+def branch_json(branch: Branch) -> dict[str, Any]:
     """What `--json` prints."""
     return {
-        "knob": [p.knob for p in found.points],
-        "max_output_force_elastic": [p.max_output_force_elastic for p in found.points],
-        "stable": [p.stable for p in found.points],
-        "unstable_multipliers": [p.unstable_multipliers for p in found.points],
-        "special": [{"kind": s.kind, "knob": s.knob, "interval": list(s.interval)} for s in found.special],
-        "evidence": [_evidence(one) for one in found.special],
-        "normal_form": [_normal_form(one) for one in found.special],
-        "period": found.period, "max_output_force": [p.max_output_force for p in found.points],
-        "max_input_force": [p.max_input_force for p in found.points],
-        **({} if found.axis.amplitude is None else
-           {"drive_amplitude": [found.axis.amplitude.held(p.knob) for p in found.points]}),
-        "ended": [{"how": half.ended or "stopped", "reason": half.reason} for half in found.half_branches],
+        "knob": [p.knob for p in branch.points],
+        "max_output_force_elastic": [p.max_output_force_elastic for p in branch.points],
+        "stable": [p.stable for p in branch.points],
+        "unstable_multipliers": [p.unstable_multipliers for p in branch.points],
+        "special": [{"kind": s.kind, "knob": s.knob, "interval": list(s.interval)} for s in branch.special],
+        "evidence": [_evidence(point) for point in branch.special],
+        "normal_form": [_normal_form(point) for point in branch.special],
+        "period": branch.period, "max_output_force": [p.max_output_force for p in branch.points],
+        "max_input_force": [p.max_input_force for p in branch.points],
+        **({} if branch.axis.amplitude is None else
+           {"drive_amplitude": [branch.axis.amplitude.held(p.knob) for p in branch.points]}),
+        "ended": [{"how": half.ended or "stopped", "reason": half.reason} for half in branch.half_branches],
     }
 
 
-def _evidence(found: SpecialPoint) -> dict[str, Any]:
+def _evidence(point: SpecialPoint) -> dict[str, Any]:
     """On what the kind of a special point rests: the multiplier that passes the circle, or what a contact does."""
-    passing = found.multiplier
-    return {"multiplier": None if passing is None else [passing.real, passing.imag], "contact": found.contact,
-            "event": found.gained and EVENTS[found.gained], "gained": found.gained, "gained_side": found.gained_side}
+    passing = point.multiplier
+    return {"multiplier": None if passing is None else [passing.real, passing.imag], "contact": point.contact,
+            "event": point.gained and EVENTS[point.gained], "gained": point.gained, "gained_side": point.gained_side}
 
 
-def _normal_form(found: SpecialPoint) -> dict[str, Any] | None:
+def _normal_form(point: SpecialPoint) -> dict[str, Any] | None:
     """Criticality of a special point and its coefficient; None for a grazing."""
-    form = found.normal_form
+    form = point.normal_form
     return None if form is None else {
         "criticality": form.criticality, "coefficient": finite_or_null(form.coefficient),
-        "error": finite_or_null(form.error), "reason": form.reason, "angle": found.angle}
+        "error": finite_or_null(form.error), "reason": form.reason, "angle": point.angle}
 
 
 def _followed(arguments: argparse.Namespace) -> Branch:
@@ -103,13 +103,13 @@ def _followed(arguments: argparse.Namespace) -> Branch:
         ending.keeps(str(folder_of(arguments.out)))
 
     def work(stop: Any) -> Branch:
-        begun.append(one := _begun(arguments, stop))
-        if one.kept is not None:
-            one.kept.begin(one.branch)
-        return Continuation(one.branch, stop).run(arguments.points, _Progress(one))
+        begun.append(followed := _begun(arguments, stop))
+        if followed.kept is not None:
+            followed.kept.begin(followed.branch)
+        return Continuation(followed.branch, stop).run(arguments.points, _Progress(followed))
 
     try:
-        found = in_background(work, reports=True)
+        branch = in_background(work, reports=True)
     except (Cancelled, KeyboardInterrupt):
         if arguments.out and begun:  # the orbits found so far can be continued
             save_branch(begun[0].branch, arguments.out)
@@ -124,9 +124,9 @@ def _followed(arguments: argparse.Namespace) -> Branch:
         raise
     if arguments.out:
         with unbroken(arguments.out):
-            save_branch(found, arguments.out)
+            save_branch(branch, arguments.out)
             _remove(begun[0].kept)
-    return found
+    return branch
 
 
 def _remove(kept: OrbitCheckpoints | None) -> None:
@@ -145,11 +145,11 @@ class _Begun:
 def _begun(arguments: argparse.Namespace, stop: Any) -> _Begun:
     """A new branch, or the one that --resume goes on with."""
     if arguments.resume:
-        found = _in_file(arguments)
-        kept = OrbitCheckpoints(found.axis, len(found.half_branches) > 1, arguments.out) if arguments.out else None
+        branch = _in_file(arguments)
+        kept = OrbitCheckpoints(branch.axis, len(branch.half_branches) > 1, arguments.out) if arguments.out else None
         if kept is not None:
             kept.kept.open(resume=True)
-        return _Begun((kept.branch() if kept is not None else None) or found, kept)
+        return _Begun((kept.branch() if kept is not None else None) or branch, kept)
     if arguments.resume is not None and not arguments.out:
         raise BadInput("--resume needs a FILE, or --out FILE, the file of the branch that was interrupted.")
     for option, value in (("--knob", arguments.knob), ("--from", arguments.start), ("--to", arguments.end)):
@@ -158,14 +158,14 @@ def _begun(arguments: argparse.Namespace, stop: Any) -> _Begun:
     chosen = chosen_scene(arguments)
     say_if(kept_along(chosen, arguments.knob))
     amplitude = chosen_amplitude(arguments, chosen)
-    kept, there = None, None
+    kept, interrupted = None, None
     if arguments.out:
         kept = OrbitCheckpoints(KnobAxis.of(chosen, arguments.knob, arguments.start, arguments.end, amplitude),
                                 arguments.both, arguments.out)
         kept.kept.open(resume=arguments.resume is not None)
-        there = _interrupted(arguments, kept)
-    return _Begun(there or begin_branch(chosen, arguments.knob, arguments.start, arguments.end, arguments.period,
-                                        both=arguments.both, stop=stop, amplitude=amplitude), kept)
+        interrupted = _interrupted(arguments, kept)
+    return _Begun(interrupted or begin_branch(chosen, arguments.knob, arguments.start, arguments.end, arguments.period,
+                                              both=arguments.both, stop=stop, amplitude=amplitude), kept)
 
 
 def _interrupted(arguments: argparse.Namespace, kept: OrbitCheckpoints) -> Branch | None:
@@ -174,23 +174,23 @@ def _interrupted(arguments: argparse.Namespace, kept: OrbitCheckpoints) -> Branc
 
     if arguments.resume is None:
         return None
-    there, file = kept.branch(), Path(arguments.out)
+    interrupted, file = kept.branch(), Path(arguments.out)
     if file.exists():
         try:
             written = load_branch(file)
         except BadInput:
-            if there is None:
+            if interrupted is None:
                 raise
         else:
             if kept.asks_for(written):  # the blocks may be gone in part, if the command was killed while removing them
-                there = max((one for one in (there, written) if one is not None), key=lambda one: len(one.points))
-            elif there is None:
+                interrupted = max(filter(None, (interrupted, written)), key=lambda branch: len(branch.points))
+            elif interrupted is None:
                 raise BadInput(f"{file} holds another branch; give another --out.")
-    if there is not None:
-        if arguments.period not in (None, there.period):
-            raise BadInput(f"The branch to go on with has period {there.period}, not {arguments.period}.")
-        say(f"{len(there.points)} orbits are there already.")
-    return there
+    if interrupted is not None:
+        if arguments.period not in (None, interrupted.period):
+            raise BadInput(f"The branch to go on with has period {interrupted.period}, not {arguments.period}.")
+        say(f"{len(interrupted.points)} orbits are there already.")
+    return interrupted
 
 
 def _in_file(arguments: argparse.Namespace) -> Branch:
@@ -200,10 +200,10 @@ def _in_file(arguments: argparse.Namespace) -> Branch:
     if arguments.knob or arguments.start or arguments.end or arguments.period or arguments.set or arguments.amplitude:
         raise BadInput(f"--resume takes everything from {Path(arguments.resume).name}; it cannot be combined with "
                        "--knob, --from, --to, --period, --amplitude or --set.")
-    found = load_branch(arguments.resume)
-    if found.axis.scene.name != arguments.scene.removesuffix(".toml").rpartition("/")[2]:
-        raise BadInput(f"{arguments.resume} is a branch of {found.axis.scene.name}, not of {arguments.scene}.")
-    return found
+    branch = load_branch(arguments.resume)
+    if branch.axis.scene.name != arguments.scene.removesuffix(".toml").rpartition("/")[2]:
+        raise BadInput(f"{arguments.resume} is a branch of {branch.axis.scene.name}, not of {arguments.scene}.")
+    return branch
 
 
 class _Progress:
@@ -227,29 +227,29 @@ def _way(half: HalfBranch) -> str:
     return "upwards" if half.direction > 0 else "downwards"
 
 
-def _show(found: Branch) -> None:
-    print(f"{found.axis.knob:>14}  max_output_force_elastic_N  stability  unstable_multipliers")
-    for p in found.points:
+def _show(branch: Branch) -> None:
+    print(f"{branch.axis.knob:>14}  max_output_force_elastic_N  stability  unstable_multipliers")
+    for p in branch.points:
         stability = "stable" if p.stable else "unstable"
         print(f"{p.knob:14.8g}  {p.max_output_force_elastic:26.8g}  {stability:9}  {p.unstable_multipliers:20}")
-    for s in found.special:
-        more = f", {_grazing_words(s, found.axis)}" if s.contact is not None else normal_form_words(s)
+    for s in branch.special:
+        more = f", {_grazing_words(s, branch.axis)}" if s.contact is not None else normal_form_words(s)
         low, high = s.interval
-        print(f"{s.kind_words} at {found.axis.knob} = {s.knob:.8g}, between {low:.9g} and {high:.9g}{more}")
+        print(f"{s.kind_words} at {branch.axis.knob} = {s.knob:.8g}, between {low:.9g} and {high:.9g}{more}")
 
 
-def _grazing_words(found: SpecialPoint, axis: KnobAxis) -> str:
+def _grazing_words(point: SpecialPoint, axis: KnobAxis) -> str:
     """Which contact event an orbit has once more, and on which side of the grazing."""
-    value = axis.text(found.knob).partition(" = ")[2]
-    side = "on one side" if found.gained_side is None else f"{found.gained_side} {value}"
-    return f"contact {found.contact}: one {found.gained} more {side}"
+    value = axis.text(point.knob).partition(" = ")[2]
+    side = "on one side" if point.gained_side is None else f"{point.gained_side} {value}"
+    return f"contact {point.contact}: one {point.gained} more {side}"
 
 
-def normal_form_words(found: SpecialPoint) -> str:
+def normal_form_words(point: SpecialPoint) -> str:
     """Criticality, coefficient with its error, and the angle of a Neimark–Sacker point."""
-    form = found.normal_form
+    form = point.normal_form
     if form is None:
         return ""
     value = "" if math.isnan(form.coefficient) else f", coefficient {form.coefficient:.5g} ± {form.error:.2g}"
-    angle = "" if found.angle is None else f", angle {math.degrees(found.angle):.4g}°"
-    return f", {found.criticality_words()}{value}{angle}"
+    angle = "" if point.angle is None else f", angle {math.degrees(point.angle):.4g}°"
+    return f", {point.criticality_words()}{value}{angle}"

@@ -30,16 +30,16 @@ def do(arguments: argparse.Namespace) -> int:
     from granchain_core.hard_cases.table import CASES
 
     check_picture(arguments.picture)
-    began, found = time.perf_counter(), {}
+    began, rows_by_case = time.perf_counter(), {}
     for name, rows in run_cases(arguments.quick):
-        found[name] = rows
-        _say_case(f"{len(found):2}/{len(CASES)}", name, rows)
-    every = in_order(found)
+        rows_by_case[name] = rows
+        _say_case(f"{len(rows_by_case):2}/{len(CASES)}", name, rows)
+    every = in_order(rows_by_case)
     if arguments.json:
         show_json({"rows": [{"case": row.case, "figure": finite_or_null(row.value), "bar": row.limit,
                              "passed": row.passed, "seconds": row.seconds} for row in every]})
     else:
-        _show_cases(found)
+        _show_cases(rows_by_case)
     say(f"{sum(row.passed for row in every)} of {len(every)} rows passed in {time.perf_counter() - began:.1f} s")
     if arguments.picture:
         write_figure(arguments.picture, "The hard cases", _drawn())
@@ -58,13 +58,13 @@ def _say_case(number: str, name: str, rows: list[Check]) -> None:
             say(f"       {row.value:.2e} is above {row.limit:.1e}: {row.case.removeprefix(name + ': ')} {row.note}")
 
 
-def _show_cases(found: dict[str, list[Check]]) -> None:
+def _show_cases(rows_by_case: dict[str, list[Check]]) -> None:
     """Print every case with its rows."""
     from granchain_core.hard_cases.table import CASES
 
     for case in CASES:
         print(f"\n{case.name}\n  {case.hard}\n  Naive: {case.naive}\n  Oracle: {case.oracle}.")
-        for row in found[case.name]:
+        for row in rows_by_case[case.name]:
             mark = "ok  " if row.passed else "FAIL"
             note = f"  ({row.note})" if row.note else ""
             print(f"  {mark} {row.value:9.2e} ≤ {row.limit:7.1e}  {row.case.removeprefix(case.name + ': ')}{note}")
@@ -87,5 +87,5 @@ def _drawn() -> Any:
 
 def heading(name: str) -> str:
     """The name of a case with a capital letter, and with its powers, "10^5" and "F^{1/6}", raised."""
-    raised = re.sub(r"\^\{([^}]+)\}|\^(-?\d+)", lambda found: f"<sup>{found[1] or found[2]}</sup>", html.escape(name))
+    raised = re.sub(r"\^\{([^}]+)\}|\^(-?\d+)", lambda match: f"<sup>{match[1] or match[2]}</sup>", html.escape(name))
     return f"<h3>{raised[0].upper()}{raised[1:]}</h3>"

@@ -18,9 +18,9 @@ def do(arguments: argparse.Namespace) -> None:
     """Print the citations."""
     from granchain_core.scene.cite import citations
 
-    found = citations(chosen_scene(arguments))
+    references = citations(chosen_scene(arguments))
     if arguments.json:
-        show_json({"citations": [{"for": what, "text": text} for what, text in found]})
+        show_json({"citations": [{"for": what, "text": text} for what, text in references]})
         return
-    for what, text in found:
+    for what, text in references:
         print(f"{what}: {text}")

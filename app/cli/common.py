@@ -108,17 +108,17 @@ def in_background(work: Callable[[Any], T], reports: bool = False) -> T:
 
     announce_compiling()
     thread = threading.Thread(target=target, daemon=True)
-    with ending.asking(stop.set) as asked:
+    with ending.asking(stop.set) as has_to_end:
         thread.start()
         began = 0 if reports or not sys.stderr.isatty() else time.monotonic()
         try:
-            while thread.is_alive() and not asked():
+            while thread.is_alive() and not has_to_end():
                 thread.join(_LOOK)
                 if began and time.monotonic() - began >= 1.0:
                     print(f"\r{time.monotonic() - began:3.0f} s", end="", file=sys.stderr, flush=True)
         except KeyboardInterrupt:  # in a process that has not taken signals over
             stop.set()
-        if stop or asked():
+        if stop or has_to_end():
             thread.join(_PATIENCE)
             raise Cancelled
         if began and time.monotonic() - began >= 1.0:
@@ -131,9 +131,9 @@ def in_background(work: Callable[[Any], T], reports: bool = False) -> T:
 @contextmanager
 def unbroken(file: str | None) -> Iterator[None]:
     """Finish this block, which writes a result to `file` if there is one, before a signal ends the command."""
-    with ending.asking() as asked:
+    with ending.asking() as has_to_end:
         yield
         written = f"the result is in {file}" if file else ""
         ending.wrote(written)
-        if asked():
+        if has_to_end():
             raise Cancelled(written)

@@ -92,10 +92,10 @@ def _measured(arguments: argparse.Namespace) -> Measured | None:
 
     if arguments.data is None:
         return None
-    found = with_answers(arguments, lambda answers: read_experiment(arguments.data, answers, ("curve",)))
-    assert isinstance(found, Measured), "nothing else was wanted"
-    say(f"{found.understood}.")
-    return found
+    measured = with_answers(arguments, lambda answers: read_experiment(arguments.data, answers, ("curve",)))
+    assert isinstance(measured, Measured), "nothing else was wanted"
+    say(f"{measured.understood}.")
+    return measured
 
 
 def _difference(swept: Curve, measured: Measured, elastic: bool) -> Difference:
@@ -114,22 +114,22 @@ def _misfit_json(difference: Difference) -> dict[str, Any]:
             "mean": None if misfit is None else misfit.mean}
 
 
-def _swept(arguments: argparse.Namespace, asked: CurveRequest) -> Curve:
+def _swept(arguments: argparse.Namespace, request: CurveRequest) -> Curve:
     """The curve, of which only points that are not there yet are computed, and its file."""
     from granchain_core.steady.curve.point_checkpoints import point_checkpoints, points_in
     from granchain_core.steady.curve.request import CurveRequest
     from granchain_core.store import save_curve
     from granchain_core.store.curves import load_curve
 
-    there = finished(arguments, "curve", load_curve,
-                     lambda found: CurveRequest.answered_by(found).digest == asked.digest)
-    kept = point_checkpoints(asked, arguments.out) if arguments.out else None
-    points = len(asked.frequencies)
+    written = finished(arguments, "curve", load_curve,
+                       lambda curve: CurveRequest.answered_by(curve).digest == request.digest)
+    kept = point_checkpoints(request, arguments.out) if arguments.out else None
+    points = len(request.frequencies)
     known: list[CurvePoint] = []
     if kept is not None:
-        if there is not None:
+        if written is not None:
             kept.remove()
-            return there
+            return written
         kept.open(arguments.resume)
         known = points_in(kept)
     if known:
@@ -147,7 +147,7 @@ def _swept(arguments: argparse.Namespace, asked: CurveRequest) -> Curve:
 
     with (scheduler_of(arguments) as client,
           keeping(kept, lambda: f"{done[0]} of {points} points")):
-        swept = in_background(lambda stop: asked.compute(stop=stop, on_point=count, known=known, scheduler=client),
+        swept = in_background(lambda stop: request.compute(stop=stop, on_point=count, known=known, scheduler=client),
                               reports=True)
     if kept is not None:
         with unbroken(arguments.out):
@@ -176,7 +176,7 @@ def _curve_json(swept: Any) -> dict[str, Any]:
 def _plain(value: float | tuple[float, ...] | None) -> float | list[float | None] | None:
     """A number, or several, of a regime as JSON has them."""
     if isinstance(value, tuple):
-        return [finite_or_null(one) for one in value]
+        return [finite_or_null(number) for number in value]
     return value if value is None or isinstance(value, str) else finite_or_null(value)
 
 

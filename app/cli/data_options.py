@@ -47,9 +47,9 @@ def chosen_amplitude(arguments: argparse.Namespace, scene: Scene) -> Amplitude |
 
     if arguments.amplitude is None:
         return None
-    found = with_answers(arguments, lambda answers: read_amplitude(arguments.amplitude, answers))
-    say(f"The drive has {found.words}; k stays {scene.k:g} N/m.")
-    return found
+    amplitude = with_answers(arguments, lambda answers: read_amplitude(arguments.amplitude, answers))
+    say(f"The drive has {amplitude.words}; k stays {scene.k:g} N/m.")
+    return amplitude
 
 
 def with_answers(arguments: argparse.Namespace, read: Callable[[Answers], Found]) -> Found:

@@ -45,22 +45,22 @@ def do_driven(arguments: argparse.Namespace, chosen: Scene) -> None:
     if sensors.filters:
         signal = _fine_enough(signal, chosen, sensors)
     start = None if begin is None else begin.state
-    found = in_background(lambda stop: drive(chosen, signal, start, stop=stop))
-    if found.status != "done":
+    motion = in_background(lambda stop: drive(chosen, signal, start, stop=stop))
+    if motion.status != "done":
         say(f"The accuracy asked for, {chosen.accuracy:g}, was not reached: the error may be "
-            f"{found.displacement_error:.1e} of the largest displacement.{_limited_by_samples(found)}")
+            f"{motion.displacement_error:.1e} of the largest displacement.{_limited_by_samples(motion)}")
     if arguments.out:
         from granchain_core.store import save
 
         with unbroken(arguments.out):
-            save(found, arguments.out, series)
-    write_picture(arguments.picture, f"A driven motion of {chosen.name}", found, measured=series)
-    differences = {} if series is None else compared_forces(series, found, sensors)
+            save(motion, arguments.out, series)
+    write_picture(arguments.picture, f"A driven motion of {chosen.name}", motion, measured=series)
+    differences = {} if series is None else compared_forces(series, motion, sensors)
     if arguments.json:
-        show_json({**_json(found, series, differences), "start": "rest" if begin is None else begin.words,
+        show_json({**_json(motion, series, differences), "start": "rest" if begin is None else begin.words,
                    "bandwidth": sensors.bandwidth if sensors.filters else None, "tip_mass": sensors.tip_mass})
     else:
-        _show(found, differences)
+        _show(motion, differences)
 
 
 def _fine_enough(signal: Signal, chosen: Scene, sensors: Sensors) -> Signal:
@@ -86,8 +86,8 @@ def chosen_signal(arguments: argparse.Namespace, chosen: Scene) -> tuple[Signal,
     if not chosen.is_driven:
         raise BadInput("The scene has drive = rest, and --drive moves the driver: give one of them; the nearest valid "
                        "value is --set drive=harmonic.")
-    found = formula_signal(arguments.drive, chosen.A0)
-    if found is None:
+    signal = formula_signal(arguments.drive, chosen.A0)
+    if signal is None:
         signal, series = with_answers(arguments, lambda given: _measured(arguments.drive, given, arguments.gap))
         say(f"{series.understood}.")
         say(_uses(series))
@@ -95,7 +95,7 @@ def chosen_signal(arguments: argparse.Namespace, chosen: Scene) -> tuple[Signal,
     check_no_samples(arguments)
     if arguments.start != "rest":
         raise BadInput("--start is for --drive FILE, the samples of a measured motion; a formula starts at rest.")
-    return found, None
+    return signal, None
 
 
 def check_no_samples(arguments: argparse.Namespace) -> None:
@@ -172,39 +172,39 @@ def _uses(series: Series) -> str:
             f"{ones}. No offset of a sensor is subtracted.{unused}")
 
 
-def _limited_by_samples(found: Driven) -> str:
+def _limited_by_samples(motion: Driven) -> str:
     """A sentence if the samples of a measured motion limit its accuracy; otherwise empty."""
-    steps = found.displacement_error - found.interpolation_error
-    if found.interpolation_error <= steps:
+    steps = motion.displacement_error - motion.interpolation_error
+    if motion.interpolation_error <= steps:
         return ""
-    return (f" The samples limit it: the motion between them adds {found.interpolation_error:.1e}, the steps "
+    return (f" The samples limit it: the motion between them adds {motion.interpolation_error:.1e}, the steps "
             f"{steps:.1e}.")
 
 
-def _json(found: Driven, series: Series | None, differences: dict[str, ForceDifference]) -> dict[str, Any]:
+def _json(motion: Driven, series: Series | None, differences: dict[str, ForceDifference]) -> dict[str, Any]:
     """A driven motion as one JSON object."""
     from granchain_core.experiment.compare_forces import FORCES
 
-    return {**scene_json(found.scene), "drive": found.signal.words,
-            "duration": float(found.time[-1] - found.time[0]), "status": found.status, **forces_json(found),
-            **errors_json(found), "interpolation_error": found.interpolation_error,
+    return {**scene_json(motion.scene), "drive": motion.signal.words,
+            "duration": float(motion.time[-1] - motion.time[0]), "status": motion.status, **forces_json(motion),
+            **errors_json(motion), "interpolation_error": motion.interpolation_error,
             "understood": None if series is None else series.understood,
             **{f"residual_{name.removesuffix('_force')}": _residual_json(differences.get(name)) for name in FORCES},
-            "cost": asdict(found.cost)}
+            "cost": asdict(motion.cost)}
 
 
-def _residual_json(found: ForceDifference | None) -> dict[str, Any] | None:
+def _residual_json(difference: ForceDifference | None) -> dict[str, Any] | None:
     """How far a computed force is from the measured one; None if none was measured."""
-    if found is None:
+    if difference is None:
         return None
-    return {name: getattr(found, name)
+    return {name: getattr(difference, name)
             for name in ("compared", "samples", "rms", "largest", "at", "mean", "relative")}
 
 
-def _show(found: Driven, differences: dict[str, ForceDifference]) -> None:
+def _show(motion: Driven, differences: dict[str, ForceDifference]) -> None:
     """A driven motion in a few lines."""
-    print(f"{found.scene.name}: {found.signal.words}; {status_in_words(found.status)}")
-    print(forces_in_words(found))
-    print(errors_in_words(found))
+    print(f"{motion.scene.name}: {motion.signal.words}; {status_in_words(motion.status)}")
+    print(forces_in_words(motion))
+    print(errors_in_words(motion))
     for difference in differences.values():
         print(difference.sentence)

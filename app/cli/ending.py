@@ -81,10 +81,10 @@ def _wait(reading: int) -> None:
         if status is None:
             continue
         with _REQUEST.lock:
-            _REQUEST.status, tell = status, _REQUEST.tell
-            if tell is None:
+            _REQUEST.status, stop_computation = status, _REQUEST.tell
+            if stop_computation is None:
                 _end()
-        tell()
+        stop_computation()
         select.select([reading], [], [], _GRACE)
         _end()
 
@@ -100,16 +100,16 @@ def wrote(words: str) -> None:
 
 
 def _end() -> NoReturn:
-    there = _REQUEST.written
-    if not there and os.path.isdir(_REQUEST.kept):
-        there = f"what was finished is kept in {_REQUEST.kept}; go on with --resume"
+    sentence = _REQUEST.written
+    if not sentence and os.path.isdir(_REQUEST.kept):
+        sentence = f"what was finished is kept in {_REQUEST.kept}; go on with --resume"
     with suppress(OSError):
-        os.write(2, f"{word()}{f': {there}' if there else ''}.\n".encode())
+        os.write(2, f"{word()}{f': {sentence}' if sentence else ''}.\n".encode())
     os._exit(status())
 
 
 @contextmanager
-def asking(tell: Callable[[], None] = lambda: None) -> Iterator[Callable[[], bool]]:
+def asking(stop_computation: Callable[[], None] = lambda: None) -> Iterator[Callable[[], bool]]:
     """Within this block a signal calls `tell`, in another thread, and the block has some time to end.
 
     Gives a function that says whether a signal has come. A block inside another one changes nothing.
@@ -117,7 +117,7 @@ def asking(tell: Callable[[], None] = lambda: None) -> Iterator[Callable[[], boo
     with _REQUEST.lock:
         before = _REQUEST.tell
         if before is None:
-            _REQUEST.tell = tell
+            _REQUEST.tell = stop_computation
     try:
         yield lambda: _REQUEST.status is not None
     finally:

@@ -35,8 +35,8 @@ def do(arguments: argparse.Namespace) -> None:
     from granchain_core.store import check_writable
 
     if arguments.number == "list":
-        for one in FIGURES.values():
-            print(f"{one.number:>3}  {one.title}")
+        for figure in FIGURES.values():
+            print(f"{figure.number:>3}  {figure.title}")
         return
     figure = figure_of(arguments.number)
     out = arguments.out or f"figure-{figure.number}.html"

@@ -78,21 +78,21 @@ def do(arguments: argparse.Namespace) -> None:
             print(f"\r{count} sets of parameters", end="", file=sys.stderr, flush=True)
 
     with scheduler_of(arguments) as client:
-        found = in_background(lambda stop: fit(chosen, target, free, arguments.design, not arguments.no_intervals, stop,
-                                               progress, client), reports=True)
+        result = in_background(lambda stop: fit(chosen, target, free, arguments.design, not arguments.no_intervals,
+                                                stop, progress, client), reports=True)
     if sys.stderr.isatty():
         say()
-    result = {**found.to_json(), "bandwidth": arguments.bandwidth if math.isfinite(arguments.bandwidth) else None}
+    data = {**result.to_json(), "bandwidth": arguments.bandwidth if math.isfinite(arguments.bandwidth) else None}
     if arguments.out:
-        values, misfits = found.landscape
-        landscape = {one.name: values[:, i].tolist() for i, one in enumerate(found.free)}
-        Path(arguments.out).write_text(json.dumps({**result, "landscape": {
+        values, misfits = result.landscape
+        landscape = {parameter.name: values[:, i].tolist() for i, parameter in enumerate(result.free)}
+        Path(arguments.out).write_text(json.dumps({**data, "landscape": {
             **landscape, "misfit": misfits.tolist()}}, indent=1), encoding="utf-8")
-    write_picture(arguments.picture, f"A fit of {chosen.name}", found)
+    write_picture(arguments.picture, f"A fit of {chosen.name}", result)
     if arguments.json:
-        show_json(result)
+        show_json(data)
     else:
-        _show(found)
+        _show(result)
 
 
 def _target(arguments: argparse.Namespace, chosen: Scene) -> Any:
@@ -129,20 +129,20 @@ def _measured_target(arguments: argparse.Namespace) -> Any:
         raise BadInput(f"{len(files)} {'files are' if len(files) > 1 else 'file is'} given with --data and "
                        f"{len(at)} drive frequencies with --at; give one for each.")
     kinds = ("curve", "series") if len(files) == 1 else ("series",)
-    found = with_answers(arguments, lambda answers: [read_experiment(file, answers, kinds) for file in files])
-    for one in found:
-        say(f"{one.understood}.")
-    if isinstance(found[0], Measured):
+    data = with_answers(arguments, lambda answers: [read_experiment(file, answers, kinds) for file in files])
+    for measured in data:
+        say(f"{measured.understood}.")
+    if isinstance(data[0], Measured):
         if at:
             raise BadInput("A curve has its own frequencies; --at is for series.")
         _only_series(arguments)
-        return CurveTarget(found[0], _error(arguments.error, "%"), arguments.elastic, arguments.start)
+        return CurveTarget(data[0], _error(arguments.error, "%"), arguments.elastic, arguments.start)
     if arguments.elastic or (arguments.per_frequency and len(files) == 1):
         raise BadInput("A series has one frequency and total forces; --per-frequency is for curves and several series, "
                        "--elastic for curves.")
     error = _error(arguments.error, "N")
-    records = [SeriesTarget(one, error, f, arguments.bandwidth) for one, f in zip(found, at or [None], strict=True)
-               if isinstance(one, Series)]
+    records = [SeriesTarget(measured, error, f, arguments.bandwidth)
+               for measured, f in zip(data, at or [None], strict=True) if isinstance(measured, Series)]
     return RecordsTarget(tuple(records)) if len(records) > 1 else records[0]
 
 
@@ -157,13 +157,13 @@ def _error(text: str | None, unit: str) -> float | None:
     if text is None:
         return None
     plain = text.removesuffix(unit)
-    found = number_in(plain)
-    if found is None:
+    error = number_in(plain)
+    if error is None:
         raise BadInput(f"--error {text[:40]!r} is not a number, or not in {unit}; these data take {unit}, for example "
                        f"--error {_EXAMPLES[unit]}.")
-    if not found > 0.0:
+    if not error > 0.0:
         raise BadInput(f"--error {text[:40]} must be above 0.")
-    return found / 100.0 if unit == "%" and plain != text else found
+    return error / 100.0 if unit == "%" and plain != text else error
 
 
 def _free(arguments: argparse.Namespace) -> list[Free]:
@@ -176,47 +176,48 @@ def _free(arguments: argparse.Namespace) -> list[Free]:
     free = [free_of(text, priors.pop(text.partition("=")[0], None)) for text in arguments.free]
     if priors:
         raise BadInput(f"--prior {next(iter(priors))} belongs to no --free.")
-    if arguments.per_frequency and not any(one.name == "A0" for one in free):
+    if arguments.per_frequency and not any(parameter.name == "A0" for parameter in free):
         raise BadInput("--per-frequency needs --free A0=low:high.")
     return free
 
 
-def _show(found: Fit) -> None:
+def _show(result: Fit) -> None:
     """A fit as a table and a sentence."""
     print("parameter        best                95 % interval             bounds")
-    for i, one in enumerate(found.free):
+    for i, parameter in enumerate(result.free):
         interval = "–"
-        if found.profiles:
-            there = found.profiles[i]
-            interval = (f"{'below ' if there.open_low else ''}{there.low:.5g} to "
-                        f"{'above ' if there.open_high else ''}{there.high:.5g}")
-        print(f"{one.name:12s} {found.best[i]:12.6g} {one.unit:9s} {interval:>26s}   {one.low:g} to {one.high:g}")
-    for name, other, value in _correlations(found):
+        if result.profiles:
+            profile = result.profiles[i]
+            interval = (f"{'below ' if profile.open_low else ''}{profile.low:.5g} to "
+                        f"{'above ' if profile.open_high else ''}{profile.high:.5g}")
+        print(f"{parameter.name:12s} {result.best[i]:12.6g} {parameter.unit:9s} {interval:>26s}   "
+              f"{parameter.low:g} to {parameter.high:g}")
+    for name, other, value in _correlations(result):
         print(f"correlation of {name} and {other}: {value:+.2f}")
-    print(found.sentence)
-    for row in _rows(found):
+    print(result.sentence)
+    for row in _rows(result):
         print(row)
-    say(f"{len(found.landscape[1])} sets of parameters in {found.wall_s:.1f} s")
+    say(f"{len(result.landscape[1])} sets of parameters in {result.wall_s:.1f} s")
 
 
-def _correlations(found: Fit) -> list[tuple[str, str, float]]:
+def _correlations(result: Fit) -> list[tuple[str, str, float]]:
     """Each pair of parameters with the correlation of their estimates, where there is one."""
-    if found.correlation is None:
+    if result.correlation is None:
         return []
-    names = [one.name for one in found.free]
-    return [(names[i], names[j], float(found.correlation[i, j])) for i in range(len(names)) for j in range(i)
-            if found.correlation[i, j] == found.correlation[i, j]]
+    names = [parameter.name for parameter in result.free]
+    return [(names[i], names[j], float(result.correlation[i, j])) for i in range(len(names)) for j in range(i)
+            if result.correlation[i, j] == result.correlation[i, j]]
 
 
-def _rows(found: Fit) -> list[str]:
+def _rows(result: Fit) -> list[str]:
     """A line for every datum of a curve, every feature, and every record of several; one series has none."""
     from granchain_core.fitting import CurveTarget, FeatureTarget, RecordsTarget
 
-    target, evaluation = found.target, found.evaluation
+    target, evaluation = result.target, result.evaluation
     if isinstance(target, RecordsTarget):
-        return [f"{one.frequency:10.6g} Hz  χ² {float((evaluation.residuals[samples] ** 2).sum()):10.5g} of "
+        return [f"{record.frequency:10.6g} Hz  χ² {float((evaluation.residuals[samples] ** 2).sum()):10.5g} of "
                 f"{samples.stop - samples.start} samples  {_in_words(regime)}"
-                for one, samples, regime in target.parts(evaluation)]
+                for record, samples, regime in target.parts(evaluation)]
     if isinstance(target, CurveTarget):
         rows = zip(target.frequencies, target.measured.force, evaluation.model, evaluation.residuals,
                    evaluation.regimes, strict=True)

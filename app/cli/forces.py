@@ -17,34 +17,34 @@ def scene_json(scene: Scene) -> dict[str, Any]:
     return {"scene": scene.name, "knobs": scene.knobs, "effects": scene.effects}
 
 
-def forces_json(found: LargestForces) -> dict[str, Any]:
+def forces_json(forces: LargestForces) -> dict[str, Any]:
     """The largest forces [N]."""
-    return {"max_output_force": found.max_output_force, "max_output_force_elastic": found.max_output_force_elastic,
-            "max_input_force": found.max_input_force}
+    return {"max_output_force": forces.max_output_force, "max_output_force_elastic": forces.max_output_force_elastic,
+            "max_input_force": forces.max_input_force}
 
 
-def errors_json(found: Run | Driven) -> dict[str, Any]:
+def errors_json(motion: Run | Driven) -> dict[str, Any]:
     """The relative errors of displacements and of each largest force, and the residual of the energy account."""
-    errors = found.force_errors
-    return {"error_estimate": found.displacement_error, "error_estimate_output": errors.output,
+    errors = motion.force_errors
+    return {"error_estimate": motion.displacement_error, "error_estimate_output": errors.output,
             "error_estimate_input": errors.input, "error_estimate_elastic": errors.elastic,
-            "energy_residual": found.energy_residual}
+            "energy_residual": motion.energy_residual}
 
 
-def forces_in_words(found: LargestForces) -> str:
+def forces_in_words(forces: LargestForces) -> str:
     """The largest forces, in one line."""
-    return (f"largest output force {found.max_output_force:.6g} N (elastic {found.max_output_force_elastic:.6g} N), "
-            f"input force {found.max_input_force:.6g} N")
+    return (f"largest output force {forces.max_output_force:.6g} N (elastic {forces.max_output_force_elastic:.6g} N), "
+            f"input force {forces.max_input_force:.6g} N")
 
 
-def errors_in_words(found: Run | Driven) -> str:
+def errors_in_words(motion: Run | Driven) -> str:
     """The errors, the energy account and the cost, in one line."""
-    errors = found.force_errors
+    errors = motion.force_errors
     inward, outward, elastic = ("none stated" if e is None else f"{e:.1e}"
                                 for e in (errors.input, errors.output, errors.elastic))
-    return (f"relative errors: displacement {found.displacement_error:.1e}, "
+    return (f"relative errors: displacement {motion.displacement_error:.1e}, "
             f"output force {outward} (elastic {elastic}), input force {inward}; "
-            f"{energy_in_words(found.energy_residual)}; {cost_in_words(found.cost)}")
+            f"{energy_in_words(motion.energy_residual)}; {cost_in_words(motion.cost)}")
 
 
 def status_in_words(status: str) -> str:
@@ -69,13 +69,13 @@ def warn(result: Run, budget: float) -> None:
 
     for warning in warnings(result):
         say(warning)
-    asked, error = result.scene.accuracy, result.displacement_error
+    accuracy, error = result.scene.accuracy, result.displacement_error
     if result.status == "accuracy-not-reached":
-        say(f"The accuracy asked for, {asked:g}, was not reached: the error may be {error:.1e} of the largest "
+        say(f"The accuracy asked for, {accuracy:g}, was not reached: the error may be {error:.1e} of the largest "
             f"displacement.{_forces_in_words(result)}")
     if result.status == "over-budget":
         say(f"A finer computation would not fit the budget of {budget:g} s: the error may be {error:.1e} of the "
-            f"largest displacement, {asked:g} was asked for.")
+            f"largest displacement, {accuracy:g} was asked for.")
     if result.jumps.unresolved:
         say(f"{result.jumps.unresolved} touches were shorter than a step of {result.cost.method} and are not resolved: "
             "their jumps are read off the step's ends.")
@@ -83,7 +83,7 @@ def warn(result: Run, budget: float) -> None:
 
 def _forces_in_words(result: Run) -> str:
     """A sentence if the largest forces are as accurate as asked for and a displacement is not; otherwise empty."""
-    stated = [one for one in asdict(result.force_errors).values() if one is not None]
+    stated = [error for error in asdict(result.force_errors).values() if error is not None]
     if not stated or max(stated) > result.scene.accuracy:
         return ""
     return f" The largest forces reached it, with {max(stated):.1e}."

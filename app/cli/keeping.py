@@ -40,18 +40,18 @@ def finished(arguments: argparse.Namespace, what: str, load: Callable[[str], Res
         return None
     unfinished = folder_of(arguments.out).exists()
     try:
-        found = load(arguments.out)
+        result = load(arguments.out)
     except BadInput:
         if unfinished:  # an older file that this result will replace
             return None
         raise
-    if not same(found):
+    if not same(result):
         if unfinished:
             return None
         raise BadInput(f"{arguments.out} is a finished {what} that was computed with other options; give another "
                        "--out.")
     say(f"{arguments.out} is finished already; nothing was computed.")
-    return found
+    return result
 
 
 @contextmanager

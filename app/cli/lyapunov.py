@@ -28,17 +28,18 @@ def do(arguments: argparse.Namespace) -> None:
     chosen = chosen_scene(arguments)
     check_files(arguments)
     progress = show_percent if sys.stderr.isatty() else None
-    found = in_background(lambda stop: lyapunov_spectrum(chosen, arguments.periods, stop=stop, progress=progress),
-                          reports=True)
-    write_files(arguments, f"Lyapunov spectrum of {chosen.name}", found)
+    result = in_background(lambda stop: lyapunov_spectrum(chosen, arguments.periods, stop=stop, progress=progress),
+                           reports=True)
+    write_files(arguments, f"Lyapunov spectrum of {chosen.name}", result)
     if arguments.json:
-        low, high = found.dimension_range or (None, None)
-        show_json({"exponents": found.exponents.tolist(), "errors": found.errors.tolist(), "resolved": found.resolved,
-                   "dimension": found.dimension, "mean_trace": found.mean_trace, "liouville": found.liouville,
-                   "periods": found.periods, "dimension_low": low, "dimension_high": high})
+        low, high = result.dimension_range or (None, None)
+        show_json({"exponents": result.exponents.tolist(), "errors": result.errors.tolist(),
+                   "resolved": result.resolved, "dimension": result.dimension, "mean_trace": result.mean_trace,
+                   "liouville": result.liouville, "periods": result.periods,
+                   "dimension_low": low, "dimension_high": high})
         return
-    print(f"{chosen.name}: {found.resolved} of {len(found.exponents)} exponents resolved over {found.periods} periods; "
-          f"Kaplan–Yorke dimension of the section: {found.dimension_words()}")
-    for i, (exponent, error) in enumerate(zip(found.exponents, found.errors, strict=True), start=1):
-        known = f"± {error:.1e}" if i <= found.resolved else "at most"
+    print(f"{chosen.name}: {result.resolved} of {len(result.exponents)} exponents resolved over {result.periods} "
+          f"periods; Kaplan–Yorke dimension of the section: {result.dimension_words()}")
+    for i, (exponent, error) in enumerate(zip(result.exponents, result.errors, strict=True), start=1):
+        known = f"± {error:.1e}" if i <= result.resolved else "at most"
         print(f"{i:4d}  {exponent:+10.5f} per period  {known}")

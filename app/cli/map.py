@@ -81,31 +81,31 @@ def do(arguments: argparse.Namespace) -> None:
         _refuse_too_many(grid)
     if arguments.bifurcations:
         refuse_cut(grid.scene)
-    found, computed = _found(arguments, grid)
-    curves = in_background(lambda stop: bifurcation_curves(found, stop=stop)) if arguments.bifurcations else []
-    write_picture(arguments.picture, f"A parameter map of {grid.scene.name}", found, curves=curves)
-    _tell(found, curves, computed, arguments)
+    parameter_map, computed = _found(arguments, grid)
+    curves = in_background(lambda stop: bifurcation_curves(parameter_map, stop=stop)) if arguments.bifurcations else []
+    write_picture(arguments.picture, f"A parameter map of {grid.scene.name}", parameter_map, curves=curves)
+    _tell(parameter_map, curves, computed, arguments)
 
 
 def _found(arguments: argparse.Namespace, grid: Grid) -> tuple[ParameterMap, int]:
     """The parameter map and its file, of which only missing cells are computed, and how many those were."""
     from granchain_core.store.parameter_maps import load_parameter_map, save_parameter_map
 
-    there = finished(arguments, "map", load_parameter_map,
-                     lambda found: found.complete and found.grid.digest == grid.digest)
-    if there is not None:
+    written = finished(arguments, "map", load_parameter_map,
+                       lambda parameter_map: parameter_map.complete and parameter_map.grid.digest == grid.digest)
+    if written is not None:
         Blocks(grid, arguments.out).kept.remove()
-        return there, 0
+        return written, 0
     done = [0]
     with scheduler_of(arguments) as client:
         blocks = Blocks.open(grid, arguments.out, arguments.resume)
         with (compiling_beside(grid.scene, FIXED_STEP_KERNELS),
               keeping(blocks.kept, lambda: f"{done[0]} of {grid.size} cells")):
-            found, computed = in_background(lambda stop: _filled(blocks, client, stop, done), reports=True)
+            parameter_map, computed = in_background(lambda stop: _filled(blocks, client, stop, done), reports=True)
     with unbroken(arguments.out):
-        save_parameter_map(found, arguments.out)
+        save_parameter_map(parameter_map, arguments.out)
         blocks.kept.remove()
-    return found, computed
+    return parameter_map, computed
 
 
 def _refuse_too_many(grid: Grid) -> None:
@@ -148,26 +148,26 @@ def _rows(grid: Grid, missing: list[int], client: Any, stop: Stop) -> Iterator[n
         yield np.atleast_1d(cell_of(result))
 
 
-def _tell(found: ParameterMap, curves: list[BifurcationCurve], computed: int, arguments: argparse.Namespace) -> None:
-    counts = {name: int((found.cells["regime"] == code).sum()) for code, name in enumerate(CELL_REGIMES)}
-    inward, worst, elastic = (_largest(found.cells[name]) for name in ERRORS)
+def _tell(result: ParameterMap, curves: list[BifurcationCurve], computed: int, arguments: argparse.Namespace) -> None:
+    counts = {name: int((result.cells["regime"] == code).sum()) for code, name in enumerate(CELL_REGIMES)}
+    inward, worst, elastic = (_largest(result.cells[name]) for name in ERRORS)
     if arguments.json:
-        grid = found.grid
+        grid = result.grid
         show_json({
             "scene": grid.scene.name, "x": grid.x.knob, "y": grid.y.knob, "cells": grid.size, "computed": computed,
             "regimes": counts, "largest_error_estimate": finite_or_null(worst),
-            "wall_s": found.wall_s, "file": str(arguments.out),
-            **({"bifurcations": [_curve_json(one) for one in curves]} if arguments.bifurcations else {})})
+            "wall_s": result.wall_s, "file": str(arguments.out),
+            **({"bifurcations": [_curve_json(curve) for curve in curves]} if arguments.bifurcations else {})})
         return
-    for axis in (found.grid.x, found.grid.y):
+    for axis in (result.grid.x, result.grid.y):
         quantity = QUANTITIES[axis.knob]
         print(f"{quantity.label} {axis.knob}: {len(axis.values)} values, {axis.values[0]:g} to {axis.values[-1]:g} "
               f"{quantity.unit}")
     print(", ".join(f"{count} {name}" for name, count in counts.items() if count))
     print(f"largest relative errors of a periodic cell: output force {worst:.1e}, input force {inward:.1e}, elastic "
-          f"output force {elastic:.1e}; {computed} cells computed in {found.wall_s:.1f} s; written to {arguments.out}")
+          f"output force {elastic:.1e}; {computed} cells computed in {result.wall_s:.1f} s; written to {arguments.out}")
     if arguments.bifurcations:
-        print("\n".join(one.sentence(found.grid.x.knob, found.grid.y.knob) for one in curves)
+        print("\n".join(curve.sentence(result.grid.x.knob, result.grid.y.knob) for curve in curves)
               or "no bifurcation between neighbouring cells of the middle row")
 
 

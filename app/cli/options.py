@@ -13,18 +13,18 @@ from granchain_core.inputs.text import number_in, whole_in
 
 def number(text: str) -> float:
     """The number of an option, read as that of a knob."""
-    found = number_in(text)
-    if found is None:
+    value = number_in(text)
+    if value is None:
         raise argparse.ArgumentTypeError(f"{text[:40]!r} is not a number")
-    return found
+    return value
 
 
 def whole(text: str) -> int:
     """The whole number of an option."""
-    found = whole_in(text)
-    if found is None:
+    value = whole_in(text)
+    if value is None:
         raise argparse.ArgumentTypeError(f"{text[:40]!r} is not a whole number")
-    return found
+    return value
 
 
 def add_scene(parser: argparse.ArgumentParser) -> None:
@@ -96,7 +96,7 @@ def values_from(option: str, text: str, most: int) -> tuple[str, tuple[float, fl
 
 
 def _end(option: str, text: str) -> float:
-    found = number_in(text)
-    if found is None:
+    value = number_in(text)
+    if value is None:
         raise BadInput(f"{option}: {text[:40]!r} is not a number.")
-    return found
+    return value

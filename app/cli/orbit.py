@@ -45,32 +45,32 @@ def do(arguments: argparse.Namespace) -> None:
     chosen = chosen_scene(arguments)
     find = _search(chosen, arguments)
     with compiling_beside(chosen, ORBIT_KERNELS):
-        found = in_background(find)
-    write_files(arguments, f"Multipliers of {chosen.name}", found)
-    say_if(found.period_note)
+        orbit = in_background(find)
+    write_files(arguments, f"Multipliers of {chosen.name}", orbit)
+    say_if(orbit.period_note)
     if arguments.json:
         data: dict[str, Any] = {
-            "period": found.period, "residual": found.residual, "newton_residuals": list(found.newton_residuals),
-            "multipliers": _pairs(found.multipliers), "stable": found.stable,
-            "multiplier_errors": _numbers(found.multiplier_errors), "stability_certain": found.stability_certain,
-            "period_note": found.period_note or None, "distance_of_motion": found.distance_of_motion,
+            "period": orbit.period, "residual": orbit.residual, "newton_residuals": list(orbit.newton_residuals),
+            "multipliers": _pairs(orbit.multipliers), "stable": orbit.stable,
+            "multiplier_errors": _numbers(orbit.multiplier_errors), "stability_certain": orbit.stability_certain,
+            "period_note": orbit.period_note or None, "distance_of_motion": orbit.distance_of_motion,
         }
-        if found.observer_multipliers is not None:
-            data["observer_multipliers"] = _pairs(found.observer_multipliers)
-            data["observer_stable"] = found.observer_stable
-            data["observer_multiplier_errors"] = _numbers(found.observer_multiplier_errors)
-            data["observer_stability_certain"] = found.observer_stability_certain
+        if orbit.observer_multipliers is not None:
+            data["observer_multipliers"] = _pairs(orbit.observer_multipliers)
+            data["observer_stable"] = orbit.observer_stable
+            data["observer_multiplier_errors"] = _numbers(orbit.observer_multiplier_errors)
+            data["observer_stability_certain"] = orbit.observer_stability_certain
         show_json(data)
         return
-    count = len(found.newton_residuals) - 1
-    print(f"{chosen.name}: orbit of period {found.period}, {found.stability_words()}, "
-          f"residual {found.residual:.1e} after {count} Newton iteration{'' if count == 1 else 's'}")
-    if found.distance_of_motion is not None:
-        print(found.distance_words())
-    _show_multipliers("multipliers", found.multipliers, found.multiplier_errors)
-    if found.observer_multipliers is not None:
-        _show_multipliers(f"observer, {found.observer_stability_words()}", found.observer_multipliers,
-                          found.observer_multiplier_errors)
+    count = len(orbit.newton_residuals) - 1
+    print(f"{chosen.name}: orbit of period {orbit.period}, {orbit.stability_words()}, "
+          f"residual {orbit.residual:.1e} after {count} Newton iteration{'' if count == 1 else 's'}")
+    if orbit.distance_of_motion is not None:
+        print(orbit.distance_words())
+    _show_multipliers("multipliers", orbit.multipliers, orbit.multiplier_errors)
+    if orbit.observer_multipliers is not None:
+        _show_multipliers(f"observer, {orbit.observer_stability_words()}", orbit.observer_multipliers,
+                          orbit.observer_multiplier_errors)
 
 
 def _pairs(multipliers: Any) -> list[list[float]]:
@@ -79,7 +79,7 @@ def _pairs(multipliers: Any) -> list[list[float]]:
 
 def _numbers(errors: Any) -> list[float | None] | None:
     """Numbers for JSON, which has no infinity."""
-    return None if errors is None else [float(one) if np.isfinite(one) else None for one in errors]
+    return None if errors is None else [float(error) if np.isfinite(error) else None for error in errors]
 
 
 def _show_multipliers(title: str, multipliers: Any, errors: Any) -> None:

@@ -35,42 +35,42 @@ def do(arguments: argparse.Namespace) -> None:
     chosen = chosen_scene(arguments)
     check_files(arguments)
     motion = in_background(lambda stop: run(chosen, periods=0, record=1, samples=arguments.samples, stop=stop))
-    found = pulse(motion)
+    result = pulse(motion)
     warn(motion, BUDGET)
-    write_files(arguments, f"A pulse along {chosen.name}", found)
+    write_files(arguments, f"A pulse along {chosen.name}", result)
     if arguments.json:
-        show_json(with_former_keys("pulse", _json(found)))
+        show_json(with_former_keys("pulse", _json(result)))
     else:
-        _show(found)
+        _show(result)
 
 
-def _json(found: Pulse) -> dict[str, Any]:
+def _json(result: Pulse) -> dict[str, Any]:
     beads, metres, width = ([finite_or_null(float(x)) for x in values]
-                            for values in (found.speed_beads_s, found.speed_m_s, found.width))
-    return {"contact": found.contact.tolist(), "time": found.time.tolist(), "force": found.force.tolist(),
+                            for values in (result.speed_beads_s, result.speed_m_s, result.width))
+    return {"contact": result.contact.tolist(), "time": result.time.tolist(), "force": result.force.tolist(),
             "speed_beads_s": beads, "speed_m_s": metres, "width": width,
-            "velocity": found.velocity.tolist(),
-            "error_estimate": found.run.displacement_error, "sampling_error": found.sampling_error,
-            "sampling_error_time": found.sampling_error_time,
-            "sampling_error_speed": finite_or_null(found.sampling_error_speed),
-            "sampling_error_width": finite_or_null(found.sampling_error_width),
-            "energy_residual": found.run.energy_residual}
+            "velocity": result.velocity.tolist(),
+            "error_estimate": result.run.displacement_error, "sampling_error": result.sampling_error,
+            "sampling_error_time": result.sampling_error_time,
+            "sampling_error_speed": finite_or_null(result.sampling_error_speed),
+            "sampling_error_width": finite_or_null(result.sampling_error_width),
+            "energy_residual": result.run.energy_residual}
 
 
-def _show(found: Pulse) -> None:
+def _show(result: Pulse) -> None:
     """One line for each contact; the speed of a solitary wave with the same force stands beside the one found."""
     from granchain_core.analysis.pulse import CONTINUUM, solitary_speed
 
-    chosen = found.run.scene
+    chosen = result.run.scene
     print("contact     time_s     force_N  speed_m_s  speed_beads_s  solitary_wave  continuum  width_beads")
-    for i, contact in enumerate(found.contact):
-        force = float(found.force[i])
-        row = (found.speed_m_s[i], 9, 6), (found.speed_beads_s[i], 13, 6), (solitary_speed(chosen, force), 13, 6), \
-            (solitary_speed(chosen, force, CONTINUUM), 9, 6), (found.width[i], 11, 4)
+    for i, contact in enumerate(result.contact):
+        force = float(result.force[i])
+        row = (result.speed_m_s[i], 9, 6), (result.speed_beads_s[i], 13, 6), (solitary_speed(chosen, force), 13, 6), \
+            (solitary_speed(chosen, force, CONTINUUM), 9, 6), (result.width[i], 11, 4)
         shown = "  ".join(f"{'–' if math.isnan(x) else f'{x:.{digits}g}':>{wide}}" for x, wide, digits in row)
-        print(f"{contact:7}  {found.time[i]:9.4e}  {force:10.6g}  {shown}")
-    by_sampling = {"forces": found.sampling_error, "speeds": found.sampling_error_speed,
-                   "widths": found.sampling_error_width}
-    print(f"relative error of displacements {found.run.displacement_error:.1e}; by sampling of "
+        print(f"{contact:7}  {result.time[i]:9.4e}  {force:10.6g}  {shown}")
+    by_sampling = {"forces": result.sampling_error, "speeds": result.sampling_error_speed,
+                   "widths": result.sampling_error_width}
+    print(f"relative error of displacements {result.run.displacement_error:.1e}; by sampling of "
           f"{', '.join(f'{name} {error:.1e}' for name, error in by_sampling.items() if not math.isnan(error))}; "
-          f"{energy_in_words(found.run.energy_residual)}")
+          f"{energy_in_words(result.run.energy_residual)}")

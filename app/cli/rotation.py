@@ -32,22 +32,22 @@ def do(arguments: argparse.Namespace) -> None:
     chosen = chosen_scene(arguments)
     check_files(arguments)
     progress = show_percent if sys.stderr.isatty() else None
-    found = in_background(lambda stop: rotation_number(chosen, arguments.periods, stop=stop, progress=progress),
-                          reports=True)
-    write_files(arguments, f"Rotation number of {chosen.name}", found)
+    result = in_background(lambda stop: rotation_number(chosen, arguments.periods, stop=stop, progress=progress),
+                           reports=True)
+    write_files(arguments, f"Rotation number of {chosen.name}", result)
     if arguments.json:
-        show_json(_json(found))
+        show_json(_json(result))
         return
-    for line in found.summary():
+    for line in result.summary():
         print(f"{chosen.name}: {line}")
 
 
-def _json(found: RotationNumber) -> dict[str, Any]:
-    nearest = found.nearest_fraction
-    return {"regime": found.regime.name, "rotation_number": found.value, "error": found.error,
-            "average_error": found.average_error, "step_error": found.step_error, "curves": found.curves,
-            "second_frequency": found.second_frequency, "second_frequency_error": found.second_frequency_error,
+def _json(result: RotationNumber) -> dict[str, Any]:
+    nearest = result.nearest_fraction
+    return {"regime": result.regime.name, "rotation_number": result.value, "error": result.error,
+            "average_error": result.average_error, "step_error": result.step_error, "curves": result.curves,
+            "second_frequency": result.second_frequency, "second_frequency_error": result.second_frequency_error,
             "nearest_fraction": None if nearest is None else [nearest.numerator, nearest.denominator],
-            "fraction_distance": found.fraction_distance, "projections": found.projections, "reason": found.reason,
-            "periods": found.periods,
-            "convergence": None if found.value is None else found.convergence.tolist()}
+            "fraction_distance": result.fraction_distance, "projections": result.projections, "reason": result.reason,
+            "periods": result.periods,
+            "convergence": None if result.value is None else result.convergence.tolist()}

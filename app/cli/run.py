@@ -39,9 +39,9 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--explain", action="store_true", help="say which effects and method are used, and why")
     parser.add_argument("--drive", metavar="SIGNAL",
                         help="another motion of the driver from the start to its end: "
-                             f"{', '.join(f'{name}={one.form}' for name, one in FORMULAS.items())} with A0, or a FILE "
-                             "of its velocity or displacement over time; measured forces in the file are compared "
-                             "with the computed ones")
+                             f"{', '.join(f'{name}={formula.form}' for name, formula in FORMULAS.items())} with A0, or "
+                             "a FILE of its velocity or displacement over time; measured forces in the file are "
+                             "compared with the computed ones")
     parser.add_argument("--gap", default="refuse", metavar="refuse|zero|interpolate",
                         help="what to do where samples of --drive FILE are missing")
     parser.add_argument("--start", default="rest", metavar="rest|settled|FILE",
@@ -100,10 +100,10 @@ def _result(chosen: Scene, arguments: argparse.Namespace) -> Run:
     from granchain_core.store import load, save
 
     kept = RunCheckpoints(chosen, *sizes, arguments.method, arguments.out)
-    there = finished(arguments, "run", load, lambda found: _is_asked_for(found, chosen, arguments))
-    if there is not None:
+    written = finished(arguments, "run", load, lambda run: _is_asked_for(run, chosen, arguments))
+    if written is not None:
         kept.kept.remove()
-        return there
+        return written
     kept.open(arguments.resume)
     with keeping(kept.kept, lambda: f"{kept.done} of {arguments.periods} discarded periods of computation "
                                     f"{kept.computation}"):
@@ -114,12 +114,12 @@ def _result(chosen: Scene, arguments: argparse.Namespace) -> Run:
     return result
 
 
-def _is_asked_for(found: Run, chosen: Scene, arguments: argparse.Namespace) -> bool:
+def _is_asked_for(run: Run, chosen: Scene, arguments: argparse.Namespace) -> bool:
     """Whether the run in a file is the one that the words ask for."""
     method = arguments.method or method_for(chosen.accuracy, chosen.cuts_tension).method
     rows = arguments.record * arguments.samples + 1
-    periods = round(float(found.time[0]) / chosen.period)
-    return (found.scene.digest, found.start, found.samples, len(found.time), periods, found.cost.method) == (
+    periods = round(float(run.time[0]) / chosen.period)
+    return (run.scene.digest, run.start, run.samples, len(run.time), periods, run.cost.method) == (
         chosen.digest, start_words(chosen, None), arguments.samples, rows,
         arguments.periods, method)
 

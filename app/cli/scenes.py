@@ -17,10 +17,10 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def do(arguments: argparse.Namespace) -> None:
     """List the scenes."""
-    found = [scene(name) for name in scene_names()]
+    scenes = [scene(name) for name in scene_names()]
     if arguments.json:
         show_json({"scenes": [{"name": s.name, "title": s.title, "look_at": s.look_at, "paper": s.paper,
-                                "knobs": s.knobs, "effects": s.effects} for s in found]})
+                               "knobs": s.knobs, "effects": s.effects} for s in scenes]})
         return
-    for one in found:
-        print(f"{one.name:10}  {one.title}\n{'':10}  {one.look_at}")
+    for row in scenes:
+        print(f"{row.name:10}  {row.title}\n{'':10}  {row.look_at}")

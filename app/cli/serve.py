@@ -137,6 +137,11 @@ def _content(name: str) -> bytes:
         raise BadInput(f"The file {name} cannot be read: {problem.strerror or problem}.") from None
 
 
+def _require_readable(name: str) -> None:
+    """Refuse a file that cannot be read in a sentence; Panel, which reads it later, would give a traceback."""
+    _content(name)
+
+
 def _sign_in(arguments: argparse.Namespace, secret: bytes | None) -> dict[str, str]:
     """The keyword arguments of Panel's `serve` for signing in.
 
@@ -148,13 +153,13 @@ def _sign_in(arguments: argparse.Namespace, secret: bytes | None) -> dict[str, s
     if arguments.basic_auth is not None and arguments.oauth_provider is not None:
         raise BadInput("--basic-auth and --oauth-provider are two ways to sign in; give one of them.")
     derived = hmac.new(secret or secrets.token_bytes(32), b"cookies of granchain", "sha256").hexdigest()
-    found = {"cookie_secret": os.environ.get("PANEL_COOKIE_SECRET") or derived}
+    keywords = {"cookie_secret": os.environ.get("PANEL_COOKIE_SECRET") or derived}
     if arguments.basic_auth is not None:
-        _content(arguments.basic_auth)  # Panel reads the file itself; here it is refused in a sentence
-        return {**found, "basic_auth": arguments.basic_auth}
+        _require_readable(arguments.basic_auth)
+        return {**keywords, "basic_auth": arguments.basic_auth}
     missing = [name for name in ("PANEL_OAUTH_KEY", "PANEL_OAUTH_SECRET") if not os.environ.get(name)]
     if missing:
         raise BadInput(f"--oauth-provider needs {' and '.join(missing)} in the environment.")
-    found["oauth_provider"] = arguments.oauth_provider
-    found.update((name, os.environ[variable]) for name, variable in _OAUTH.items() if os.environ.get(variable))
-    return found
+    keywords["oauth_provider"] = arguments.oauth_provider
+    keywords.update((name, os.environ[variable]) for name, variable in _OAUTH.items() if os.environ.get(variable))
+    return keywords

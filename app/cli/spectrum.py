@@ -40,12 +40,12 @@ def do(arguments: argparse.Namespace) -> None:
     if arguments.force not in FORCES:
         raise unknown_name("force", arguments.force, FORCES)
     motion = in_background(lambda stop: _motion(chosen, arguments.record, arguments.samples, stop))
-    found, through = spectrum(motion, arguments.force), transfer(motion) if motion.regime.period else None
-    write_files(arguments, f"Spectrum of {chosen.name}", found)
+    result, through = spectrum(motion, arguments.force), transfer(motion) if motion.regime.period else None
+    write_files(arguments, f"Spectrum of {chosen.name}", result)
     if arguments.json:
-        show_json(_json(found, through))
+        show_json(_json(result, through))
         return
-    _show(found, through)
+    _show(result, through)
 
 
 def _motion(chosen: Scene, record: int, samples: int, stop: Stop) -> Run:
@@ -56,25 +56,25 @@ def _motion(chosen: Scene, record: int, samples: int, stop: Stop) -> Run:
     return settled.run if settled.regime.period else run(chosen, 0, record, samples, start=settled.state, stop=stop)
 
 
-def _json(found: Spectrum, through: Transfer | None) -> dict[str, Any]:
+def _json(result: Spectrum, through: Transfer | None) -> dict[str, Any]:
     lines = None if through is None else {"frequency": through.frequency.tolist(), "gain": through.gain.tolist(),
                                           "phase": through.phase.tolist(),
                                           "gain_error": [finite_or_null(float(x)) for x in through.gain_error],
                                           "phase_error": [finite_or_null(float(x)) for x in through.phase_error]}
-    return {"force": found.force, "period": found.period, "resolution": found.resolution, "aliasing": found.aliasing,
-            "frequency": found.frequency.tolist(), "amplitude": found.amplitude.tolist(), "phase": found.phase.tolist(),
-            "transfer": lines}
+    return {"force": result.force, "period": result.period, "resolution": result.resolution,
+            "aliasing": result.aliasing, "frequency": result.frequency.tolist(),
+            "amplitude": result.amplitude.tolist(), "phase": result.phase.tolist(), "transfer": lines}
 
 
-def _show(found: Spectrum, through: Transfer | None) -> None:
+def _show(result: Spectrum, through: Transfer | None) -> None:
     """The largest lines as a table."""
     gains = {} if through is None else dict(zip(through.frequency.tolist(), through.gain.tolist(), strict=True))
-    kind = (f"Fourier series of a motion of period {found.period}" if found.period else
+    kind = (f"Fourier series of a motion of period {result.period}" if result.period else
             "peaks of a windowed record (not periodic)")
-    print(f"{found.run.scene.name}: {found.force} force, {kind}; resolution {found.resolution:.4g} Hz, "
-          f"folded back about {found.aliasing:.1e} N")
+    print(f"{result.run.scene.name}: {result.force} force, {kind}; resolution {result.resolution:.4g} Hz, "
+          f"folded back about {result.aliasing:.1e} N")
     print("frequency_Hz  amplitude_N  phase_rad  output_over_input")
-    for i in sorted(found.amplitude.argsort()[::-1][:_SHOWN]):
-        gain = gains.get(float(found.frequency[i]))
-        print(f"{found.frequency[i]:12.6g}  {found.amplitude[i]:11.5g}  {found.phase[i]:9.4f}  "
+    for i in sorted(result.amplitude.argsort()[::-1][:_SHOWN]):
+        gain = gains.get(float(result.frequency[i]))
+        print(f"{result.frequency[i]:12.6g}  {result.amplitude[i]:11.5g}  {result.phase[i]:9.4f}  "
               f"{'–' if gain is None else f'{gain:.4g}':>17}")

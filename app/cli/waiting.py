@@ -26,7 +26,7 @@ def answer() -> bytes:
     folder = Path(__file__).resolve().parent
     layout = folder.parent / "dashboard"
     files = [layout / name for name in ("dashboard.css", "skeleton.css")]
-    sheets = style_sheet() + "".join(one.read_text(encoding="utf-8") for one in files)
+    sheets = style_sheet() + "".join(sheet.read_text(encoding="utf-8") for sheet in files)
     body = (folder / "waiting.html").read_text(encoding="utf-8").replace("/* style sheets */", sheets).encode()
     head = ("HTTP/1.1 503 Service Unavailable\r\nContent-Type: text/html; charset=utf-8\r\nCache-Control: no-store\r\n"
             "Retry-After: 1\r\nX-Content-Type-Options: nosniff\r\nConnection: close\r\n"

@@ -183,26 +183,26 @@ class CurveController:
 
     def activities(self) -> list[Activity]:
         """Name, state and detail of the curve of every start, as it is at this moment."""
-        found = []
+        rows = []
         for name in CURVE_STARTS:
             title = f"resonance curve, {SWEEPS[name].words}"
             if not self._wanted[name]:
-                found.append((title, OFF, "not selected"))
+                rows.append((title, OFF, "not selected"))
             elif self._complete_for.get(name) is not None and self._complete_for.get(name) == self._begun_for:
-                found.append((title, READY, "all points are computed"))
+                rows.append((title, READY, "all points are computed"))
             elif not self._visible:
-                found.append((title, OFF, "not on the screen"))
+                rows.append((title, OFF, "not on the screen"))
             elif self._wanted_for is not None and not self._wanted_for.is_driven:
-                found.append((title, OFF, "nothing drives the chain"))
+                rows.append((title, OFF, "nothing drives the chain"))
             elif self._wanted_for is not None and not curve_affordable(self._wanted_for):
-                found.append((title, OFF, "it would take too long; granchain curve computes it"))
+                rows.append((title, OFF, "it would take too long; granchain curve computes it"))
             elif self._uncompiled is not None:
-                found.append((title, OFF, "its kernels could not be compiled"))
+                rows.append((title, OFF, "its kernels could not be compiled"))
             elif name in self._missing and self.computing:
-                found.append((title, COMPUTING, f"{100 * self._done:.0f} % of what is asked for"))
+                rows.append((title, COMPUTING, f"{100 * self._done:.0f} % of what is asked for"))
             else:
-                found.append((title, OFF, "waits until the knobs rest, or was stopped"))
-        return found
+                rows.append((title, OFF, "waits until the knobs rest, or was stopped"))
+        return rows
 
     def measured(self, measured: Measured | None) -> Difference | None:
         """Draw the visitor's own data, or none; return their difference from a complete curve from rest."""

@@ -27,10 +27,10 @@ function keyOf({ kinds, strong }) {
       "span",
       { className: "periods" },
       "repeats after",
-      ...periods.map((one) => mark(one, one.name.slice(PERIOD.length))),
+      ...periods.map((period) => mark(period, period.name.slice(PERIOD.length))),
       element("span", { className: "unit", textContent: "periods" }),
     ),
-    ...kinds.filter((one) => !periods.includes(one)).map((one) => mark(one, one.name)),
+    ...kinds.filter((kind) => !periods.includes(kind)).map((kind) => mark(kind, kind.name)),
     element(
       "span",
       { className: "ratio", title: ratio(strong) },

@@ -164,13 +164,13 @@ export class PeakNames {
     this.stated.forEach(({ f }, i) => {
       room.putStated(stated[i], f);
     });
-    const places = this.names.map((one, i) => [one, named[i]]);
+    const places = this.names.map((place, i) => [place, named[i]]);
     const valleys = places.filter(([{ kind }]) => kind === "valley");
-    const put = valleysFirst ? valleys.filter(([one, label]) => room.putValley(label, one)) : [];
-    const others = places.filter((one) => !put.includes(one));
+    const put = valleysFirst ? valleys.filter(([place, label]) => room.putValley(label, place)) : [];
+    const others = places.filter((place) => !put.includes(place));
     others.sort(([a], [b]) => ORDER[a.kind] - ORDER[b.kind] || b.force - a.force);
-    for (const [one, label] of others)
-      if (one.kind !== "valley" || !room.putValley(label, one)) room.put(label, one, room.alone);
+    for (const [place, label] of others)
+      if (place.kind !== "valley" || !room.putValley(label, place)) room.put(label, place, room.alone);
     return places.every(([{ kind }, label]) => kind !== "peak" || !label.hidden);
   }
 }

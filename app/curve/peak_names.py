@@ -113,7 +113,7 @@ class PeakNames:
 
         def work(job: Job) -> None:
             band = stop_band(points)
-            found = [] if band is None else [band_name(band)]
+            places = [] if band is None else [band_name(band)]
             extremes = extreme_points(points)
             key = without_frequency(scene), tuple((kind, point.frequency) for kind, point in extremes)
             with closing(NAMES_SHARED.follow(key, partial(_extremum_names, extremes, scene), job.stop,
@@ -121,7 +121,7 @@ class PeakNames:
                 for name in names:
                     job.give_way(lambda: self._host.busy)
                     job.stop.check()
-                    found += [name] if name else []
-            job.next_tick(self._show, sorted(found, key=lambda place: float(place["f"])))
+                    places += [name] if name else []
+            job.next_tick(self._show, sorted(places, key=lambda place: float(place["f"])))
 
         self._task.start(work)

@@ -79,8 +79,8 @@ class Sweep:
         for start in self.starts:
             key = without_frequency(self.scene), start
             with closing(CURVES_SHARED.follow(key, partial(_computed, self.scene, start), job.stop,
-                                              self.cpu_time)) as found:
-                for progress in found:
+                                              self.cpu_time)) as shared:
+                for progress in shared:
                     job.stop.check()
                     self.report(progress)
                     job.give_way(self.busy)
@@ -92,16 +92,16 @@ def _computed(scene: Scene, start: str, stop: Stop) -> Iterator[Progress]:
         yield from _points(scene, grid(scene, _SWEEP), start, stop, 0.0, 1.0)
         yield Progress(start, [], 1.0, complete=True, covers=True)
         return
-    found: list[CurvePoint] = []
+    points: list[CurvePoint] = []
     frequencies = grid(scene, COARSE)
     finest = 0.26 * float(frequencies[1] - frequencies[0])
     for number in range(_FINER_PASSES + 1):
         low, high = number / (_FINER_PASSES + 1), (number + 1) / (_FINER_PASSES + 1)
         for progress in _points(scene, frequencies, start, stop, low, high):
-            found += progress.points
+            points += progress.points
             yield progress
         yield Progress(start, [], high, complete=number == _FINER_PASSES, covers=True)
-        frequencies = midpoints(found, finest)
+        frequencies = midpoints(points, finest)
 
 
 def _points(scene: Scene, frequencies: np.ndarray, start: str, stop: Stop, low: float,
@@ -115,10 +115,10 @@ def _points(scene: Scene, frequencies: np.ndarray, start: str, stop: Stop, low: 
     stop.check()
 
 
-def _whole(found: list[Progress]) -> list[Progress]:
+def _whole(parts: list[Progress]) -> list[Progress]:
     """A finished curve, as it is kept for the next session: all points at once."""
-    points = [point for progress in found for point in progress.points]
-    return [Progress(found[-1].start, points, 1.0, complete=True, covers=True)]
+    points = [point for progress in parts for point in progress.points]
+    return [Progress(parts[-1].start, points, 1.0, complete=True, covers=True)]
 
 
 def _size(progress: Progress) -> int:

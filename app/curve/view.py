@@ -233,8 +233,9 @@ class CurveFigure:
             return
         if not self._bars:
             self._bars = self._measurement_marks()
-        found = self.difference
-        self._measured.data = measured_columns(measured, self._scale[0], None if found is None else found.residuals)
+        difference = self.difference
+        residuals = None if difference is None else difference.residuals
+        self._measured.data = measured_columns(measured, self._scale[0], residuals)
 
     @property
     def difference(self) -> Difference | None:

@@ -9,6 +9,7 @@ from urllib.parse import parse_qsl
 
 from granchain_core import BadInput, State
 
+from ..former_names import TABS, present_tab
 from ..pages.analysis.questions import read_question
 from ..pages.stories.page import story_places, story_step
 from ..session.pins import Pin, read_pin
@@ -29,7 +30,8 @@ def apply_address(session: Session, query: str) -> tuple[State | None, list[str]
 
     Returns the state in which the motion begins (None is rest), and a sentence for every refused field.
     """
-    places = {"tab": tab_names(), "page": tab_names(), "embed": ("1",)}
+    names = (*tab_names(), *(row.former for row in TABS))
+    places = {"tab": names, "page": names, "embed": ("1",)}
     scene, fields, sentences = decode(query, {**places, "story": story_places(overlay_names())})
     session.scene = scene
     session.story_to_settle = False
@@ -38,7 +40,7 @@ def apply_address(session: Session, query: str) -> tuple[State | None, list[str]
         session.scene, session.story_to_settle = step.scene, bool(step.via)
         fields = {**({"curves": step.curves} if step.curves else {}), **fields}
     session.apply_view(fields)
-    session.place = {name: fields[name] for name in places if name in fields}
+    session.place = {name: present_tab(fields[name]) for name in places if name in fields}
     if session.place.get("page", "") not in ("", *overlay_names()):  # a page without an overlay has a tab alone
         session.place["tab"] = session.place.pop("page")
     session.story = fields.get("story", "")

@@ -75,7 +75,7 @@ class Controller:
             "ready": self._ready, "window-shown": lambda _: self.pictures.restart(),
             "compact": lambda m: views.set_compact(bool(m.get("value"))),
             "visible": self._visible,
-            "painted": lambda m: self.pictures.painted(m.get("number")),
+            "painted": lambda m: self.pictures.painted(m.get("number"), m.get("took")),
             **self._scenes.actions,
             "gallery": self._send_gallery,
             **self.sentences.actions,
@@ -186,9 +186,9 @@ class Controller:
         """See `PageHost`."""
         return self.curves.measured(measured)
 
-    def show_measured_series(self, found: Overlay | None) -> None:
+    def show_measured_series(self, overlay: Overlay | None) -> None:
         """See `PageHost`."""
-        self.views.trains.measured(found)
+        self.views.trains.measured(overlay)
 
     def show(self, scene: Scene, state: State | None = None, mode: str = "settled") -> None:
         """See `PageHost`."""

@@ -44,12 +44,12 @@ def _handler(controller: Controller) -> Callable[[Exception], None]:
     Panel keeps the handler as long as the document lives, and the controller has the document. With a strong reference
     no page would ever be freed.
     """
-    there = weakref.WeakMethod(controller.show_failure)
+    show_failure = weakref.WeakMethod(controller.show_failure)
 
     def failed(error: Exception) -> None:
-        tell = there()
-        if tell is not None:
-            tell(error)
+        show = show_failure()
+        if show is not None:
+            show(error)
 
     return failed
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import threading
-import time
 from collections import deque
 from collections.abc import Callable, Iterator
 from functools import partial
@@ -17,6 +16,7 @@ from ..serve.computing.latest_wins import LatestWins
 from ..serve.computing.turns import TurnFlag
 from ..serve.connection.pacing import PicturePacer
 from ..serve.monitoring.metrics import METRICS
+from ..serve.monitoring.picture_stages import PictureStages
 from ..session.host import PageHost
 from ..session.live import LiveRun, LiveStep
 from .layout import Views
@@ -25,17 +25,25 @@ from .show import show_live, show_regime, show_settled
 
 
 class _PictureRequest(NamedTuple):
-    """When a picture was requested [s], and the number of the request."""
+    """A request for a picture: its number, and the stages of its first picture, which begin with the request."""
 
     number: int
-    at: float
+    stages: PictureStages
 
 
 class _Answer(NamedTuple):
-    """A picture from a worker, and the request that it answers; None for a live step that nobody waits for."""
+    """A picture from a worker, and the request that it answers; None for a live step that nobody waits for.
+
+    The first picture of a request has its stages; another that takes its place before it is sent inherits them.
+    """
 
     picture: Settled | LiveStep
-    asked: _PictureRequest | None
+    request: _PictureRequest | None
+    stages: PictureStages | None
+
+
+#: A computation, given the stages of its first picture and its stop flag.
+_Work = Callable[[PictureStages, TurnFlag], Iterator[Settled | LiveStep]]
 
 
 class MainPicture:
@@ -62,7 +70,12 @@ class MainPicture:
         #: The settled picture that was sent last; None while a live run is shown.
         self._sent: Settled | None = None
         #: The last request for a picture; None after a failure.
-        self._asked: _PictureRequest | None = None
+        self._request: _PictureRequest | None = None
+        #: The stages of the last request until its computation is submitted, and of a picture until it is sent.
+        self._begun: PictureStages | None = None
+        self._unsent: PictureStages | None = None
+        #: The stages of pictures in flight, by their numbers.
+        self._in_flight: dict[int, PictureStages] = {}
         self._numbers = itertools.count(1)
         #: The number of the last request whose picture has come.
         self._answered = 0
@@ -104,7 +117,8 @@ class MainPicture:
 
     def compute(self, initial_state: State | None = None) -> None:
         """Compute a picture for the present knobs, from `initial_state` or from the start that the visitor chose."""
-        self._asked = _PictureRequest(next(self._numbers), time.monotonic())
+        self._begun = PictureStages()
+        self._request = _PictureRequest(next(self._numbers), self._begun)
         session, scene = self._session, self._session.scene
         if session.mode == "live":
             if self.live is not None:
@@ -123,9 +137,12 @@ class MainPicture:
         self._submit(partial(self._work.live_step, lambda: self.live, samples, self._session.speed,
                              self._session.insisted))
 
-    def _submit(self, work: Callable[[TurnFlag], Iterator[Settled | LiveStep]]) -> None:
+    def _submit(self, work: _Work) -> None:
         """Compute `work` next; its pictures answer the last request."""
-        self._jobs.submit(partial(self._answers, work, self._asked))
+        stages, self._begun = self._begun, None
+        if stages is not None:
+            stages.end("pace")  # live mode requests no step while two pictures are in flight
+        self._jobs.submit(partial(self._answers, work, self._request, stages))
 
     def shown_run(self) -> Run | None:
         """The motion on the screen as a run, if there is one."""
@@ -142,19 +159,29 @@ class MainPicture:
     # In a worker thread
 
     @staticmethod
-    def _answers(work: Callable[[TurnFlag], Iterator[Settled | LiveStep]], asked: _PictureRequest | None,
+    def _answers(work: _Work, request: _PictureRequest | None, stages: PictureStages | None,
                  stop: TurnFlag) -> Iterator[_Answer]:
-        """The pictures of `work`, each with the request that it answers."""
-        for picture in work(stop):
-            yield _Answer(picture, asked)
+        """The pictures of `work`, each with the request that it answers, the first with its stages."""
+        if stages is not None:
+            stages.end("turn")
+        for picture in work(stages or PictureStages(), stop):
+            if stages is not None:
+                stages.computed()
+            yield _Answer(picture, request, stages)
+            stages = None
 
     def _keep_newest(self, result: object) -> None:
         """Keep a new picture for the event loop, in place of an older picture that the loop has not fetched."""
         assert isinstance(result, _Answer)
         if isinstance(result.picture, Settled):
             self._frames.append(prepared_frames(result.picture.run))
+        if result.stages is not None:
+            result.stages.end("prepare")
         with self._lock:
-            first, self._newest = self._newest is None, result
+            older = self._newest
+            if older is not None and result.stages is None:
+                result = result._replace(stages=older.stages)
+            first, self._newest = older is None, result
         if first:
             self._host.next_tick(self._take_newest)
 
@@ -167,12 +194,16 @@ class MainPicture:
         if newest is not None:
             self._accept(*newest)
 
-    def _accept(self, result: Settled | LiveStep, asked: _PictureRequest | None = None) -> None:
+    def _accept(self, result: Settled | LiveStep, request: _PictureRequest | None = None,
+                stages: PictureStages | None = None) -> None:
         """Offer a picture to the browser, if it belongs to the present mode and scene."""
         live = isinstance(result, LiveStep)
         if live != (self._session.mode == "live") or result.run.scene.name != self._session.scene.name:
             return
-        self._count_answer(asked)
+        if stages is not None:
+            stages.end("loop")
+            self._unsent = stages
+        self._count_answer(request)
         if isinstance(result, Settled):
             self._session.settled = result
             self._picture_ready(result)
@@ -185,20 +216,24 @@ class MainPicture:
 
     def _failed(self, error: Exception) -> None:
         """Report a failure; later live steps answer no request."""
-        self._asked = None
+        self._request = self._begun = None
         self._host.show_failure(error)
 
-    def _count_answer(self, asked: _PictureRequest | None) -> None:
+    def _count_answer(self, request: _PictureRequest | None) -> None:
         """Count how long the first picture of a request took, and say so if the server is busy with many sessions."""
-        if asked is None or asked.number <= self._answered:
+        if request is None or request.number <= self._answered:
             return
-        self._answered, seconds = asked.number, time.monotonic() - asked.at
+        self._answered, seconds = request.number, request.stages.elapsed
         METRICS.answered(seconds)
         words = f"The server is busy: this picture took {seconds:.1f} s." if METRICS.busy else ""
         self._views.status_line.update_state(busy=words)
 
     def _send(self, number: int, result: Settled | LiveStep) -> None:
         METRICS.count("pictures")
+        stages, self._unsent = self._unsent, None
+        if stages is not None:
+            stages.end("pace")
+            self._in_flight[number] = stages
         if isinstance(result, Settled):
             self._sent = result
             show_settled(self._views, number, result)
@@ -211,8 +246,13 @@ class MainPicture:
         if self._sent is not None:
             show_regime(self._views, self._sent)
 
-    def painted(self, number: object) -> None:
-        """The browser says that picture `number` is on the screen."""
+    def painted(self, number: object, browser_ms: object = None) -> None:
+        """The browser says that picture `number` is on the screen, and how long its script had the picture [ms]."""
+        if not isinstance(number, int):
+            return
+        if number in self._in_flight:
+            self._in_flight[number].painted(browser_ms)
+            self._in_flight = {later: stages for later, stages in self._in_flight.items() if later > number}
         self._pacer.painted(number)
 
     def redraw(self) -> None:
@@ -225,6 +265,7 @@ class MainPicture:
 
     def restart(self) -> None:
         """The page is visible again: expect no acknowledgements of pictures in flight."""
+        self._in_flight.clear()
         self._pacer.restart()
 
     def next_live_step(self) -> None:

@@ -20,6 +20,7 @@ from ..serve.computing.cpu_time import CpuTime
 from ..serve.computing.shared import Shared
 from ..serve.computing.turns import TurnFlag
 from ..serve.computing.worker_pools import PICTURES
+from ..serve.monitoring.picture_stages import PictureStages
 from ..session.budget import WHOLE_PICTURE, RefusedPicture, TooLong, check_first_picture
 from ..session.energy_account import with_account
 from ..session.host import Caller
@@ -36,11 +37,14 @@ def size_of(settled: Settled) -> int:
 PICTURES_SHARED: Shared[Settled] = Shared(PICTURES, 100_000_000, size_of, lambda pictures: pictures[-1:])
 
 
-def _computed(scene: Scene, initial_state: State | None, most: float, stop: TurnFlag) -> Iterator[Settled]:
+def _computed(scene: Scene, initial_state: State | None, most: float, stages: PictureStages,
+              stop: TurnFlag) -> Iterator[Settled]:
     """Pictures on the way to the steady state; `TooLong` after `most` seconds of computing."""
     began = time.thread_time()
     pictures = settling(scene, start=initial_state, samples=samples_for(scene), stop=stop)
-    yield next(pictures)
+    first = next(pictures)
+    stages.turn_wait = stop.waited
+    yield first
     with stop.released():
         compiled = all(COMPILER.await_piece(scene, piece, stop) for piece in PICTURE_PIECES)
     if not compiled:
@@ -87,12 +91,12 @@ class PictureWork:
         self._show_notice = show_notice
         self._begun_from = begun_from
 
-    def settled_pictures(self, request: SettledRequest, stop: TurnFlag) -> Iterator[Settled]:
+    def settled_pictures(self, request: SettledRequest, stages: PictureStages, stop: TurnFlag) -> Iterator[Settled]:
         """The pictures of a request; one that takes too long is refused."""
         with _refusing(request.scene):
-            yield from self._pictures_of(request, stop)
+            yield from self._pictures_of(request, stages, stop)
 
-    def _pictures_of(self, request: SettledRequest, stop: TurnFlag) -> Iterator[Settled]:
+    def _pictures_of(self, request: SettledRequest, stages: PictureStages, stop: TurnFlag) -> Iterator[Settled]:
         """The pictures of a request, each better than the one before. The last may have an energy account.
 
         Pictures from rest are shared with other sessions, unless the visitor has insisted on them.
@@ -101,10 +105,11 @@ class PictureWork:
         if not insisted:
             check_first_picture(scene)
         self._await_first_kernels(scene, stop)
+        stages.end("kernels")
         self._caller.next_tick(self._begun_from, initial_state)
         key = None if initial_state is not None or insisted else scene
         most = math.inf if insisted else WHOLE_PICTURE
-        with closing(PICTURES_SHARED.follow(key, partial(_computed, scene, initial_state, most), stop,
+        with closing(PICTURES_SHARED.follow(key, partial(_computed, scene, initial_state, most, stages), stop,
                                             self._cpu_time)) as pictures:
             for settled in pictures:
                 yield settled
@@ -114,7 +119,7 @@ class PictureWork:
             yield settled
 
     def live_step(self, newest_run: Callable[[], LiveRun | None], samples: int | None, speed: float,
-                  insisted: Scene | None, stop: TurnFlag) -> Iterator[LiveStep]:
+                  insisted: Scene | None, stages: PictureStages, stop: TurnFlag) -> Iterator[LiveStep]:
         """The next step of the live run: `samples`, or as many as belong to the viewing time at `speed`."""
         live = newest_run()  # another run may have begun while this step waited
         if live is None:
@@ -124,7 +129,9 @@ class PictureWork:
             if scene != insisted:
                 check_first_picture(scene)
         self._await_first_kernels(scene, stop)
+        stages.end("kernels")
         with live.flag.held(is_new=True):
+            stages.end("turn")
             result = live.advance(samples) if samples else live.step(speed)
         yield result
 

@@ -109,17 +109,17 @@ class Pinned:
             check_first_picture(pin.scene)
             job.give_way()
             job.compile(pin.scene, *PICTURE_PIECES)
-            found = settle(pin.scene, start=pin.initial_state, samples=samples_for(pin.scene), stop=job.stop)
-            job.next_tick(self._settled, pin, found.run)
+            settled = settle(pin.scene, start=pin.initial_state, samples=samples_for(pin.scene), stop=job.stop)
+            job.next_tick(self._settled, pin, settled.run)
 
     def _sweep(self, missing: Sequence[Scene], cpu_time: CpuTime, job: Job) -> None:
         """Compute the curves of pins after the present curve."""
         for key in missing:
             job.compile(key, *PICTURE_PIECES)
             job.give_way(lambda: self._host.busy or self._host.curve_computing)
-            found: list[Progress] = []
-            Sweep(key, ["rest"], found.append, lambda: self._host.busy, cpu_time)(job)
-            job.next_tick(self._swept, key, [point for progress in found for point in progress.points])
+            parts: list[Progress] = []
+            Sweep(key, ["rest"], parts.append, lambda: self._host.busy, cpu_time)(job)
+            job.next_tick(self._swept, key, [point for progress in parts for point in progress.points])
 
     # To the browser
 

@@ -33,12 +33,12 @@ function terms() {
 }
 
 function inText(node, seen) {
-  const found = terms().exec(node.data);
-  if (!found) return;
-  const word = found[1].toLowerCase();
-  const after = node.splitText(found.index);
-  const rest = after.splitText(found[0].length);
-  if (!seen.has(word)) after.replaceWith(termOf(found[0], found[1], meanings.get(word)));
+  const match = terms().exec(node.data);
+  if (!match) return;
+  const word = match[1].toLowerCase();
+  const after = node.splitText(match.index);
+  const rest = after.splitText(match[0].length);
+  if (!seen.has(word)) after.replaceWith(termOf(match[0], match[1], meanings.get(word)));
   seen.add(word);
   inText(rest, seen);
 }

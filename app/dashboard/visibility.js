@@ -9,7 +9,7 @@ const CURVE_NAME = "curve"; // the name of the curve among the names of the page
 // open, even if its window is hidden or its tab is scrolled off the screen. The curve counts as looked at on a phone and
 // in a story, because the status line takes names from it. Scripts find the same names in `granchain.visible`; the event
 // "visible" announces a change.
-export function watchVisibility(pages, tell) {
+export function watchVisibility(pages, report) {
   const { granchain } = window;
   const shown = { tabs: true, curve: true }; // which of these elements are on the screen
   let tab = "";
@@ -30,8 +30,8 @@ export function watchVisibility(pages, tell) {
     const [gone, come] = [[...before].filter((name) => !now.has(name)), [...now].filter((name) => !before.has(name))];
     if (!gone.length && !come.length) return;
     granchain.visible = now;
-    for (const name of gone) tell(name, false);
-    for (const name of come) tell(name, true);
+    for (const name of gone) report(name, false);
+    for (const name of come) report(name, true);
     granchain.emit("visible", now);
   };
 

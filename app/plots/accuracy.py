@@ -41,17 +41,17 @@ class Annotations:
 
 def styles() -> dict[str, dict[str, Any]]:
     """Marker, colour, dash and fill of every way; shape and fill alone tell them apart."""
-    found: dict[str, dict[str, Any]] = {}
+    properties: dict[str, dict[str, Any]] = {}
     used = {"naive": 0, "other": 0}
     for way in compared_methods().values():
         kind = "naive" if way.family == "naive" else "other"
         number = used[kind]
         used[kind] += 1
         marks = _NAIVE_MARKS if kind == "naive" else _MARKS
-        found[way.name] = {
+        properties[way.name] = {
             "marker": marks[number % len(marks)], "dash": _DASHES[way.family], "filled": way.family == "granchain",
             "colour": _NAIVE_COLOUR if kind == "naive" else LINE_COLOURS[number % len(LINE_COLOURS)]}
-    return found
+    return properties
 
 
 def points(rows: Sequence[Row]) -> dict[str, dict[str, list[Any]]]:
@@ -71,7 +71,7 @@ def marks(annotations: Annotations, rows: Sequence[Row]) -> dict[str, dict[str, 
     """Properties of the models that show what is asked, the references' agreement, the cheapest and the present row."""
     times = [1e3 * row.wall_s for row in rows if row.wall_s > 0.0] or [1.0]
 
-    def one(place: tuple[float, float] | None) -> dict[str, Any]:
+    def at(place: tuple[float, float] | None) -> dict[str, Any]:
         return {"data": {"ms": [1e3 * place[0]] if place else [], "error": [place[1]] if place else []}}
 
     agreement = annotations.agreement or None
@@ -81,7 +81,7 @@ def marks(annotations: Annotations, rows: Sequence[Row]) -> dict[str, dict[str, 
                            "words": [f"asked {short_error(annotations.accuracy)}"]}},
         "agreement line": {"location": agreement, "visible": agreement is not None},
         "agreement": {"data": {"ms": [max(times)] if agreement else [], "error": [agreement] if agreement else []}},
-        "cheapest": one(annotations.cheapest), "now": one(annotations.now),
+        "cheapest": at(annotations.cheapest), "now": at(annotations.now),
     }
 
 

@@ -69,49 +69,49 @@ WIDTH = 900
 HEIGHT = 420
 
 
-def _settled(found: Settled, theme: Theme) -> LayoutDOM:
-    return motion(found.run, theme)
+def _settled(settled: Settled, theme: Theme) -> LayoutDOM:
+    return motion(settled.run, theme)
 
 
-def _pulse(found: Pulse, theme: Theme) -> LayoutDOM:
-    return motion(found.run, theme)
+def _pulse(pulse: Pulse, theme: Theme) -> LayoutDOM:
+    return motion(pulse.run, theme)
 
 
-def _curve(found: Curve, theme: Theme, elastic: bool = False, measured: Measured | None = None) -> LayoutDOM:
+def _curve(swept: Curve, theme: Theme, elastic: bool = False, measured: Measured | None = None) -> LayoutDOM:
     if measured is not None and not isinstance(measured, Measured):
         raise BadInput("A measured curve is what granchain_core.experiment.read_experiment returns for a table of "
                        f"frequency and force, not a value of type {type(measured).__name__}.")
-    return curve([found], theme, elastic, measured)
+    return curve([swept], theme, elastic, measured)
 
 
-def _branch(found: Branch, theme: Theme, now: float | None = None) -> LayoutDOM:
-    return branches([found], theme, now)
+def _branch(branch: Branch, theme: Theme, now: float | None = None) -> LayoutDOM:
+    return branches([branch], theme, now)
 
 
-def both_maps(found: ParameterMap, theme: Theme, shown: str = "both",
+def both_maps(result: ParameterMap, theme: Theme, shown: str = "both",
               curves: Sequence[BifurcationCurve] = ()) -> LayoutDOM:
     """The map of forces above the map of regimes; `shown` is "force" or "regime" for one of them."""
     if shown != "both":
-        return parameter_map(found, theme, shown, curves=curves)
-    both = (parameter_map(found, theme, one, curves=curves) for one in ("force", "regime"))
+        return parameter_map(result, theme, shown, curves=curves)
+    both = (parameter_map(result, theme, quantity, curves=curves) for quantity in ("force", "regime"))
     return column(*both, sizing_mode="stretch_both")
 
 
-def measured_accuracy(found: WorkPrecision, theme: Theme, asked: float | None = None) -> LayoutDOM:
+def measured_accuracy(result: WorkPrecision, theme: Theme, asked: float | None = None) -> LayoutDOM:
     """Error against time, with the cheapest way to the accuracy that the scene or `asked` wants."""
-    wanted = found.scene.accuracy if asked is None else asked
-    best = found.cheapest(wanted)
-    agreement = found.agreement if math.isfinite(found.agreement) else None
-    return accuracy(found.rows, Annotations(wanted, agreement, None if best is None else (best.wall_s, best.error)),
+    wanted = result.scene.accuracy if asked is None else asked
+    best = result.cheapest(wanted)
+    agreement = result.agreement if math.isfinite(result.agreement) else None
+    return accuracy(result.rows, Annotations(wanted, agreement, None if best is None else (best.wall_s, best.error)),
                     theme)
 
 
-def _bifurcation_diagram(found: BifurcationDiagram, theme: Theme, bead: int | None = None) -> LayoutDOM:
-    return bifurcation_diagram(found, found.scene.N if bead is None else bead, theme)
+def _bifurcation_diagram(diagram: BifurcationDiagram, theme: Theme, bead: int | None = None) -> LayoutDOM:
+    return bifurcation_diagram(diagram, diagram.scene.N if bead is None else bead, theme)
 
 
-def _bead(name: str, found: Run | Settled, theme: Theme, bead: int | None = None) -> LayoutDOM:
-    run = found.run if isinstance(found, Settled) else found
+def _bead(name: str, motion_shown: Run | Settled, theme: Theme, bead: int | None = None) -> LayoutDOM:
+    run = motion_shown.run if isinstance(motion_shown, Settled) else motion_shown
     return probe(name, run, run.scene.N if bead is None else whole_number("bead =", bead, 1, run.scene.N), theme)
 
 
@@ -162,7 +162,7 @@ def _drawn(result: Any, theme: str, kind: str, options: Mapping[str, Any]) -> tu
 
 def _further(result: Any, kind: str) -> Callable[..., LayoutDOM]:
     """The function that draws a further figure of a result."""
-    offered = {name: draw for (one, name), draw in FURTHER_DRAWERS.items() if isinstance(result, one)}
+    offered = {name: draw for (drawn, name), draw in FURTHER_DRAWERS.items() if isinstance(result, drawn)}
     if not offered:
         raise BadInput(f"There is no figure of a kind {kind!r} of a {type(result).__name__}; leave the kind out.")
     if kind not in offered:
@@ -179,7 +179,7 @@ def _drawing(result: Any) -> tuple[Callable[..., LayoutDOM], tuple[int, int]]:
             return draw, (WIDTH, 2 * HEIGHT if kind is ParameterMap else HEIGHT)
     if isinstance(result, Sequence) and not isinstance(result, str) and result:
         for kind, draw in _TOGETHER.items():
-            if all(isinstance(one, kind) for one in result):
+            if all(isinstance(item, kind) for item in result):
                 return draw, (WIDTH, HEIGHT)
     raise BadInput(f"There is no figure of a {type(result).__name__}; there are those of "
                    f"{', '.join(kind.__name__ for kind in DRAWERS)}, of lists of curves or branches, and of the "

@@ -16,28 +16,29 @@ from .theme import Theme
 from .themed import apply_theme, empty_figure, themed
 
 
-def attractors(found: Sequence[Attractor], theme: Theme) -> figure:
+def attractors(results: Sequence[Attractor], theme: Theme) -> figure:
     """A mark for each, by its regime; the bar is the standard error of its share.
 
     Without random states the marks stand over their fraction of all starts.
     """
-    drawn = any(one.share is not None for one in found)
+    drawn = any(attractor.share is not None for attractor in results)
     starts = "random states" if drawn else "starts"
-    count = sum(len(one.origins) for one in found)
-    scale = force_scale("largest output force", max(one.max_output_force for one in found))
+    count = sum(len(attractor.origins) for attractor in results)
+    largest = max(attractor.max_output_force for attractor in results)
+    scale = force_scale("largest output force", largest)
     plot = empty_figure(name="attractors", min_border=4, x_range=Range1d(-4, 104),
-                        y_range=Range1d(0.0, 1.15 * max(one.max_output_force for one in found) / scale.factor))
-    for one in found:
-        key = regime_key(one.regime.name, one.regime.period)
+                        y_range=Range1d(0.0, 1.15 * largest / scale.factor))
+    for attractor in results:
+        key = regime_key(attractor.regime.name, attractor.regime.period)
         marker, colour, size = REGIME_MARKS[key]
-        share = 100.0 * (len(one.origins) / count if one.share is None else one.share)
-        error = 100.0 * (one.share_error or 0.0)
-        words = one.share_words if drawn else f"{share:.0f} %"
+        share = 100.0 * (len(attractor.origins) / count if attractor.share is None else attractor.share)
+        error = 100.0 * (attractor.share_error or 0.0)
+        words = attractor.share_words if drawn else f"{share:.0f} %"
         source = ColumnDataSource({
             "share": [share], "low": [share - error], "high": [share + error],
-            "force": [one.max_output_force / scale.factor], "motion": [one.regime.sentence],
-            "value": [in_words(one.max_output_force, "N", figures_of(one.force_errors.output))],
-            "starts": [", ".join(origin.name for origin in one.origins[:4])]}, name=key)
+            "force": [attractor.max_output_force / scale.factor], "motion": [attractor.regime.sentence],
+            "value": [in_words(attractor.max_output_force, "N", figures_of(attractor.force_errors.output))],
+            "starts": [", ".join(origin.name for origin in attractor.origins[:4])]}, name=key)
         themed(plot.segment("low", "force", "high", "force", source=source), line_color="soft", line_width=1.2)
         marks = plot.scatter("share", "force", source=source, marker=marker, size=size + 5, fill_color=colour,
                              line_color=colour, line_width=1.5, legend_label=key)

@@ -19,19 +19,20 @@ _HATCHES = (" ", "/", "\\", ".", "+", "x", "o", "-")
 _FAILED = "the computation failed or was stopped"
 
 
-def basins(found: Basins, theme: Theme) -> figure:
+def basins(result: Basins, theme: Theme) -> figure:
     """The plane of starts; grey where the computation failed or was stopped."""
-    x, y, colours = _axis(*found.x), _axis(*found.y), Colorblind[8]
-    columns, rows = np.meshgrid(found.x[1] / x.factor, found.y[1] / y.factor)
-    number = found.number.ravel()
-    words = [f"{one.regime.sentence}; largest output force {in_words(one.max_output_force, 'N')}; "
-             f"{100.0 * share:.0f} % of the plane" for one, share in zip(found.attractors, found.shares, strict=True)]
+    x, y, colours = _axis(*result.x), _axis(*result.y), Colorblind[8]
+    columns, rows = np.meshgrid(result.x[1] / x.factor, result.y[1] / y.factor)
+    number = result.number.ravel()
+    words = [f"{attractor.regime.sentence}; largest output force {in_words(attractor.max_output_force, 'N')}; "
+             f"{100.0 * share:.0f} % of the plane"
+             for attractor, share in zip(result.attractors, result.shares, strict=True)]
     plot = empty_figure(name="basins", min_border=4)
     plot.grid.visible = False
-    width, height = _spacing(found.x[1] / x.factor), _spacing(found.y[1] / y.factor)
+    width, height = _spacing(result.x[1] / x.factor), _spacing(result.y[1] / y.factor)
     for i in sorted(set(number.tolist())):
-        there = number == i
-        source = ColumnDataSource(name=f"basin {i + 1}", data={"x": columns.ravel()[there], "y": rows.ravel()[there]})
+        cells = number == i
+        source = ColumnDataSource(name=f"basin {i + 1}", data={"x": columns.ravel()[cells], "y": rows.ravel()[cells]})
         colour, hatch, meaning = (colours[i % 8], _HATCHES[i % 8], words[i]) if i >= 0 else (GREY, "x", _FAILED)
         cells = plot.rect("x", "y", width, height, source=source, line_color=None, fill_color=colour,
                           hatch_pattern=hatch, hatch_alpha=0.5, legend_label=meaning)

@@ -15,12 +15,12 @@ from .theme import Theme
 from .themed import apply_theme, empty_figure
 
 
-def bifurcation_diagram(found: BifurcationDiagram, bead: int, theme: Theme) -> figure:
+def bifurcation_diagram(diagram: BifurcationDiagram, bead: int, theme: Theme) -> figure:
     """Displacements of bead 1..N at drive phase 0, coloured by the regime of the motion."""
-    values, states = found.cloud(bead)
-    axis = knob_scale(found.knob, values.tolist())
+    values, states = diagram.cloud(bead)
+    axis = knob_scale(diagram.knob, values.tolist())
     factor, letter = prefixed(float(np.abs(states).max(initial=0.0)) or 1.0)
-    kept = [point for point in found.points if not point.failure]
+    kept = [point for point in diagram.points if not point.failure]
     keys = [regime_key(point.regime.name, point.regime.period) for point in kept for _ in point.strobes]
     source = ColumnDataSource(name="strobes", data={
         "value": values / axis.factor, "state": states / factor, "regime": keys,

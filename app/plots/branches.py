@@ -137,26 +137,26 @@ class BranchRows:
         return pieces
 
 
-def branches(found: Sequence[Branch], theme: Theme, now: float | None = None, compact: bool = False) -> figure:
+def branches(drawn: Sequence[Branch], theme: Theme, now: float | None = None, compact: bool = False) -> figure:
     """The largest elastic output force of periodic orbits over the knob of their branches.
 
     `now` is a value of the knob [SI] with a line. Sources have names: "stable" and "unstable" hold lines, "orbits"
     one row for each orbit, the kinds of special points one for each point; `BranchRows` says what one more orbit adds.
     """
-    rows = BranchRows(max((p.max_output_force_elastic for one in found for p in one.points), default=1e-3))
+    rows = BranchRows(max((p.max_output_force_elastic for branch in drawn for p in branch.points), default=1e-3))
     data: Columns = {**{name: {"x": [], "y": []} for name in (_CURVE, _CURVE_LINE, *LINES)},
                      "orbits": _columns(_ORBIT, []), **{kind: _columns(_MARK, []) for kind in SPECIAL}}
     models: dict[str, Any] = {}
     number = 0
-    for one in found:
-        for half in one.half_branches:
+    for branch in drawn:
+        for half in branch.half_branches:
             if half.points:
-                added = rows.add(number, one, half.points, half.special)
+                added = rows.add(number, branch, half.points, half.special)
                 _put(data, added)
                 models |= added["models"]
             number += 1
     plot = _drawn(data, theme, compact)
-    factor = knob_scale(found[0].axis.knob, (found[0].axis.high,)).factor if found else 1.0
+    factor = knob_scale(drawn[0].axis.knob, (drawn[0].axis.high,)).factor if drawn else 1.0
     plot.select_one({"name": "now"}).update(location=None if now is None else now / factor, visible=now is not None)
     if not compact:
         for name, properties in models.items():
@@ -196,8 +196,8 @@ def _drawn(data: Columns, theme: Theme, compact: bool) -> figure:
     themed(dots, fill_color="output")
     plot.add_layout(themed(Span(name="now", dimension="height", line_alpha=0.6, level="underlay", visible=False),
                            line_color="ink", line_width=1.2))
-    items += [LegendItem(name=f"legend of {kind}", label=SPECIAL[kind], renderers=[one], visible=False)
-              for kind, one in _marks(plot, sources, compact).items()]
+    items += [LegendItem(name=f"legend of {kind}", label=SPECIAL[kind], renderers=[mark], visible=False)
+              for kind, mark in _marks(plot, sources, compact).items()]
     for data_range in (plot.x_range, plot.y_range):
         data_range.renderers = [targets, grey[1]]
     if not compact:
@@ -212,20 +212,20 @@ def _marks(plot: figure, sources: dict[str, ColumnDataSource], compact: bool) ->
     """Special points; grazings are too many for a small figure."""
     made = {}
     for kind, style in SPECIAL_STYLES.items():
-        one = plot.scatter("x", "y", source=sources[kind], marker=style["marker"], line_color=style["colour"],
-                           fill_color=style["colour"], size=0.75 * style["size"] if compact else style["size"],
-                           visible=not (compact and kind == "grazing"))
-        one.nonselection_glyph = None
-        themed(one, line_width=2.2) if style["filled"] else themed(one, line_width=2.2, fill_color="card")
-        made[kind] = one
+        mark = plot.scatter("x", "y", source=sources[kind], marker=style["marker"], line_color=style["colour"],
+                            fill_color=style["colour"], size=0.75 * style["size"] if compact else style["size"],
+                            visible=not (compact and kind == "grazing"))
+        mark.nonselection_glyph = None
+        themed(mark, line_width=2.2) if style["filled"] else themed(mark, line_width=2.2, fill_color="card")
+        made[kind] = mark
     return made
 
 
 def _tools(plot: figure, targets: Any, items: list[LegendItem]) -> None:
     """Hover and tap for orbits and special points, and a legend that hides what is clicked in it."""
-    marks = {kind: one for item in items for one in item.renderers for kind, words in SPECIAL.items()
+    marks = {kind: mark for item in items for mark in item.renderers for kind, words in SPECIAL.items()
              if item.label.value == words}
-    born, others = ([one for kind, one in marks.items() if (kind in _BORN) is wanted] for wanted in (True, False))
+    born, others = ([mark for kind, mark in marks.items() if (kind in _BORN) is wanted] for wanted in (True, False))
     above: dict[str, Any] = {"limit": 2, "attachment": "above"}
     plot.add_tools(
         HoverTool(renderers=[targets], limit=1, attachment="below", tooltips=[

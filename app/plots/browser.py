@@ -48,11 +48,11 @@ const wait = setInterval(() => {
 
 def browser() -> str:
     """The path of the browser that draws. Raises `BadInput` if none is installed."""
-    found = installed_browser()
-    if found is None:
+    path = installed_browser()
+    if path is None:
         raise BadInput("A PNG or SVG is drawn by Chromium or Chrome and none is on the PATH; install one (on Debian: "
                        "apt install chromium), or write an HTML file, whose own menu saves a picture.")
-    return found
+    return path
 
 
 def png_of(figure: LayoutDOM, title: str, caption: str, theme: Theme, size: tuple[int, int],
@@ -68,8 +68,8 @@ def png_of(figure: LayoutDOM, title: str, caption: str, theme: Theme, size: tupl
              f"--window-size={width + _FRAME_ROOM},{height + _FRAME_ROOM}")
         if not image.exists():
             raise BadInput(f"{browser()} wrote no picture; write an HTML file instead.")
-        with Image.open(image) as whole:
-            whole.crop((0, 0, round(scale * width), round(scale * height))).convert("RGB").quantize(256).save(
+        with Image.open(image) as screenshot:
+            screenshot.crop((0, 0, round(scale * width), round(scale * height))).convert("RGB").quantize(256).save(
                 image, optimize=True)
         return image.read_bytes()
 
@@ -82,10 +82,10 @@ def svg_of(figure: LayoutDOM, title: str, caption: str, theme: Theme, size: tupl
     page = html_of(figure, title).replace("</body>", _EXPORT)
     with tempfile.TemporaryDirectory(prefix="granchain-") as folder:
         dom = _run(folder, page, "--dump-dom", f"--window-size={size[0]},{size[1]}")
-    found = re.search(r'<pre id="exported">(.*?)</pre>', dom, re.DOTALL)
-    if found is None:
+    match = re.search(r'<pre id="exported">(.*?)</pre>', dom, re.DOTALL)
+    if match is None:
         raise BadInput(f"{browser()} drew no SVG; write an HTML file instead.")
-    return _with_caption(html.unescape(found[1]), title, caption, theme)
+    return _with_caption(html.unescape(match[1]), title, caption, theme)
 
 
 def _plots(figure: LayoutDOM) -> list[Plot]:
@@ -109,9 +109,9 @@ def _with_caption(drawn: str, title: str, caption: str, theme: Theme) -> str:
     lines = caption_lines(title, caption, width)
     text = "".join(f'<text x="16" y="{height + CAPTION_ROOM + CAPTION_LINE * i:g}">{html.escape(line)}</text>'
                    for i, line in enumerate(lines))
-    whole = height + CAPTION_ROOM + CAPTION_LINE * len(lines)
-    return (f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:g}" height="{whole:g}" '
-            f'viewBox="0 0 {width:g} {whole:g}">'
+    total_height = height + CAPTION_ROOM + CAPTION_LINE * len(lines)
+    return (f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:g}" height="{total_height:g}" '
+            f'viewBox="0 0 {width:g} {total_height:g}">'
             f'<title>{html.escape(title)}</title><rect width="100%" height="100%" fill="{theme.card}"/>{drawn}'
             f'<g font-family="{FONT}" font-size="{CAPTION_SIZE}" fill="{theme.ink}">{text}</g></svg>\n')
 

@@ -21,6 +21,6 @@ def installed_browser(with_window: bool = False) -> str | None:
 
 
 if __name__ == "__main__":
-    found = installed_browser()
-    print(found or "There is no Chromium or Chrome on the PATH.", file=sys.stdout if found else sys.stderr)
-    sys.exit(found is None)
+    path = installed_browser()
+    print(path or "There is no Chromium or Chrome on the PATH.", file=sys.stdout if path else sys.stderr)
+    sys.exit(path is None)

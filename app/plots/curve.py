@@ -87,14 +87,14 @@ KEY = "; ".join(f"{style.line_words}: {style.words}" for style in SWEEPS.values(
 FORCES = [("largest output force", "@total"), ("its elastic part", "@elastic"), ("largest input force", "@input")]
 
 
-def curve(found: Sequence[Curve], theme: Theme, elastic: bool = False, measured: Measured | None = None) -> figure:
+def curve(sweeps: Sequence[Curve], theme: Theme, elastic: bool = False, measured: Measured | None = None) -> figure:
     """Curves over one frequency axis, one for each way of sweeping; a computation that failed has no point.
 
     `elastic` draws the elastic part of the output force, as the paper does; a curve that was `measured` is drawn over
     it.
     """
     drawn = "max_output_force_elastic" if elastic else "max_output_force"
-    largest = max((getattr(p, drawn) for one in found for p in one.points if math.isfinite(p.max_output_force)),
+    largest = max((getattr(p, drawn) for sweep in sweeps for p in sweep.points if math.isfinite(p.max_output_force)),
                   default=1.0)
     if measured is not None:
         largest = max(largest, float(measured.bars[1].max()))
@@ -102,15 +102,15 @@ def curve(found: Sequence[Curve], theme: Theme, elastic: bool = False, measured:
     plot = empty_figure(name="curve", min_border=4, y_range=DataRange1d(start=0, range_padding=0.06))
     lines: dict[str, LegendItem] = {}
     regimes: dict[str, LegendItem] = {}
-    for one in found:
-        points = [p for p in one.points if math.isfinite(p.max_output_force)]
-        style, columns = SWEEPS[one.start], curve_columns(points, scale.factor, 3 + SWEEPS[one.start].larger, drawn)
-        source = ColumnDataSource(name=one.start, data=columns)
-        line = plot.line(**curve_line(one.start), source=source, level=style.level)
-        marks = plot.scatter(**curve_marks(one.start), source=source)
+    for sweep in sweeps:
+        points = [p for p in sweep.points if math.isfinite(p.max_output_force)]
+        style, columns = SWEEPS[sweep.start], curve_columns(points, scale.factor, 3 + SWEEPS[sweep.start].larger, drawn)
+        source = ColumnDataSource(name=sweep.start, data=columns)
+        line = plot.line(**curve_line(sweep.start), source=source, level=style.level)
+        marks = plot.scatter(**curve_marks(sweep.start), source=source)
         themed(line, line_color=style.role, line_width=style.width)
-        plot.add_tools(HoverTool(renderers=[marks], tooltips=curve_tooltips(one.start)))
-        lines.setdefault(one.start, LegendItem(label=f"{style.words}: {style.line_words}", renderers=[line]))
+        plot.add_tools(HoverTool(renderers=[marks], tooltips=curve_tooltips(sweep.start)))
+        lines.setdefault(sweep.start, LegendItem(label=f"{style.words}: {style.line_words}", renderers=[line]))
         for row, name in enumerate(columns["regime"]):
             regimes.setdefault(name, LegendItem(label=name, renderers=[marks], index=row))
     if measured is not None:

@@ -30,18 +30,18 @@ _RESIDUALS_HEIGHT = 0.42
 _SMALLEST_RISE = 1e-2
 
 
-def fit(found: Fit, theme: Theme) -> LayoutDOM:
+def fit(result: Fit, theme: Theme) -> LayoutDOM:
     """The data and the model on the left, the landscapes on the right."""
-    target = found.target
+    target = result.target
     if isinstance(target, CurveTarget):
-        left = _curve(found, target, theme)
+        left = _curve(result, target, theme)
     elif isinstance(target, FeatureTarget):
-        left = _features(found, target, theme)
+        left = _features(result, target, theme)
     elif isinstance(target, RecordsTarget):
-        left = _records(found, target, theme)
+        left = _records(result, target, theme)
     else:
-        left = _series(target, found.evaluation.model, found.scene.period, _verdict(found), theme)
-    right = column([_landscape(found, i, theme) for i in range(min(len(found.free), _MOST_LANDSCAPES))],
+        left = _series(target, result.evaluation.model, result.scene.period, _verdict(result), theme)
+    right = column([_landscape(result, i, theme) for i in range(min(len(result.free), _MOST_LANDSCAPES))],
                    sizing_mode="stretch_both")
     return row([left, right], sizing_mode="stretch_both")
 
@@ -57,48 +57,48 @@ def _line(plot: figure, curve: Curve, name: str, factor: float) -> None:
                                                           ("largest output force", "@total"), ("motion", "@sentence")]))
 
 
-def _curve(found: Fit, target: CurveTarget, theme: Theme) -> LayoutDOM:
+def _curve(result: Fit, target: CurveTarget, theme: Theme) -> LayoutDOM:
     name = "max_output_force_elastic" if target.elastic else "max_output_force"
     scale = force_scale("largest elastic output force" if target.elastic else "largest output force",
-                        float(np.nanmax([target.measured.force.max(), np.nanmax(found.evaluation.model)])))
+                        float(np.nanmax([target.measured.force.max(), np.nanmax(result.evaluation.model)])))
     plot = empty_figure(name="data", min_border=4)
-    assert found.evaluation.curve is not None
-    _line(plot, found.evaluation.curve, name, scale.factor)
+    assert result.evaluation.curve is not None
+    _line(plot, result.evaluation.curve, name, scale.factor)
     measured_over(plot, target.measured, scale.factor, target.sigma)
     plot.yaxis.axis_label = scale.label
     plot.y_range.start = 0
-    plot.title.text = _verdict(found)
-    below = residuals_over(target.frequencies, found.evaluation.residuals, "residual / σ")
+    plot.title.text = _verdict(result)
+    below = residuals_over(target.frequencies, result.evaluation.residuals, "residual / σ")
     below.x_range = plot.x_range
     return _stacked(apply_theme(plot, theme), apply_theme(below, theme))
 
 
-def _features(found: Fit, target: FeatureTarget, theme: Theme) -> LayoutDOM:
-    curve = found.evaluation.curve
+def _features(result: Fit, target: FeatureTarget, theme: Theme) -> LayoutDOM:
+    curve = result.evaluation.curve
     assert curve is not None
     scale = force_scale("largest elastic output force", float(np.nanmax(curve.column("max_output_force_elastic"))))
     plot = empty_figure(name="data", min_border=4)
     _line(plot, curve, "max_output_force_elastic", scale.factor)
-    for one, model in zip(target.features, found.evaluation.model, strict=True):
-        role = "drive" if one.is_resonance else "soft"
-        plot.add_layout(themed(Span(location=one.frequency, dimension="height", line_dash=[2, 4]), line_color=role,
+    for feature, model in zip(target.features, result.evaluation.model, strict=True):
+        role = "drive" if feature.is_resonance else "soft"
+        plot.add_layout(themed(Span(location=feature.frequency, dimension="height", line_dash=[2, 4]), line_color=role,
                                line_width=1.8))
         if math.isfinite(model):
             plot.add_layout(themed(Span(location=float(model), dimension="height"), line_color=role, line_width=0.8))
     plot.yaxis.axis_label, plot.xaxis.axis_label = scale.label, knob_scale("f").label
     plot.title.text = "Dotted: stated; thin: the model's nearest of its kind (peak red, valley grey)"
-    below = residuals_over(target.frequencies, found.evaluation.residuals, "residual / σ")
+    below = residuals_over(target.frequencies, result.evaluation.residuals, "residual / σ")
     below.x_range = plot.x_range
     return _stacked(apply_theme(plot, theme), apply_theme(below, theme))
 
 
-def _records(found: Fit, target: RecordsTarget, theme: Theme) -> LayoutDOM:
+def _records(result: Fit, target: RecordsTarget, theme: Theme) -> LayoutDOM:
     """Each record over the model, below the one before."""
     figures: list[LayoutDOM] = []
-    for one, samples, _ in target.parts(found.evaluation):
-        assert one.frequency is not None
-        title = f"{one.frequency:g} Hz" if figures else f"{one.frequency:g} Hz – {_verdict(found)}"
-        figures.append(_series(one, found.evaluation.model[samples], 1.0 / one.frequency, title, theme))
+    for record, samples, _ in target.parts(result.evaluation):
+        assert record.frequency is not None
+        title = f"{record.frequency:g} Hz" if figures else f"{record.frequency:g} Hz – {_verdict(result)}"
+        figures.append(_series(record, result.evaluation.model[samples], 1.0 / record.frequency, title, theme))
     return column(figures, sizing_mode="stretch_both")
 
 
@@ -127,47 +127,47 @@ def _stacked(above: figure, below: figure) -> LayoutDOM:
     return column([above, below], sizing_mode="stretch_both")
 
 
-def _landscape(found: Fit, i: int, theme: Theme) -> figure:
+def _landscape(result: Fit, i: int, theme: Theme) -> figure:
     """χ² above its least over one parameter: every set that was evaluated, the profile, and the interval."""
-    one, (values, misfits) = found.free[i], found.landscape
-    axis = _axis(one)
-    plot = empty_figure(name=f"landscape of {one.name}", min_border=4, y_axis_type="log",
-                        x_axis_type="log" if one.low > 0.0 else "linear")
-    rise = np.maximum(misfits - found.misfit, _SMALLEST_RISE)
+    parameter, (values, misfits) = result.free[i], result.landscape
+    axis = _axis(parameter)
+    plot = empty_figure(name=f"landscape of {parameter.name}", min_border=4, y_axis_type="log",
+                        x_axis_type="log" if parameter.low > 0.0 else "linear")
+    rise = np.maximum(misfits - result.misfit, _SMALLEST_RISE)
     dots = plot.scatter(values[:, i] / axis.factor, rise, size=4, fill_alpha=0.5, line_color=None)
     themed(dots, fill_color="steel")
-    if found.profiles:
-        there = found.profiles[i]
-        line = plot.line(np.array(there.values) / axis.factor, np.maximum(there.rises, _SMALLEST_RISE))
+    if result.profiles:
+        profile = result.profiles[i]
+        line = plot.line(np.array(profile.values) / axis.factor, np.maximum(profile.rises, _SMALLEST_RISE))
         themed(line, line_color="accent", line_width=2.0)
-        for end in (there.low, there.high):
+        for end in (profile.low, profile.high):
             upright = Span(location=end / axis.factor, dimension="height", line_dash=[4, 4])
             plot.add_layout(themed(upright, line_color="accent", line_width=1.2))
-        plot.add_layout(themed(Span(location=found.limit, dimension="width", line_dash=[2, 4]),
+        plot.add_layout(themed(Span(location=result.limit, dimension="width", line_dash=[2, 4]),
                                line_color="soft", line_width=1.2))
     plot.xaxis.axis_label = axis.label
     plot.yaxis.axis_label = "Δχ²"
-    plot.title.text = _best(found, i)
+    plot.title.text = _best(result, i)
     return apply_theme(plot, theme)
 
 
-def _axis(one: Free) -> Scale:
+def _axis(parameter: Free) -> Scale:
     """A parameter's axis: metres and newtons get a prefix."""
-    unit = "" if one.unit == "1" else one.unit
+    unit = "" if parameter.unit == "1" else parameter.unit
     if unit not in ("m", "N"):
-        return Scale(one.name, 1.0, unit)
-    factor, letter = prefixed(one.high)
-    return Scale(one.name, factor, letter + unit)
+        return Scale(parameter.name, 1.0, unit)
+    factor, letter = prefixed(parameter.high)
+    return Scale(parameter.name, factor, letter + unit)
 
 
-def _verdict(found: Fit) -> str:
+def _verdict(result: Fit) -> str:
     words = {"can": "the model can describe it", "cannot": "the model cannot describe it", "not known": "no verdict"}
-    return f"χ² = {found.chi_squared:.4g}, {found.freedom} degrees of freedom: {words[found.verdict]}"
+    return f"χ² = {result.chi_squared:.4g}, {result.freedom} degrees of freedom: {words[result.verdict]}"
 
 
-def _best(found: Fit, i: int) -> str:
-    words = f"{found.free[i].name} = {found.best[i]:.4g} {found.free[i].unit}"
-    if not found.profiles:
+def _best(result: Fit, i: int) -> str:
+    words = f"{result.free[i].name} = {result.best[i]:.4g} {result.free[i].unit}"
+    if not result.profiles:
         return words
-    there: Sequence[float] = (found.profiles[i].low, found.profiles[i].high)
-    return f"{words}, 95 %: {there[0]:.4g} to {there[1]:.4g}"
+    interval: Sequence[float] = (result.profiles[i].low, result.profiles[i].high)
+    return f"{words}, 95 %: {interval[0]:.4g} to {interval[1]:.4g}"

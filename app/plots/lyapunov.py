@@ -12,12 +12,12 @@ from .theme import Theme
 from .themed import apply_theme, empty_figure, themed
 
 
-def lyapunov(found: LyapunovSpectrum, theme: Theme) -> figure:
+def lyapunov(result: LyapunovSpectrum, theme: Theme) -> figure:
     """The exponents per drive period; above the line neighbours separate."""
-    rank = np.arange(1, len(found.exponents) + 1)  # as the command numbers them
-    source = ColumnDataSource({"rank": rank, "exponent": found.exponents, "error": found.errors,
-                               "low": found.exponents - found.errors, "high": found.exponents + found.errors,
-                               "fill": np.where(rank <= found.resolved, 1.0, 0.0)}, name="exponents")
+    rank = np.arange(1, len(result.exponents) + 1)  # as the command numbers them
+    source = ColumnDataSource({"rank": rank, "exponent": result.exponents, "error": result.errors,
+                               "low": result.exponents - result.errors, "high": result.exponents + result.errors,
+                               "fill": np.where(rank <= result.resolved, 1.0, 0.0)}, name="exponents")
     plot = empty_figure(name="lyapunov", min_border=4)
     plot.add_layout(themed(Span(location=0.0, dimension="width"), line_color="soft", line_width=1.0))
     themed(plot.segment("rank", "low", "rank", "high", source=source), line_color="accent", line_width=1.4)
@@ -26,6 +26,6 @@ def lyapunov(found: LyapunovSpectrum, theme: Theme) -> figure:
     plot.add_tools(HoverTool(renderers=[dots], tooltips=[
         ("rank", "@rank"), ("exponent per drive period", "@exponent{0.0000} ± @error{0.0000}")]))
     plot.xaxis.axis_label, plot.yaxis.axis_label = "rank", "Lyapunov exponent per drive period"
-    dimension = found.dimension_words()
+    dimension = result.dimension_words()
     plot.title.text = f"Kaplan–Yorke dimension {dimension}; hollow: upper bounds"
     return apply_theme(plot, theme)

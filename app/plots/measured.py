@@ -34,8 +34,8 @@ def measured_columns(measured: Measured, factor: float, residuals: np.ndarray | 
             "low": (low / factor).tolist(), "high": (high / factor).tolist(),
             "word": [measured.word] * len(low),
             "value": [given_in_words(float(force), "N", 5) for force in measured.force], "repeats": count.tolist(),
-            "residual": ["no model here" if not np.isfinite(one) else
-                         signed_in_words(float(one), "N") for one in gap]}
+            "residual": ["no model here" if not np.isfinite(difference) else
+                         signed_in_words(float(difference), "N") for difference in gap]}
 
 
 def measured_over(plot: figure, measured: Measured, factor: float, sigma: np.ndarray | None = None) -> None:

@@ -69,12 +69,12 @@ def motion(run: Recorded, theme: Theme) -> LayoutDOM:
     return row(_panels(run, theme), sizing_mode="stretch_both")
 
 
-def driven(found: Driven, theme: Theme, measured: Series | None = None) -> LayoutDOM:
+def driven(run: Driven, theme: Theme, measured: Series | None = None) -> LayoutDOM:
     """A driven motion with the measured forces of its series over the computed ones, as thin lines."""
-    panels = _panels(found, theme)
+    panels = _panels(run, theme)
     if measured is None:
         return row(panels, sizing_mode="stretch_both")
-    differences, units = compared_forces(measured, found), Units.of(found)
+    differences, units = compared_forces(measured, run), Units.of(run)
     for name, plot in (("input_force", panels[0]), ("output_force", panels[2])):
         if name in differences:
             _measured_over(plot, measured, getattr(measured, name), units)

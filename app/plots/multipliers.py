@@ -44,7 +44,8 @@ def multipliers(orbit: Orbit, theme: Theme, rank: int | None = None) -> figure:
 
 def plane(state: dict[str, dict[str, Any]], theme: Theme, compact: bool = False) -> figure:
     """The plane drawn from `state`: properties by model name, as `plane_state` returns them."""
-    sources = {name: ColumnDataSource(name=name, **found) for name, found in state.items() if "data" in found}
+    sources = {name: ColumnDataSource(name=name, **properties)
+               for name, properties in state.items() if "data" in properties}
     ranges = {axis: DataRange1d(range_padding=0.0) for axis in ("x_range", "y_range")}
     plot = empty_figure(name="multipliers", min_border=2, match_aspect=True, active_scroll=None,
                         toolbar_location=None if compact else "right", **ranges)
@@ -89,15 +90,15 @@ def _marks(plot: figure, sources: dict[str, ColumnDataSource], compact: bool) ->
     shown = {}
     for name in _SETS:
         observer, outside = name.startswith("observer"), name.endswith("outside")
-        one = plot.scatter("x", "y", source=sources[name], size="size", marker="square" if observer else
-                           "diamond" if outside else "circle", fill_color=None, line_color=None)
-        one.nonselection_glyph = None
+        mark = plot.scatter("x", "y", source=sources[name], size="size", marker="square" if observer else
+                            "diamond" if outside else "circle", fill_color=None, line_color=None)
+        mark.nonselection_glyph = None
         role = "second" if observer else "ink" if outside else "accent"
         if outside:
-            themed(one, line_color=role, line_width=3.2)
+            themed(mark, line_color=role, line_width=3.2)
         else:
-            themed(one, fill_color=role, line_color="card", line_width=1.0)
-        shown[name] = one
+            themed(mark, fill_color=role, line_color="card", line_width=1.0)
+        shown[name] = mark
     own = [shown["within"], shown["outside"]]
     if not compact:
         plot.add_tools(
@@ -120,8 +121,8 @@ def plane_state(orbit: Orbit | None, observer: bool = False, rank: int | None = 
     reach = min(_LARGEST_DRAWN, max([_AROUND, *(1.12 * np.abs(every))]))
     rows: dict[str, list[tuple[Any, ...]]] = {name: [] for name in _SETS}
     far: list[tuple[Any, ...]] = []
-    for prefix, found in (("", own), ("observer ", () if others is None else others)):
-        for number, mu in enumerate(found):
+    for prefix, multipliers in (("", own), ("observer ", () if others is None else others)):
+        for number, mu in enumerate(multipliers):
             assert orbit is not None
             x, y = _shown(complex(mu), reach)
             kind = prefix + ("outside" if abs(mu) >= 1.0 else "within")
@@ -132,8 +133,8 @@ def plane_state(orbit: Orbit | None, observer: bool = False, rank: int | None = 
     ringed = [_shown(complex(own[rank]), reach)] if rank is not None and rank < len(own) else []
     return {
         "reach": _source(("x", "y"), [(-reach, -reach), (reach, reach)]),
-        **{name: _source(_MARK, found) for name, found in rows.items()},
-        **{f"legend of {name}": {"visible": bool(found)} for name, found in rows.items()},
+        **{name: _source(_MARK, columns) for name, columns in rows.items()},
+        **{f"legend of {name}": {"visible": bool(columns)} for name, columns in rows.items()},
         "chosen": _source(("x", "y"), ringed), "far": _source(("x", "y", "words", "align", "down"), far),
         **_trail([*before, own] if len(own) else []),
     }

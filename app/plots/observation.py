@@ -15,14 +15,14 @@ from .theme import Theme
 from .themed import apply_theme, empty_figure, themed
 
 
-def observation(found: Observation, theme: Theme) -> figure:
+def observation(result: Observation, theme: Theme) -> figure:
     """Input force, computed output force and, where it was measured, the measured one over time."""
-    measured = found.record.output
-    forces = [found.input_force, found.output_force, *([] if measured is None else [measured])]
-    scale = force_scale("force", max(float(np.nanmax(np.abs(one))) for one in forces))
-    second, letter = prefixed(float(np.abs(found.time).max()))
+    measured = result.record.output
+    forces = [result.input_force, result.output_force, *([] if measured is None else [measured])]
+    scale = force_scale("force", max(float(np.nanmax(np.abs(force))) for force in forces))
+    second, letter = prefixed(float(np.abs(result.time).max()))
     plot = empty_figure(name="observation", min_border=4)
-    columns = {"time": found.time / second, "input": forces[0] / scale.factor, "output": forces[1] / scale.factor}
+    columns = {"time": result.time / second, "input": forces[0] / scale.factor, "output": forces[1] / scale.factor}
     lines = [("input", "input force, given", INPUT.role, 1.8), ("output", "output force, computed", OUTPUT.role, 2.4)]
     if measured is not None:
         columns["measured"] = measured / scale.factor
@@ -33,8 +33,8 @@ def observation(found: Observation, theme: Theme) -> figure:
         themed(line, line_color=role, line_width=width)
         plot.add_tools(HoverTool(renderers=[line], mode="vline", tooltips=[
             ("time", f"@time{{0.0000}} {letter}s"), (words, f"@{name}{{0.0000}} {scale.unit}")]))
-    plot.title.text = (f"relative error {found.integration_error:.0e} of integration, "
-                       f"{found.interpolation_error:.0e} between samples")
+    plot.title.text = (f"relative error {result.integration_error:.0e} of integration, "
+                       f"{result.interpolation_error:.0e} between samples")
     plot.x_range.range_padding = 0.0
     plot.xaxis.axis_label, plot.yaxis.axis_label = f"time ({letter}s)", scale.label
     plot.legend.update(orientation="horizontal", padding=1, margin=2, click_policy="hide")

@@ -50,17 +50,17 @@ _CELL = ("left", "right", "bottom", "top", "x", "y", "force", "regime", "tooltip
          "number", "own_right", "own_top")
 
 
-def parameter_map(found: ParameterMap, theme: Theme, shown: str = "force", now: tuple[float, float] | None = None,
-            curves: Sequence[BifurcationCurve] = ()) -> figure:
+def parameter_map(result: ParameterMap, theme: Theme, shown: str = "force", now: tuple[float, float] | None = None,
+                  curves: Sequence[BifurcationCurve] = ()) -> figure:
     """All computed cells of a parameter map over its two knobs; `shown` is "force" or "regime".
 
     `now` is a pair of values [SI] with a mark, `curves` are its bifurcation curves. The source "cells" has a row for
     each cell, those of coarse nets first: they stand for the cells around them until these are there. `cell_rows`,
     `scale_models` and `shown_models` give what changes later.
     """
-    grid = found.grid
+    grid = result.grid
     across, up = _scales(grid)
-    computed = found.cells[found.cells["regime"] >= 0]
+    computed = result.cells[result.cells["regime"] >= 0]
     plot = empty_figure(name="map", min_border=4, active_scroll=None, x_range=_range(grid.x, across),
                         y_range=_range(grid.y, up), **{f"{side}_axis_type": "log" if _by_ratio(axis) else "linear"
                                                        for side, axis in (("x", grid.x), ("y", grid.y))})
@@ -85,7 +85,7 @@ def parameter_map(found: ParameterMap, theme: Theme, shown: str = "force", now: 
     plot.add_tools(HoverTool(renderers=[force, regime], tooltips=[("", "@tooltip")], limit=1, sort_by="spacing"),
                    TapTool(name="tap", renderers=[force, regime], mode="replace"))
     _draw_curves(plot, grid, curves)
-    _marks(plot, now_row(grid, *now) if now else now_row(grid))
+    _marks(plot, mark_row(grid, *now) if now else mark_row(grid))
     for name, properties in {**shown_models(shown), **scale_models(computed)}.items():
         plot.select_one({"name": name}).update(**properties)
     bar.update(title_text_color=theme.soft, major_label_text_color=theme.ink, background_fill_color=theme.card,
@@ -115,7 +115,8 @@ def shown_models(shown: str) -> dict[str, dict[str, Any]]:
     """What is visible of the figure where `shown` is "force" or "regime", by the names of models."""
     force = shown == "force"
     return {**{name: {"visible": force} for name in ("force", "own force", "bar")},
-            **{name: {"visible": not force} for name in ("regime", "regimes", *(f"all {one}" for one in CATEGORIES))}}
+            **{name: {"visible": not force}
+               for name in ("regime", "regimes", *(f"all {category}" for category in CATEGORIES))}}
 
 
 def _draw_curves(plot: figure, grid: Grid, curves: Sequence[BifurcationCurve]) -> None:
@@ -144,11 +145,11 @@ def _draw_curves(plot: figure, grid: Grid, curves: Sequence[BifurcationCurve]) -
                                margin=2), "below")
 
 
-def _marks(plot: figure, now: dict[str, Any]) -> None:
-    """Where the page is now, black on white, so that it is seen on every colour; and a cell chosen by the keyboard."""
-    here = ColumnDataSource(now, name="now")
+def _marks(plot: figure, mark: dict[str, Any]) -> None:
+    """The page's setting, black on white, so that it is seen on every colour; and a cell chosen by the keyboard."""
+    setting = ColumnDataSource(mark, name="mark")
     for colour, width in ((MARK_EDGE, 5), (MARK_COLOUR, 2)):
-        plot.scatter("x", "y", source=here, marker="circle_cross", size=20, fill_color=None, line_color=colour,
+        plot.scatter("x", "y", source=setting, marker="circle_cross", size=20, fill_color=None, line_color=colour,
                      line_width=width)
     cursor = ColumnDataSource({name: [] for name in ("left", "right", "bottom", "top")}, name="cursor")
     box = plot.quad("left", "right", "bottom", "top", source=cursor, fill_color=None)
@@ -161,7 +162,7 @@ def cell_rows(grid: Grid, cells: np.ndarray) -> dict[str, list[Any]]:
     x, y = (_edges(axis) / scale.factor for axis, scale in ((grid.x, across), (grid.y, up)))
     spacing = grid.spacing()
     rows = []
-    for cell in sorted(cells, key=lambda one: -spacing[one["number"]]):
+    for cell in sorted(cells, key=lambda cell: -spacing[cell["number"]]):
         number = int(cell["number"])
         i, j = divmod(number, grid.shape[1])
         step = int(spacing[number])
@@ -198,8 +199,8 @@ def _round_values(low: float, high: float) -> list[float]:
     return inside or [low]
 
 
-def now_row(grid: Grid, x: float | None = None, y: float | None = None) -> dict[str, list[float]]:
-    """Columns of the source "now" for a pair of values in SI, or for none."""
+def mark_row(grid: Grid, x: float | None = None, y: float | None = None) -> dict[str, list[float]]:
+    """Columns of the source "mark" for a pair of values in SI, or for none."""
     if x is None or y is None:
         return {"x": [], "y": []}
     across, up = _scales(grid)

@@ -122,7 +122,7 @@ def probe_state(run: Run, bead: int) -> dict[str, dict[str, dict[str, Any]]]:
     factor = run.time[-1] / time[-1] if time[-1] else 1.0
     lines, amplitude = amplitudes(run, index)
     shown, amplitude_unit = _scaled(amplitude, "m")
-    whole = {} if run.regime.name == "periodic" else {"note": f"{round((len(time) - 1) / run.samples)} periods"}
+    note = {} if run.regime.name == "periodic" else {"note": f"{round((len(time) - 1) / run.samples)} periods"}
     strobes = slice(0, -1, run.samples)
     state = {
         "displacement": _line({"line": (time, u)}, thin, seconds | {"y": f"displacement ({u_unit})"}),
@@ -137,7 +137,7 @@ def probe_state(run: Run, bead: int) -> dict[str, dict[str, dict[str, Any]]]:
         "spectrum": {
             "lines": {"data": {"x": _short(lines), "y": _short(np.maximum(shown, 1e-300)),
                                "floor": [_SMALLEST_AMPLITUDE * float(shown.max())] * len(lines)}},
-            **_axes({"x": "frequency / drive frequency" + "".join(f" ({one} recorded)" for one in whole.values()),
+            **_axes({"x": "frequency / drive frequency" + "".join(f" ({words} recorded)" for words in note.values()),
                      "y": f"amplitude ({amplitude_unit})"}),
             "across": _ends(-0.2, _LAST_HARMONIC),
             "up": _ends(_SMALLEST_AMPLITUDE * float(shown.max()), 2.0 * float(shown.max()))}}
@@ -148,13 +148,13 @@ def probe_state(run: Run, bead: int) -> dict[str, dict[str, dict[str, Any]]]:
 
 def closed_spells(run: Run) -> list[tuple[int, float, float]]:
     """Contact, begin and end [s] of every spell in which it is closed; between samples an overlap is straight."""
-    found = []
+    spells = []
     for contact, overlap in enumerate(run.overlap.T):
         shut = np.concatenate([[False], overlap > 0.0, [False]])
         begins, ends = np.flatnonzero(~shut[:-1] & shut[1:]), np.flatnonzero(shut[:-1] & ~shut[1:])
-        found += [(contact, _crossing(run.time, overlap, int(begin)), _crossing(run.time, overlap, int(end)))
-                  for begin, end in zip(begins, ends, strict=True)]
-    return found
+        spells += [(contact, _crossing(run.time, overlap, int(begin)), _crossing(run.time, overlap, int(end)))
+                   for begin, end in zip(begins, ends, strict=True)]
+    return spells
 
 
 def amplitudes(run: Run, index: int) -> tuple[np.ndarray, np.ndarray]:
@@ -162,10 +162,10 @@ def amplitudes(run: Run, index: int) -> tuple[np.ndarray, np.ndarray]:
     motion = run.displacement[:-1, index]
     periods = len(motion) / run.samples
     repeats = run.regime.period is not None and periods % run.regime.period == 0
-    found = np.abs(cosines(motion, repeats))
-    multiples = np.arange(len(found)) / periods
+    magnitudes = np.abs(cosines(motion, repeats))
+    multiples = np.arange(len(magnitudes)) / periods
     kept = (multiples > 0.0) & (multiples <= _LAST_HARMONIC)
-    return multiples[kept], found[kept]
+    return multiples[kept], magnitudes[kept]
 
 
 def _crossing(time: np.ndarray, overlap: np.ndarray, after: int) -> float:
@@ -189,7 +189,7 @@ def _frame(name: str, sources: tuple[str, ...], **options: Any) -> tuple[figure,
     for axis in (plot.xaxis[0], plot.yaxis[0]):
         axis.ticker.desired_num_ticks = 4
     empty: dict[str, list[float]] = {column: [] for column in _COLUMNS}
-    return plot, {one: ColumnDataSource(name=one, data=dict(empty)) for one in sources}
+    return plot, {source: ColumnDataSource(name=source, data=dict(empty)) for source in sources}
 
 
 def _line(lines: dict[str, tuple[np.ndarray, np.ndarray]], thin: slice, titles: dict[str, str]) -> dict[str, Any]:

@@ -11,9 +11,9 @@ from .theme import Theme
 from .themed import apply_theme, empty_figure, themed
 
 
-def rotation(found: RotationNumber, theme: Theme) -> figure:
+def rotation(result: RotationNumber, theme: Theme) -> figure:
     """The largest difference of three halves of the record over its length, both logarithmic."""
-    states, values, differences = found.convergence.T if found.value is not None else ([], [], [])
+    states, values, differences = result.convergence.T if result.value is not None else ([], [], [])
     source = ColumnDataSource({"states": states, "value": values, "difference": differences}, name="convergence")
     plot = empty_figure(name="rotation", min_border=4, x_axis_type="log", y_axis_type="log")
     themed(plot.line("states", "difference", source=source, line_width=1.4), line_color="accent")
@@ -23,5 +23,5 @@ def rotation(found: RotationNumber, theme: Theme) -> figure:
         ("states on one curve", "@states{0}"), ("rotation number", "@value{0.000000000000}"),
         ("difference", "@difference{0.0e+0}")]))
     plot.xaxis.axis_label, plot.yaxis.axis_label = "states on one curve", "difference of halves of the record"
-    plot.title.text = found.summary()[0]
+    plot.title.text = result.summary()[0]
     return apply_theme(plot, theme)

@@ -69,20 +69,20 @@ def section_state(shown: SectionPoints) -> dict[str, dict[str, Any]]:
     A motion that is not periodic sets the ranges by its settled part, an orbit with its approach.
     """
     points, own, before = shown.points, shown.own, min(shown.transient, len(shown.points))
-    whole = bool(shown.period) or shown.transient >= len(points)
+    shows_all = bool(shown.period) or shown.transient >= len(points)
     joined = [points[:before][i::shown.period][:_MOST_JOINED] for i in range(min(shown.period, before))]
     if shown.unstable:
         joined = []
     number = np.arange(len(points))
     return {
-        "path": {"data": {"u": [_short(one[:, 0]) for one in joined], "v": [_short(one[:, 1]) for one in joined]}},
+        "path": {"data": {"u": [_short(path[:, 0]) for path in joined], "v": [_short(path[:, 1]) for path in joined]}},
         "way": _dots(points[:before], number[:before], 6 if len(points) < _FEW_POINTS else 3.4),
         "dots": _dots(points[before:], number[before:], 3.4),
         "orbit": _dots(own[:0] if shown.unstable else own, np.arange(1, len(own) + 1), 16),
         "unstable orbit": _dots(own if shown.unstable else own[:0], np.arange(1, len(own) + 1), 20),
         "displacement": {"axis_label": f"displacement of bead {shown.bead} ({shown.units[0]})"},
         "velocity": {"axis_label": f"velocity ({shown.units[1]})"},
-        **_ranges(np.concatenate([points if whole else points[shown.transient:], own])),
+        **_ranges(np.concatenate([points if shows_all else points[shown.transient:], own])),
     }
 
 

@@ -17,34 +17,34 @@ from .themed import apply_theme, empty_figure, themed
 _DECADES = 6.0
 
 
-def spectrum(found: Spectrum, theme: Theme) -> figure:
+def spectrum(result: Spectrum, theme: Theme) -> figure:
     """Amplitudes over frequency; below the line of what may be folded back nothing is known.
 
     Raises `BadInput` for a force that is 0 throughout, which has no lines.
     """
-    if not found.amplitude.any():
-        raise BadInput(f"The {found.force} force is 0 throughout and has no lines.")
-    scale = force_scale(f"amplitude of the {found.force} force", float(found.amplitude.max()))
-    amplitude, floor = found.amplitude / scale.factor, found.aliasing / scale.factor
+    if not result.amplitude.any():
+        raise BadInput(f"The {result.force} force is 0 throughout and has no lines.")
+    scale = force_scale(f"amplitude of the {result.force} force", float(result.amplitude.max()))
+    amplitude, floor = result.amplitude / scale.factor, result.aliasing / scale.factor
     low = max(float(amplitude.max()) * 10.0**-_DECADES, 0.5 * floor)
     drawn = amplitude > low
     known = np.nonzero(amplitude > max(low, floor))[0]
-    highest = float(found.frequency[known[-1] if len(known) else -1])
+    highest = float(result.frequency[known[-1] if len(known) else -1])
     hertz, letter = prefixed(highest)
     plot = empty_figure(name="spectrum", min_border=4, y_axis_type="log",
                         y_range=Range1d(low, 2.0 * float(amplitude.max())),
                         x_range=Range1d(-0.01 * highest / hertz, 1.05 * highest / hertz))
-    source = ColumnDataSource(name="lines", data={"frequency": found.frequency[drawn] / hertz,
+    source = ColumnDataSource(name="lines", data={"frequency": result.frequency[drawn] / hertz,
                                                   "amplitude": amplitude[drawn],
-                                                  "phase": found.phase[drawn], "low": np.full(int(drawn.sum()), low)})
-    if found.period:
+                                                  "phase": result.phase[drawn], "low": np.full(int(drawn.sum()), low)})
+    if result.period:
         stems = plot.segment("frequency", "low", "frequency", "amplitude", source=source)
         themed(stems, line_color="output", line_width=2.4)
     else:
         themed(plot.line("frequency", "amplitude", source=source), line_color="output", line_width=1.6)
     heads = plot.scatter("frequency", "amplitude", source=source, size=5, line_color=None)
     themed(heads, fill_color="output")
-    folded = plot.line([0.0, float(found.frequency[-1]) / hertz], [floor] * 2, line_dash=[4, 4], level="underlay",
+    folded = plot.line([0.0, float(result.frequency[-1]) / hertz], [floor] * 2, line_dash=[4, 4], level="underlay",
                        legend_label="aliasing bound")
     themed(folded, line_color="soft", line_width=1.2)
     plot.add_tools(HoverTool(renderers=[heads], tooltips=[

@@ -15,15 +15,15 @@ from .theme import Theme
 from .themed import apply_theme, empty_figure, themed
 
 
-def transfer(found: Transfer, theme: Theme) -> LayoutDOM:
+def transfer(result: Transfer, theme: Theme) -> LayoutDOM:
     """Gain above phase, a point for each line at which the input force is not negligible.
 
     Raises `BadInput` where the input force has none.
     """
-    if not len(found.frequency):
+    if not len(result.frequency):
         raise BadInput("The input force has no lines, so there is no transfer.")
-    hertz, letter = prefixed(float(found.frequency.max()))
-    source = ColumnDataSource({"frequency": found.frequency / hertz, "gain": found.gain, "phase": found.phase},
+    hertz, letter = prefixed(float(result.frequency.max()))
+    source = ColumnDataSource({"frequency": result.frequency / hertz, "gain": result.gain, "phase": result.phase},
                               name="lines")
     gain = _panel(source, "gain", f"@frequency{{0.0000}} {letter}Hz", "gain |H|", y_axis_type="log")
     phase = _panel(source, "phase", f"@frequency{{0.0000}} {letter}Hz", "phase (rad)", x_range=gain.x_range)

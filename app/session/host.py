@@ -76,7 +76,7 @@ class PageHost(WorkHost, Protocol):
     def show_measured_curve(self, measured: Measured | None) -> Difference | None:
         """Draw a measured curve over the resonance curve, or none; return how it differs from a complete curve."""
 
-    def show_measured_series(self, found: Overlay | None) -> None:
+    def show_measured_series(self, overlay: Overlay | None) -> None:
         """Draw a measured series over the force trains, or none."""
 
     def activities(self) -> list[Activity]:

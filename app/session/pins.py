@@ -93,12 +93,12 @@ def _stated(run: Run, attribute: str, error: str) -> str:
 def _beside(now: Run, run: Run | None, attribute: str, error: str) -> list[str]:
     if run is None:
         return _NOTHING
-    here, there = float(getattr(now, attribute)), float(getattr(run, attribute))
-    return [_stated(run, attribute, error), signed_in_words(here - there, "N"), _times(here, there)]
+    here, pinned = float(getattr(now, attribute)), float(getattr(run, attribute))
+    return [_stated(run, attribute, error), signed_in_words(here - pinned, "N"), _times(here, pinned)]
 
 
-def _times(here: float, there: float) -> str:
-    return f"× {here / there:.3g}" if there > 0.0 else "–"
+def _times(here: float, pinned: float) -> str:
+    return f"× {here / pinned:.3g}" if pinned > 0.0 else "–"
 
 
 def _ratio(run: Run) -> float:

@@ -88,13 +88,13 @@ def stories(pages: Sequence[str], folder: Path = FOLDER) -> tuple[tuple[Story, .
 
     `pages` are the names of the pages that a step may offer to open.
     """
-    found, refused = [], []
+    known, refused = [], []
     for path in sorted(folder.glob("*.toml")):
         try:
-            found.append(read_story(path, pages))
+            known.append(read_story(path, pages))
         except BadInput as problem:
             refused.append(f"{path.name}: {problem}")
-    return tuple(sorted(found, key=lambda one: (one.order, one.name))), tuple(refused)
+    return tuple(sorted(known, key=lambda story: (story.order, story.name))), tuple(refused)
 
 
 def read_story(path: Path, pages: Sequence[str]) -> Story:
@@ -110,7 +110,7 @@ def read_story(path: Path, pages: Sequence[str]) -> Story:
     steps = data.get("steps")
     if not isinstance(steps, list) or not steps:
         raise BadInput("a story needs at least one [[steps]].")
-    read = [_step(number, one, pages) for number, one in enumerate(steps, 1)]
+    read = [_step(number, step, pages) for number, step in enumerate(steps, 1)]
     order = data.get("order", 100)
     if not isinstance(order, int):
         raise BadInput("order must be a whole number.")
@@ -152,10 +152,10 @@ def state_before(step: StoryStep, stop: Stop | None = None) -> State | None:
 
 def differences(step: StoryStep, shown: Run) -> list[str]:
     """Sentences about the differences of a run from the step."""
-    found, expected = [], step.expect
+    sentences, expected = [], step.expect
     regime = shown.regime.name if shown.regime.driven else UNDRIVEN
     if (regime, shown.regime.period) != (expected.regime, expected.period):
-        found.append(f"it is {shown.regime.sentence}, not {expected.regime} {expected.period or ''}".rstrip() + ".")
+        sentences.append(f"it is {shown.regime.sentence}, not {expected.regime} {expected.period or ''}".rstrip() + ".")
     numbers = [("largest output force", "N", expected.output, shown.max_output_force),
                ("largest input force", "N", expected.input, shown.max_input_force)]
     if expected.pulse is not None and expected.speed is not None:
@@ -164,8 +164,8 @@ def differences(step: StoryStep, shown: Run) -> list[str]:
         numbers += [("pulse's force", "N", expected.pulse, float(first.force[middle])),
                     ("pulse's speed", "m/s", expected.speed, float(first.speed_m_s[middle]))]
     allowed = IRREGULAR_TOLERANCE if regime in NEVER_REPEATING else TOLERANCE
-    return found + [f"the {name} is {computed:.4g} {unit}, not {number:.4g} {unit}."
-                    for name, unit, number, computed in numbers if abs(computed - number) > allowed * computed]
+    return sentences + [f"the {name} is {computed:.4g} {unit}, not {number:.4g} {unit}."
+                        for name, unit, number, computed in numbers if abs(computed - number) > allowed * computed]
 
 
 def _force(newtons: float, repeats: bool) -> str:
@@ -236,5 +236,5 @@ def _table(data: Mapping[str, Any], name: str) -> dict[str, Any]:
 def _one_of(data: Mapping[str, Any], name: str, known: tuple[str, ...]) -> str:
     value = data.get(name, "")
     if value not in known:
-        raise unknown_name(name, str(value), tuple(one for one in known if one))
+        raise unknown_name(name, str(value), tuple(filter(None, known)))
     return str(value)

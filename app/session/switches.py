@@ -42,13 +42,13 @@ def changes(name: str, on: bool, shown: Scene, remembered: Mapping[str, Any]) ->
     if not on:
         return dict(effect.off)
     before = {**scene(shown.name).knobs, **remembered}
-    found: dict[str, Any] = {}
+    knobs: dict[str, Any] = {}
     for knob in effect.knobs:
         # switching off changed the knobs in `off` alone; other knobs still have their values
         values = [before[knob]] if knob in effect.off else [shown.knobs[knob], before[knob]]
-        found.update([(knob, value) for value in values if value != effect.off.get(knob, 0.0)][:1])
-    missing = set(effect.knobs) - set(found)
-    return found | {knob: value for knob, value in effect.usual.items() if missing and knob not in found}
+        knobs.update([(knob, value) for value in values if value != effect.off.get(knob, 0.0)][:1])
+    missing = set(effect.knobs) - set(knobs)
+    return knobs | {knob: value for knob, value in effect.usual.items() if missing and knob not in knobs}
 
 
 def variants(name: str, shown: Scene) -> tuple[Variant, Variant] | None:

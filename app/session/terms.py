@@ -33,10 +33,10 @@ def _names(terms: str) -> list[str]:
 
     Another name of a term stands in parentheses after it.
     """
-    names = [re.sub(r" of an? .*", "", one.strip()) for one in re.split("[(),]", terms) if one.strip()]
+    names = [re.sub(r" of an? .*", "", word.strip()) for word in re.split("[(),]", terms) if word.strip()]
     if len(names) > 1 and names[-1].endswith(" force"):  # "input, output force"
-        names = [one if one.endswith(" force") else f"{one} force" for one in names]
-    return [*names, *(one.split()[-1] for one in names if one == "Floquet multiplier")]
+        names = [word if word.endswith(" force") else f"{word} force" for word in names]
+    return [*names, *(word.split()[-1] for word in names if word == "Floquet multiplier")]
 
 
 def _plain(text: str) -> str:

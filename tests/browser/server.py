@@ -70,18 +70,21 @@ def dashboard(log: Path, **environment: str) -> Iterator[str]:
 
 
 class Server:
-    """A dashboard on a port of its own that can be ended, and started again on the same port."""
+    """A dashboard on a port of its own that can be ended, and started again on the same port.
+
+    `before` is Python that runs before it is served, as to set a constant.
+    """
 
     process: subprocess.Popen[bytes]
 
-    def __init__(self, log: Path, **environment: str) -> None:
-        self.log, self._environment = log, environment
+    def __init__(self, log: Path, before: str = "", **environment: str) -> None:
+        self.log, self._before, self._environment = log, before, environment
         self._port = free_port()
         self.address = f"http://127.0.0.1:{self._port}/"
 
     def start(self) -> None:
         """Start it and wait until it answers."""
-        code = f"from app.server import serve; serve(port={self._port})"
+        code = f"{self._before}\nfrom app.server import serve\nserve(port={self._port})"
         with self.log.open("ab") as output:
             self.process = subprocess.Popen([sys.executable, "-c", code], cwd=ROOT, stdout=output, stderr=output,
                                             env={**os.environ, **self._environment})

@@ -25,9 +25,9 @@ DRAWN = """() => {
 
 def opened(page: Page) -> Locator:
     """The page, opened from its tab."""
-    page.get_by_role("tab", name="hard").click()
+    page.get_by_role("tab", name="hard-cases").click()
     page.locator("#tabs").get_by_role("button", name="open the page").click()
-    sheet = page.locator('[data-overlay="hard"]')
+    sheet = page.locator('[data-overlay="hard-cases"]')
     expect(sheet.get_by_role("button", name="run all (quick)")).to_be_visible()
     return sheet
 
@@ -42,12 +42,12 @@ def test_a_case_runs_when_asked_and_shows_rows_and_picture(visit: Visit) -> None
     sheet = opened(page)
     expect(sheet.locator("article")).to_have_count(len(CASES))
     expect(sheet.locator("article").first).to_contain_text("Naive:")
-    assert not [one for one in page.evaluate("sent") if one.startswith("hard-")]  # nothing was asked to run
+    assert not [one for one in page.evaluate("sent") if one.startswith("hard-cases-")]  # nothing was asked to run
     expect(sheet.locator("table")).to_have_count(0)
     one = card(sheet, QUICK)
     one.get_by_role("button", name="run").click()
     expect(one.locator("tbody tr").first).to_be_visible(timeout=COMPILED)
-    assert [one for one in page.evaluate("sent") if one.startswith("hard-")] == ["hard-run"]
+    assert [one for one in page.evaluate("sent") if one.startswith("hard-cases-")] == ["hard-cases-run"]
     rows = one.locator("tbody tr")
     expect(rows.first).to_contain_text("Hertz collision, duration")
     assert rows.count() == 9

@@ -108,7 +108,7 @@ def test_a_click_sets_f_and_A0(page: Page) -> None:
     expect(field(page, "f")).not_to_have_value(before[0])
     expect(field(page, "A0")).not_to_have_value(before[1])
     assert abs(float(field(page, "f").input_value()) - one["x"]) < 1.0
-    until(page, lambda: abs(source(page, "map", "now")["x"][0] - one["x"]) < 1e-3)
+    until(page, lambda: abs(source(page, "map", "mark")["x"][0] - one["x"]) < 1e-3)
     for name, value in zip(("f", "A0"), before, strict=True):
         type_into(page, name, value)
 

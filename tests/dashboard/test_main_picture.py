@@ -11,9 +11,10 @@ from typing import Any
 import pytest
 from headless_dashboard import Dashboard
 
-from app.dashboard import exports, main_picture, picture_work
+from app.dashboard import exports, picture_work
 from app.frames import settled_frames
 from app.serve.compiling.compiler import Compiler
+from app.serve.monitoring import picture_stages
 from app.serve.monitoring.metrics import METRICS
 from app.session.budget import RefusedPicture
 from granchain_core import BadInput, run, scene, settle
@@ -166,7 +167,7 @@ def test_nothing_is_settled_for_a_visitor_who_left_while_kernels_were_compiled(d
 def test_a_busy_server_says_so_with_the_next_picture(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
     """The message disappears with the first picture that comes in time."""
     clock = [5.0]
-    monkeypatch.setattr(main_picture, "time", SimpleNamespace(monotonic=lambda: clock[0]))
+    monkeypatch.setattr(picture_stages, "time", SimpleNamespace(monotonic=lambda: clock[0]))
     try:
         for late, wait, said in ((0.4, 0.0, True), (0.0, 0.1, False), (0.0, 0.4, True)):
             for _ in range(40):
@@ -196,7 +197,7 @@ def test_only_the_picture_of_a_request_answers_it(dashboard: Dashboard, monkeypa
     """A picture of the knobs before may arrive in between; it is shown, but the visitor still waits for the other."""
     clock, counted, begun = [0.0], [], threading.Event()
     go_on = {frequency: threading.Event() for frequency in (2000.0, 2100.0)}
-    monkeypatch.setattr(main_picture, "time", SimpleNamespace(monotonic=lambda: clock[0]))
+    monkeypatch.setattr(picture_stages, "time", SimpleNamespace(monotonic=lambda: clock[0]))
     monkeypatch.setattr(picture_work, "check_first_picture", lambda chain: (begun.set(), go_on[chain.f].wait(60)))
     monkeypatch.setattr(METRICS, "answered", counted.append)
     session, pictures = dashboard.session, dashboard.pictures

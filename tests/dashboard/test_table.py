@@ -9,6 +9,7 @@ from urllib.parse import quote
 
 import pytest
 
+from app import former_names
 from app.dashboard.table import CURVE_NAME, PAGES, TABS, TabSpec, check_names, tab_names
 from app.session import share
 
@@ -17,6 +18,12 @@ from app.session import share
 def test_a_name_that_is_taken_is_refused(row: TabSpec) -> None:
     with pytest.raises(ValueError, match=f"'{row.name}' in app/dashboard/table.py is taken"):
         check_names((*TABS, row))
+
+
+def test_a_former_name_leads_to_a_page_and_is_none() -> None:
+    """A page of that name could not be opened by its link."""
+    assert {row.name for row in former_names.TABS} <= set(tab_names())
+    assert not {row.former for row in former_names.TABS} & set(tab_names())
 
 
 def test_every_folder_of_a_page_has_its_row() -> None:

@@ -9,7 +9,8 @@ from documents import ROOT
 
 from app.serve.computing.worker_pools import LONG
 from app.serve.monitoring import metrics
-from app.serve.monitoring.metrics import HISTOGRAM, METRICS
+from app.serve.monitoring.metrics import HISTOGRAMS, METRICS
+from app.serve.monitoring.picture_stages import SLOW_PICTURE
 from app.server import add_shared_metrics
 
 pytestmark = pytest.mark.quick
@@ -48,6 +49,7 @@ def test_the_advice_of_monitoring_has_the_thresholds_of_the_code() -> None:
         assert f"| `granchain_{name}` above {value:g} " in TEXT
     words = " ".join(TEXT.split())
     assert f"the largest lag with {metrics._BUSY_STALL:g} s, the other two with {metrics._BUSY_WAIT:g} s." in words
+    assert f"for each picture that took more than {SLOW_PICTURE:g} s" in words
     assert {8: "one of eight threads"}[LONG.workers] in words
 
 
@@ -55,4 +57,4 @@ def test_the_advice_of_monitoring_names_metrics_that_there_are() -> None:
     add_shared_metrics()
     table = TEXT.partition("| sign |")[2].partition("\n\n")[0]
     named = set(re.findall(r"`((?:granchain|process)_\w+)", table))
-    assert len(named) > 8 and named <= {HISTOGRAM, f"{HISTOGRAM}_bucket", *(metric.full_name for metric in METRICS.table())}
+    assert len(named) > 8 and named <= {*HISTOGRAMS, *(f"{name}_bucket" for name in HISTOGRAMS), *(metric.full_name for metric in METRICS.table())}

@@ -52,7 +52,7 @@ class FakePageHost(FakeHost):
     def show_measured_curve(self, measured: Measured | None) -> Difference | None:
         return None
 
-    def show_measured_series(self, found: Overlay | None) -> None:
+    def show_measured_series(self, overlay: Overlay | None) -> None:
         pass
 
     def address_changed(self) -> None:

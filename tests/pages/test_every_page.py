@@ -39,7 +39,7 @@ def told_by_others() -> dict[str, Any]:
 #: each of its actions is asked for.
 ASKED: dict[str, tuple[tuple[str, dict[str, Any]], ...]] = {
     "analysis": (("analysis-ask", {"question": next(reversed(QUESTIONS))}), ("analysis-compute", {})),
-    "hard": (("hard-run", {"case": CASES[0].name}),),
+    "hard-cases": (("hard-cases-run", {"case": CASES[0].name}),),
     "stories": (("story-open", told_by_others()),),
 }
 #: Pages that show what others have computed.

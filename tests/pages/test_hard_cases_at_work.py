@@ -41,7 +41,7 @@ def page(page_of: Callable[[str], Trial], monkeypatch: pytest.MonkeyPatch) -> Tr
     """The page, whose cases take no time."""
     monkeypatch.setattr(module, "CaseProcess", Process)
     monkeypatch.setattr(Process, "closed", 0)
-    return page_of("hard")
+    return page_of("hard-cases")
 
 
 def status(page: Trial) -> list[str]:
@@ -50,9 +50,9 @@ def status(page: Trial) -> list[str]:
 
 
 def test_cases_run_one_after_the_other(page: Trial) -> None:
-    page.do("hard-run", case=SECOND.name)
-    page.do("hard-run", case=FIRST.name)
-    page.do("hard-run", case=SECOND.name)
+    page.do("hard-cases-run", case=SECOND.name)
+    page.do("hard-cases-run", case=FIRST.name)
+    page.do("hard-cases-run", case=SECOND.name)
     assert len(page.under_way) == 1 and status(page) == ["waiting", "waiting"] and page.state["done"] == 0.0
     assert page.page.activity == ("hard cases", "computing", SECOND.name)
     page.compute()
@@ -65,19 +65,19 @@ def test_cases_run_one_after_the_other(page: Trial) -> None:
 
 
 def test_stopping_keeps_what_was_found_and_forgets_what_waits(page: Trial) -> None:
-    page.do("hard-all")
+    page.do("hard-cases-all")
     page.compute()
-    page.do("hard-stop")
+    page.do("hard-cases-stop")
     assert set(status(page)[1:]) == {"stopped"} and status(page)[0] == "done"
     assert page.under_way == [] and not page.state["running"] and Process.closed == 1
-    page.do("hard-run", case=SECOND.name)
+    page.do("hard-cases-run", case=SECOND.name)
     page.compute()
     assert status(page)[:2] == ["done", "done"]
 
 
 def test_a_process_that_ends_fails_its_case_and_the_next_one_runs(page: Trial, monkeypatch: pytest.MonkeyPatch) -> None:
-    page.do("hard-run", case=FIRST.name)
-    page.do("hard-run", case=SECOND.name)
+    page.do("hard-cases-run", case=FIRST.name)
+    page.do("hard-cases-run", case=SECOND.name)
     with monkeypatch.context() as patched:
         patched.setattr(Process, "gone", True)
         page.compute()
@@ -85,16 +85,16 @@ def test_a_process_that_ends_fails_its_case_and_the_next_one_runs(page: Trial, m
     assert first["status"] == "failed" and "ended unexpectedly" in first["failure"]
     page.compute()
     assert status(page) == ["failed", "done"]
-    page.do("hard-run", case=FIRST.name)
+    page.do("hard-cases-run", case=FIRST.name)
     assert page.state["results"][FIRST.name]["failure"] == ""
 
 
 def test_its_process_ends_with_the_visit(page: Trial) -> None:
-    page.do("hard-run", case=FIRST.name)
+    page.do("hard-cases-run", case=FIRST.name)
     page.host.leave()
     assert Process.closed == 1
 
 
 def test_a_case_that_does_not_exist_is_refused(page: Trial) -> None:
     with pytest.raises(BadInput, match="There is no hard case 'none'"):
-        page.do("hard-run", case="none")
+        page.do("hard-cases-run", case="none")

@@ -23,14 +23,14 @@ def tab(page_of: Callable[[str], Trial], monkeypatch: pytest.MonkeyPatch) -> Tri
         row["number"], row["period"], row["max_output_force"] = number, 1, 1.0 + number
         return row
 
-    monkeypatch.setattr(module, "iter_parameter_map", lambda grid, missing, *_: iter(missing))
+    monkeypatch.setattr(module, "iter_parameter_map", lambda grid, missing, *_, **_options: iter(missing))
     monkeypatch.setattr(module, "cell_of", cell)
     return page_of("map")
 
 
 def interrupted(monkeypatch: pytest.MonkeyPatch, tab: Trial, cells: int) -> None:
     """The visitor leaves the tab after so many cells."""
-    def some(grid: Any, missing: list[int], *_: Any) -> Iterator[int]:
+    def some(grid: Any, missing: list[int], *_: Any, **_options: Any) -> Iterator[int]:
         yield from missing[:cells]
         tab.look(False)
         raise Cancelled
@@ -59,7 +59,8 @@ def test_only_the_cells_that_are_missing_are_computed_later(tab: Trial, monkeypa
     interrupted(monkeypatch, tab, 7)
     assert tab.last("map-status")["progress"] == "stopped; the cells computed so far are kept"
     asked: list[list[int]] = []
-    monkeypatch.setattr(module, "iter_parameter_map", lambda grid, missing, *_: asked.append(missing) or iter(missing))
+    monkeypatch.setattr(module, "iter_parameter_map",
+                        lambda grid, missing, *_, **_options: asked.append(missing) or iter(missing))
     tab.look()
     tab.compute()
     assert len(asked[0]) == module.ROWS * module.COLUMNS - 7 and tab.last("map-status")["status"] == "done"
@@ -70,7 +71,7 @@ def test_f_and_A0_move_the_mark_and_any_other_knob_asks_for_another_map(tab: Tri
     tab.compute()
     tab.turn(f=2100.0)
     tab.rest()
-    assert tab.last("map-now")["now"] and tab.under_way == [] and tab.messages("map-stale") == []
+    assert tab.last("map-mark")["mark"] and tab.under_way == [] and tab.messages("map-stale") == []
     tab.turn(kappa=0.2)
     assert tab.last("map-stale") and tab.under_way == [], "it begins when the knobs rest"
     tab.turn(kappa=0.3)

@@ -68,7 +68,7 @@ def test_the_marks_on_bifurcation_curves_say_of_which_kind_they_are() -> None:
 
 def test_only_what_is_computed_is_drawn() -> None:
     plot = parameter_map(nothing(GRID), THEMES["dark"])
-    assert data(plot, "cells")["number"] == [] and data(plot, "now") == {"x": [], "y": []}
+    assert data(plot, "cells")["number"] == [] and data(plot, "mark") == {"x": [], "y": []}
     assert scale_models(nothing(GRID).cells[:0]) == {}
     failed = filled(4, regime="failed", period=0)
     failed.cells[4]["max_output_force"] = np.nan
@@ -117,4 +117,4 @@ def test_forces_have_a_scale_and_regimes_a_legend_with_a_hatch_for_each(shown: s
     assert len({one.glyph.hatch_pattern for one in looks}) == len(CATEGORIES)  # the hatch alone tells regimes apart
     assert {one.visible for one in looks} == {shown == "regime"}
     assert [item.label.value for item in plot.legend[0].items if item.visible] == ["period 2"]
-    assert data(plot, "now") == {"x": [1950.0], "y": [pytest.approx(2.0)]}
+    assert data(plot, "mark") == {"x": [1950.0], "y": [pytest.approx(2.0)]}

@@ -134,6 +134,12 @@ def test_a_page_that_is_only_a_tab_is_opened_by_either_name() -> None:
     assert apply_address(session, "v=1&page=stability")[1] == [] and session.place == {"page": "stability"}
 
 
+def test_a_page_is_opened_by_its_former_name() -> None:
+    session = Session()
+    assert apply_address(session, "v=1&tab=hard&page=hard")[1] == []
+    assert session.place == {"tab": "hard-cases", "page": "hard-cases"}
+
+
 def test_a_link_with_a_story_alone_shows_the_motion_of_its_step() -> None:
     session = Session()
     step = story_step("coexisting.2", overlay_names())

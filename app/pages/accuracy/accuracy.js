@@ -50,7 +50,7 @@ class AccuracyPage {
     this.machine = element("span", { className: "soft", title: "The processor that the kernels are compiled for" });
     this.warning = element("span", { className: "warn" });
     this.host = element("div", { className: "figure" });
-    this.figure = new BokehFigure(this.host, (one) => fillAccuracy(one, this.known));
+    this.figure = new BokehFigure(this.host, (bokehFigure) => fillAccuracy(bokehFigure, this.known));
     this.naive = new NaiveForces();
     this.methods = element("div", { className: "table", tabIndex: 0, role: "region", ariaLabel: "methods" });
     this.root = element(

@@ -27,7 +27,7 @@ function sentence({ running, progress, done, asked }) {
 export function accuracyTab() {
   const known = () => window.granchain.pages.get("accuracy") ?? { drawn: {} };
   const host = element("div", { className: "small" });
-  const figure = new BokehFigure(host, (one) => fillAccuracy(one, known()));
+  const figure = new BokehFigure(host, (bokehFigure) => fillAccuracy(bokehFigure, known()));
   const line = paragraph();
   const show = () => {
     const { small, asked } = known();

@@ -53,13 +53,13 @@ export class NaiveForces {
   // largest error.
   offer(drawn) {
     const before = [this.methods.value, this.steps.value];
-    const names = [...new Set(drawn.map((one) => one.method))];
-    const counts = [...new Set(drawn.map((one) => one.steps))];
+    const names = [...new Set(drawn.map((drawing) => drawing.method))];
+    const counts = [...new Set(drawn.map((drawing) => drawing.steps))];
     this.methods.replaceChildren(...names.map((name) => new Option(name, name)));
     this.steps.replaceChildren(...counts.map((n) => new Option(`${n} steps a period`, n)));
     if (this.known) [this.methods.value, this.steps.value] = before;
     else {
-      const usual = drawn.filter((one) => one.steps === USUAL_STEPS && one.row >= 0);
+      const usual = drawn.filter((drawing) => drawing.steps === USUAL_STEPS && drawing.row >= 0);
       this.methods.value = usual.sort((a, b) => b.error - a.error)[0]?.method ?? names[0];
       this.steps.value = String(USUAL_STEPS);
     }
@@ -76,7 +76,7 @@ export class NaiveForces {
     this.root.hidden = !this.data;
     if (!this.data) return;
     const [method, steps] = [this.methods.value, this.steps.value];
-    const chosen = this.data.drawn.find((one) => one.method === method && String(one.steps) === steps);
+    const chosen = this.data.drawn.find((drawing) => drawing.method === method && String(drawing.steps) === steps);
     this.line.textContent = verdict(chosen);
     this.fill(chosen);
   }

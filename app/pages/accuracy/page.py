@@ -106,8 +106,8 @@ class AccuracyPage(Page):
     def _work(self, scene: Scene, job: Job) -> None:
         """In the measuring thread: the kernels first, then one row after the other."""
 
-        def report(found: WorkPrecision) -> None:
-            job.next_tick(self._show, list(found.rows), found.lesson, described_reference(found), found.agreement)
+        def report(result: WorkPrecision) -> None:
+            job.next_tick(self._show, list(result.rows), result.lesson, described_reference(result), result.agreement)
 
         job.compile(scene, FIXED_STEP_KERNELS, DOP853_KERNELS, ACCURACY_KERNELS)
         job.report("measuring")
@@ -144,11 +144,11 @@ class AccuracyPage(Page):
         return f"{words}; the status line has no reference and states an estimate{side}, {short_error(stated)}."
 
     def _sentence(self, best: Row | None) -> str:
-        asked = short_error(self._host.session.scene.accuracy)
+        accuracy = short_error(self._host.session.scene.accuracy)
         if best is not None:
-            return (f"The cheapest way to {asked} is {best.method}, {best.setting}: {duration(best.wall_s)}, "
+            return (f"The cheapest way to {accuracy} is {best.method}, {best.setting}: {duration(best.wall_s)}, "
                     f"error {short_error(best.error)}.")
         if not self.rows:
             return ""
         nearest = min(self.rows, key=lambda row: row.error)
-        return f"Nothing measured here reaches {asked}; the nearest is {nearest.method}, {nearest.setting}."
+        return f"Nothing measured here reaches {accuracy}; the nearest is {nearest.method}, {nearest.setting}."

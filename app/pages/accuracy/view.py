@@ -84,19 +84,19 @@ def described_rows(rows: list[Row]) -> list[dict[str, Any]]:
     return [{"way": row.method, "setting": row.setting, "failure": failure} for row, failure in failed]
 
 
-def described_reference(found: WorkPrecision) -> dict[str, Any]:
+def described_reference(result: WorkPrecision) -> dict[str, Any]:
     """The reference, the second reference, and their distance."""
-    known = math.isfinite(found.agreement)
-    if found.disagreement:
-        words = f"The second reference failed: {found.disagreement}"
-    elif found.agreement > _LARGEST_DISAGREEMENT:
-        words = (f"Two references differ by {short_error(found.agreement)}: this motion amplifies every error, "
+    known = math.isfinite(result.agreement)
+    if result.disagreement:
+        words = f"The second reference failed: {result.disagreement}"
+    elif result.agreement > _LARGEST_DISAGREEMENT:
+        words = (f"Two references differ by {short_error(result.agreement)}: this motion amplifies every error, "
                  "so errors below that mean nothing here.")
     elif known:
-        words = f"Two independent references agree to {short_error(found.agreement)}."
+        words = f"Two independent references agree to {short_error(result.agreement)}."
     else:
         words = "The second reference comes last."
-    return {"reference": found.reference, "second": found.second, "agreement_words": words}
+    return {"reference": result.reference, "second": result.second, "agreement_words": words}
 
 
 def naive_message(shown: Lesson, theme: Theme) -> dict[str, Any]:
@@ -104,14 +104,14 @@ def naive_message(shown: Lesson, theme: Theme) -> dict[str, Any]:
     largest = float(np.abs(shown.force).max())
     factor, letter = prefixed(largest)
     seconds, unit = prefixed(float(shown.time[-1]))
-    drawn = [one for one in shown.drawn if not one.failure]
-    rows = np.array([shown.time / seconds, shown.force / factor, *(one.force / factor for one in drawn)],
+    drawn = [drawing for drawing in shown.drawn if not drawing.failure]
+    rows = np.array([shown.time / seconds, shown.force / factor, *(drawing.force / factor for drawing in drawn)],
                     dtype=np.float32)
     return {
         "type": "naive", "columns": len(shown.time),
         "figure": figure_item(naive_forces(rows[0], rows[1], None, f"{unit}s", f"{letter}N", theme)),
-        "drawn": [{"method": one.method, "steps": one.steps, "failure": one.failure,
-                   "error": None if one.failure else one.error,
-                   "row": -1 if one.failure else 2 + drawn.index(one)} for one in shown.drawn],
+        "drawn": [{"method": drawing.method, "steps": drawing.steps, "failure": drawing.failure,
+                   "error": None if drawing.failure else drawing.error,
+                   "row": -1 if drawing.failure else 2 + drawn.index(drawing)} for drawing in shown.drawn],
         "values": rows.ravel(),
     }

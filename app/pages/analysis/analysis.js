@@ -43,9 +43,9 @@ class AnalysisPage {
     this.caption = element("p", { className: "caption", ariaLive: "polite" });
     this.words = element("ul", { className: "words" });
     this.command = element("code");
-    const found = element("div", { className: "found" }, this.result.root, this.caption, this.words, this.command);
+    const result = element("div", { className: "found" }, this.result.root, this.caption, this.words, this.command);
     const choice = element("div", { className: "choice" }, ...this.buttons);
-    this.root = element("div", { className: "part sheet" }, head, choice, this.about, this.form, this.warning, found);
+    this.root = element("div", { className: "part sheet" }, head, choice, this.about, this.form, this.warning, result);
     this.controls = [];
   }
 
@@ -61,7 +61,7 @@ class AnalysisPage {
     [this.fields, this.question] = [fields, question];
     this.controls = fields.map((field) => ({ name: field.name, ...control(field) }));
     for (const { name, input } of kept) {
-      const same = this.controls.find((one) => one.name === name)?.input;
+      const same = this.controls.find((control) => control.name === name)?.input;
       if (!same || (input.tagName === "SELECT" && ![...same.options].some(({ value }) => value === input.value)))
         continue;
       same.value = input.value;
@@ -85,8 +85,8 @@ class AnalysisPage {
       progress,
       failure,
     } = this.model.state;
-    this.buttons.forEach((one, i) => {
-      one.ariaPressed = String(this.names[i] === question);
+    this.buttons.forEach((choice, i) => {
+      choice.ariaPressed = String(this.names[i] === question);
     });
     this.about.textContent = about ?? ABOUT;
     this.fill(question, fields);

@@ -224,8 +224,8 @@ def _bifurcation_plan(chain: Scene, chosen: Mapping[str, str]) -> Plan:
     words = f"--over {_axis(knob, (low, high), count)} --start {start} --keep {keep} --bead {bead}"
     return Plan(f"Bifurcation diagram of bead {bead} over {knob}, {chain.name}",
                 _command("bifurcation-diagram", chain, words),
-                tuple((one, MOTION_KERNELS) for one in ends), compute,
-                lambda found, theme: draw_bifurcation_diagram(found, bead, theme))
+                tuple((end, MOTION_KERNELS) for end in ends), compute,
+                lambda diagram, theme: draw_bifurcation_diagram(diagram, bead, theme))
 
 
 # Basins in a plane of starts
@@ -255,7 +255,7 @@ def _basin_plan(chain: Scene, chosen: Mapping[str, str]) -> Plan:
                 ((chain, (*MOTION_KERNELS, CURVE_KERNELS, ORBIT_KERNELS)),), compute, draw_basins)
 
 
-QUESTIONS = {one.name: one for one in (
+QUESTIONS = {question.name: question for question in (
     AnalysisQuestion(
         "spectrum", "Which frequencies?", "The lines of a force of the settled motion: where it has energy, and "
         "whether they are multiples of f or of f / n.", _spectrum_fields, _spectrum_plan),

@@ -20,7 +20,7 @@ class Analysis(ResultFigure):
 
     def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
         super().__init__(received, state={"questions": [
-            {"name": one.name, "title": one.title} for one in QUESTIONS.values()]}, **params)
+            {"name": question.name, "title": question.title} for question in QUESTIONS.values()]}, **params)
 
     def ask(self, question: AnalysisQuestion, fields: Sequence[Field]) -> None:
         """Show a question with its fields, and nothing drawn."""
@@ -30,15 +30,15 @@ class Analysis(ResultFigure):
 
     def offer(self, fields: Sequence[Field]) -> None:
         """Offer these fields, with values for the present scene."""
-        self.update_state(fields=[{"name": one.name, "label": one.label, "value": one.value,
-                                   "choices": list(one.choices), "chosen": one.chosen} for one in fields])
+        self.update_state(fields=[{"name": field.name, "label": field.label, "value": field.value,
+                                   "choices": list(field.choices), "chosen": field.chosen} for field in fields])
 
     def clear(self) -> None:
         """Take the figure away."""
         self.update_state(title="", words=[], command="")
         self.clear_figure()
 
-    def answer(self, plan: Plan, found: Any) -> None:
+    def answer(self, plan: Plan, result: Any) -> None:
         """Show what was found."""
-        self.update_state(title=plan.title, words=found.summary(), command=plan.command)
-        self.show_figure(partial(plan.draw, found), plan.title)
+        self.update_state(title=plan.title, words=result.summary(), command=plan.command)
+        self.show_figure(partial(plan.draw, result), plan.title)

@@ -74,7 +74,7 @@ class BranchesPage {
     this.zoom = button("zoom in", () => this.zoomIn(), { title: ZOOM });
     this.on = button("continue", () => send({ do: "branches-continue" }));
     this.status = element("span", { className: "status" });
-    this.said = paragraph("", "said");
+    this.sentences = paragraph("", "said");
     this.about = paragraph(ABOUT, "about");
     this.warning = element("p", { className: "warn", hidden: true });
     this.choice = new Choice(send);
@@ -89,10 +89,10 @@ class BranchesPage {
       this.zoom,
       this.status,
     );
-    const say = element("div", { className: "say" }, this.said, this.about, this.warning, this.choice.root);
+    const say = element("div", { className: "say" }, this.sentences, this.about, this.warning, this.choice.root);
     this.root = element("div", { className: "part sheet" }, head, say, this.work);
     this.data = new StreamedData();
-    this.figure = new BokehFigure(this.host, (one) => this.fill(one));
+    this.figure = new BokehFigure(this.host, (bokehFigure) => this.fill(bokehFigure));
     this.everywhere = [this.figure]; // all figures with these data; the tab adds its own
   }
 
@@ -134,7 +134,7 @@ class BranchesPage {
     this.zoom.hidden = !this.data.rows.orbits;
     this.on.hidden = running || !state.unfinished || this.zoom.hidden;
     const sentences = [state.words, ...(state.ended ?? [])].filter(Boolean);
-    this.said.textContent = sentences.map((one) => sentence(one)).join(" ");
+    this.sentences.textContent = sentences.map((words) => sentence(words)).join(" ");
     this.warning.textContent = state.failure || (state.stale ? STALE : "");
     this.warning.hidden = !this.warning.textContent;
     this.root.classList.toggle("stale", Boolean(state.stale));
@@ -160,7 +160,7 @@ class BranchesPage {
     if (message.type === "clear") {
       this.data.clear();
       this.choice.hide();
-      for (const one of figures) one.remove();
+      for (const figure of figures) figure.remove();
     } else if (message.type === "add") {
       this.data.add(message, figures);
       this.draw();

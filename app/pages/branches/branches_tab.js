@@ -6,15 +6,15 @@ import { BokehFigure } from "../../parts/figures/bokeh_figure.js";
 export function branchesTab(_, { placeholder }) {
   const known = () => window.granchain.pages.get("branches");
   const host = element("div", { className: "small" });
-  const said = paragraph();
-  const figure = new BokehFigure(host, (one) => known().data.fill(one));
+  const sentence = paragraph();
+  const figure = new BokehFigure(host, (bokehFigure) => known().data.fill(bokehFigure));
   const show = () => {
     if (!known()) return;
     const { data, words, small, figures } = known();
     figures[1] = figure;
-    said.textContent = words || placeholder;
+    sentence.textContent = words || placeholder;
     if (host.isConnected && (data.rows.curve || data.rows.orbits)) figure.load(small, "branches of periodic orbits");
   };
   requestAnimationFrame(show);
-  return { content: [element("div", { className: "row top" }, said, openButton("branches")), host], show };
+  return { content: [element("div", { className: "row top" }, sentence, openButton("branches")), host], show };
 }

@@ -126,7 +126,7 @@ class BranchesPage(Page):
     def _continue(self) -> None:
         if self._followed and self._scene is not None and not self._task.running:
             scene = self._scene
-            left = [one.branch for one in self._followed]
+            left = [followed.branch for followed in self._followed]
             self._clear()
             self._submit(lambda stop: left, scene)
 

@@ -33,13 +33,13 @@ const options = (values, chosen) =>
   values.map(([value, text]) => element("option", { value, textContent: text, selected: value === chosen }));
 
 // The visitor's choices for the question `asked`, kept while the tab is drawn again.
-let asked = "";
+let questionAsked = "";
 let answers = {};
 
 function answersTo(question) {
   const name = JSON.stringify(question);
-  if (name === asked) return answers;
-  asked = name;
+  if (name === questionAsked) return answers;
+  questionAsked = name;
   answers = {
     columns: question.columns.map(([, , quantity, unit]) => ({ quantity, unit })),
     decimal: "point",
@@ -58,7 +58,7 @@ function columnChoice(question, index, chosen) {
   const known = () => question.units[chosen.quantity] ?? [];
   const isSensitivity = () => chosen.quantity && !known().includes(chosen.unit);
   const fill = () => {
-    const units = known().map((one) => [one, one]);
+    const units = known().map((unit) => [unit, unit]);
     if (chosen.quantity && chosen.quantity !== "frequency") units.push(["V", SENSITIVITY]);
     unit.replaceChildren(...options(units, isSensitivity() ? "V" : chosen.unit));
     unit.hidden = !chosen.quantity;

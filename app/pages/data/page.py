@@ -124,11 +124,11 @@ class DataPage(Page):
     def _read_in_thread(self, content: bytes, name: str, answers: Answers, job: Job) -> None:
         """In a worker thread: read the file. A `BadInput` names the line that cannot be read."""
         try:
-            found = _found(content, answers, name)
+            data = _found(content, answers, name)
         except Unclear as unclear:
             job.next_tick(self._ask, content, unclear.question)
             return
-        job.next_tick(self._show, found)
+        job.next_tick(self._show, data)
 
     def _ask(self, content: bytes, question: Question) -> None:
         self._content = content
@@ -160,9 +160,10 @@ class DataPage(Page):
 
         job.next_tick(self._show_overlay, overlay(series, run, sensors))
 
-    def _show_overlay(self, found: Overlay | None) -> None:
-        self._host.show_measured_series(found)
-        self._tabs.update_state(misfit=None if found is None else {"sentence": found.sentence, "rows": [], "left": 0})
+    def _show_overlay(self, overlay: Overlay | None) -> None:
+        self._host.show_measured_series(overlay)
+        self._tabs.update_state(misfit=None if overlay is None else
+                                {"sentence": overlay.sentence, "rows": [], "left": 0})
 
     def _show(self, measured: Measured | Series) -> None:
         """Draw a curve over the curve, or a series over the force trains."""
@@ -226,11 +227,11 @@ class DataPage(Page):
 def _settled(scene: Scene, stop: Stop) -> Settled:
     """The steady state, of which a virtual experiment needs the largest force."""
     began = time.thread_time()
-    for found in settling(scene, stop=stop):
-        if time.thread_time() - began > WHOLE_PICTURE and not found.final:
+    for settled in settling(scene, stop=stop):
+        if time.thread_time() - began > WHOLE_PICTURE and not settled.final:
             raise BadInput(f"After {WHOLE_PICTURE:g} s of computing this chain has not settled, so the virtual "
                            "experiment was not made.")
-    return found
+    return settled
 
 
 def _content(message: dict[str, Any]) -> bytes:
@@ -247,23 +248,23 @@ def _content(message: dict[str, Any]) -> bytes:
 
 def _found(content: bytes, answers: Answers, name: str) -> Measured | Series:
     """The curve or the series in a file. Raises `Unclear` and `BadInput`."""
-    found: Measured | Series | Shaker
+    data: Measured | Series | Shaker
     try:
-        found = read_data(content, answers, TABLE_KINDS, name, LARGEST_UPLOAD, MOST_UPLOADED_POINTS)
+        data = read_data(content, answers, TABLE_KINDS, name, LARGEST_UPLOAD, MOST_UPLOADED_POINTS)
     except Unclear:
         if format_of(content) is not TEXT:
             raise
         # asked about again for a curve alone, so that the question speaks of nothing else
-        found = read_data(content, answers, ("curve",), name, LARGEST_UPLOAD, MOST_UPLOADED_POINTS)
-    if isinstance(found, Shaker):
+        data = read_data(content, answers, ("curve",), name, LARGEST_UPLOAD, MOST_UPLOADED_POINTS)
+    if isinstance(data, Shaker):
         raise BadInput(f"{name} is the shaker's amplitude, and the page draws curves of frequency and force, and "
                        "series of forces; use granchain curve --amplitude FILE.")
-    if isinstance(found, Series) and found.input_force is None and found.output_force is None:
+    if isinstance(data, Series) and data.input_force is None and data.output_force is None:
         raise BadInput(f"{name} is a time series without a force; the page draws input and output force.")
-    points = len(found.time if isinstance(found, Series) else found.frequency)
+    points = len(data.time if isinstance(data, Series) else data.frequency)
     if points > MOST_UPLOADED_POINTS:
         raise BadInput(f"{name} has {points} points, and the page draws up to {MOST_UPLOADED_POINTS}.")
-    return found
+    return data
 
 
 def _word(message: dict[str, Any], name: str) -> str | None:

@@ -60,9 +60,9 @@ function effectRow(model, effect, slot) {
 
 // A table of all effects with their costs, and in the last row the time of a whole step.
 function costTable(model, { effects, slots, step }) {
-  const slotOf = new Map(slots.map((one) => [one.slot, one]));
+  const slotOf = new Map(slots.map((slot) => [slot.slot, slot]));
   const ns = (value) => (value ? `${value.toFixed(0)} ns` : "–");
-  const whole = element(
+  const wholeStep = element(
     "tr",
     { className: "whole" },
     element("td", { textContent: "one whole time step" }),
@@ -76,7 +76,7 @@ function costTable(model, { effects, slots, step }) {
     { className: "costs" },
     element("thead", {}, element("tr", {}, ...head)),
     ...rows,
-    element("tbody", {}, whole),
+    element("tbody", {}, wholeStep),
   );
 }
 
@@ -98,15 +98,15 @@ function activityRow({ name, state, detail }) {
 export function effectsTab(model) {
   const { panel, validity } = model.state;
   if (!panel) return { content: [] };
-  const always = panel.slots.filter((one) => panel.always.includes(one.slot));
-  const types = always.map((one) => one.type).join(", ");
+  const always = panel.slots.filter((slot) => panel.always.includes(slot.slot));
+  const types = always.map((slot) => slot.type).join(", ");
   const content = [
     paragraph(INVITES),
     costTable(model, panel),
     paragraph(COST, "soft"),
     ...(panel.effects.some(saves) ? [paragraph(MINUS, "soft")] : []),
     paragraph(
-      `Always there: ${always.map((one) => one.title).join(", ")} (${types}). Kernel: ${panel.structure}.`,
+      `Always there: ${always.map((slot) => slot.title).join(", ")} (${types}). Kernel: ${panel.structure}.`,
       "soft",
     ),
     element("h3", { textContent: "being computed now" }),

@@ -177,11 +177,11 @@ class EffectsPage(Page):
 
     def _step(self, scene: Scene) -> dict[str, float]:
         """Nanoseconds a step of the present kernel, by method, from the last effect that was measured."""
-        found: dict[str, float] = {}
+        times: dict[str, float] = {}
         for name, costs in self._costs.items():
             on = present(name, scene, account=False)
-            found.update({method: cost.with_it if on else cost.without for method, cost in costs.items()})
-        return found
+            times.update({method: cost.with_it if on else cost.without for method, cost in costs.items()})
+        return times
 
 
 def _words(cost: EffectCost | None) -> dict[str, Any] | None:

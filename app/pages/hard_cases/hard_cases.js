@@ -31,28 +31,28 @@ function rowTable(rows) {
 }
 
 class Card {
-  constructor(one, run) {
-    this.run = button("run", run, { ariaLabel: `run: ${one.name}` });
+  constructor(hardCase, run) {
+    this.run = button("run", run, { ariaLabel: `run: ${hardCase.name}` });
     this.status = element("span", { className: "status" });
     this.warning = element("p", { className: "warn", hidden: true });
     this.rows = element("div", { className: "rows" });
-    this.result = new ResultFigure("hard", one.name, "drawn");
+    this.result = new ResultFigure("hard-cases", hardCase.name, "drawn");
     const line = (label, text) => element("p", {}, element("b", { textContent: label }), " ", ...raised(text));
     this.root = element(
       "article",
       { className: "case" },
-      element("div", { className: "title" }, element("h3", {}, ...raised(one.name)), this.status, this.run),
+      element("div", { className: "title" }, element("h3", {}, ...raised(hardCase.name)), this.status, this.run),
       element(
         "div",
         { className: "lines" },
-        line("Hard:", one.hard),
-        line("Naive:", one.naive),
-        element("p", { className: "soft" }, "Known from: ", ...raised(one.oracle), "."),
+        line("Hard:", hardCase.hard),
+        line("Naive:", hardCase.naive),
+        element("p", { className: "soft" }, "Known from: ", ...raised(hardCase.oracle), "."),
       ),
       this.warning,
       element("div", { className: "found" }, this.rows, this.result.root),
     );
-    this.root.dataset.case = one.name;
+    this.root.dataset.case = hardCase.name;
     this.began = null;
   }
 
@@ -85,13 +85,16 @@ class HardCases {
   constructor(model) {
     const send = (message) => model.send_msg(message);
     const { cases = [] } = model.state;
-    const card = (one) => [one.name, new Card(one, () => send({ do: "hard-run", case: one.name }))];
+    const card = (hardCase) => [
+      hardCase.name,
+      new Card(hardCase, () => send({ do: "hard-cases-run", case: hardCase.name })),
+    ];
     this.model = model;
     this.cards = new Map(cases.map(card));
-    this.all = button("run all (quick)", () => send({ do: "hard-all" }), {
+    this.all = button("run all (quick)", () => send({ do: "hard-cases-all" }), {
       title: `All ${cases.length} cases with fewer runs; in full: granchain check`,
     });
-    this.stop = button("stop", () => send({ do: "hard-stop" }), { title: "What was found stays" });
+    this.stop = button("stop", () => send({ do: "hard-cases-stop" }), { title: "What was found stays" });
     this.meter = meter("progress of the hard cases");
     this.line = element("p", { className: "say", ariaLive: "polite" });
     const head = pageHead("Hard cases", this.meter, this.stop, this.all);
@@ -106,7 +109,7 @@ class HardCases {
     this.meter.value = done ?? 0;
     this.line.textContent = summary || this.model.state.about;
     for (const [name, card] of this.cards) card.show(results[name]);
-    window.granchain.publish("hard", { sentence: summary });
+    window.granchain.publish("hard-cases", { sentence: summary });
   }
 
   // Once a second it shows how long the present case has been running.

@@ -36,8 +36,8 @@ class HardCasesPage(Page):
         self.rows: dict[str, list[Check]] = {}
         self.waiting: list[str] = []
         self.actions: Actions = {
-            "hard-run": self._run_one, "hard-all": lambda _: self._run(CASES),
-            "hard-stop": lambda _: self.stop(),
+            "hard-cases-run": self._run_one, "hard-cases-all": lambda _: self._run(CASES),
+            "hard-cases-stop": lambda _: self.stop(),
         }
 
     @property

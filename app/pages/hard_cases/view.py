@@ -67,13 +67,13 @@ def described_results(name: str, rows: list[Check]) -> dict[str, Any]:
          "limit": digits_of(row.limit, 3), "passed": row.passed, "note": row.note} for row in rows]}
 
 
-def summary(found: dict[str, list[Check]]) -> str:
+def summary(rows_by_case: dict[str, list[Check]]) -> str:
     """One sentence about everything that was run; a failed row is named with its value."""
-    every = [row for case in CASES for row in found.get(case.name, ())]
+    every = [row for case in CASES for row in rows_by_case.get(case.name, ())]
     if not every:
         return ""
     missed = [row for row in every if not row.passed]
-    run = f"{len(found)} of {len(CASES)} cases run"
+    run = f"{len(rows_by_case)} of {len(CASES)} cases run"
     if not missed:
         return f"{run}: no value of {len(every)} is above its limit."
     first = missed[0]

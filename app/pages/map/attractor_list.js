@@ -9,25 +9,25 @@ const swatch = (colour) => {
   return square;
 };
 
-const attractorRow = (one, load) =>
+const attractorRow = (attractor, load) =>
   element(
     "tr",
     {},
-    element("td", {}, swatch(one.colour)),
-    element("td", {}, one.words, element("small", { textContent: one.force })),
+    element("td", {}, swatch(attractor.colour)),
+    element("td", {}, attractor.words, element("small", { textContent: attractor.force })),
     element("td", {
       className: "number",
-      textContent: one.share_words,
-      title: `${one.starts} of all starts lead here`,
+      textContent: attractor.share_words,
+      title: `${attractor.starts} of all starts lead here`,
     }),
-    element("td", { className: "soft", textContent: one.from.join(", ") }),
+    element("td", { className: "soft", textContent: attractor.from.join(", ") }),
     element("td", {}, button("show", load)),
   );
 
 // Makes the table or, while the search runs, says how far it is. `load` is called with an attractor's number.
 export function attractorList(load) {
   if (MAP.search !== "done") return MAP.searched ? [paragraph(MAP.searched, "soft")] : [];
-  const rows = MAP.attractors.map((one, number) => attractorRow(one, () => load(number)));
+  const rows = MAP.attractors.map((attractor, number) => attractorRow(attractor, () => load(number)));
   const titles = ["", "attractor", "share of random states", "also from", ""];
   return [table(titles, element("tbody", {}, ...rows), { className: "attractors" })];
 }

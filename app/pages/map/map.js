@@ -27,9 +27,9 @@ class MapTab {
     this.host = element("div", { className: "maphost", tabIndex: 0 });
     this.host.addEventListener("keydown", (event) => this.key(event));
     this.host.addEventListener("blur", () => this.moveCursor(null));
-    this.found = element("div");
+    this.attractors = element("div");
     this.following = false; // from the click until what was found is on the screen
-    this.figure = new BokehFigure(this.host, (one) => this.fill(one));
+    this.figure = new BokehFigure(this.host, (bokehFigure) => this.fill(bokehFigure));
     const segments = element("span", { className: "segments" }, ...this.choices);
     const find = button("all attractors at this setting", () => {
       this.following = true;
@@ -41,7 +41,7 @@ class MapTab {
       element("div", { className: "mapbox" }, this.host),
       this.line,
       element("div", { className: "row" }, find, this.stopSearch),
-      this.found,
+      this.attractors,
     ];
   }
 
@@ -83,7 +83,7 @@ class MapTab {
   // Sets the colours, the mark of the present setting, and the cell chosen with the arrow keys.
   dress() {
     fillModels(this.figure, MAP.head?.shown[MAP.shown]);
-    this.figure.set("now", { data: MAP.now });
+    this.figure.set("mark", { data: MAP.mark });
     const row = this.cursor ? cellAt(this.cursor.i, this.cursor.j) : -1;
     const edge = (name) => (row < 0 ? [] : [MAP.cells.rows.cells[name][row]]);
     const data = { left: edge("left"), right: edge("right"), bottom: edge("bottom"), top: edge("top") };
@@ -96,10 +96,10 @@ class MapTab {
     for (const choice of this.choices) choice.ariaPressed = String(choice.value === MAP.shown);
     this.showProgress();
     if (what === undefined || what === "map-attractors")
-      this.found.replaceChildren(...attractorList((number) => this.send("map-load", { number })));
+      this.attractors.replaceChildren(...attractorList((number) => this.send("map-load", { number })));
     if (what === "map-attractors" && this.following) {
       this.following = MAP.searching;
-      this.found.scrollIntoView({ block: "nearest" }); // it is below the map, and often below the window
+      this.attractors.scrollIntoView({ block: "nearest" }); // it is below the map, and often below the window
     }
     if (what !== "map-cells") this.dress();
     if (MAP.head && this.host.isConnected) this.figure.load(MAP.head.figure, WORDS);

@@ -6,7 +6,7 @@ export const MAP = {
   head: null,
   cells: new StreamedData(),
   figure: null, // the BokehFigure of the tab
-  now: { x: [], y: [] },
+  mark: { x: [], y: [] }, // where the present setting is
   done: 0,
   status: "none",
   running: false,
@@ -31,7 +31,7 @@ export function mapMessage(message) {
   } else if (message.type === "map-cells") {
     MAP.cells.add(message, MAP.figure ? [MAP.figure] : []);
     MAP.done = message.done;
-  } else if (message.type === "map-now") MAP.now = message.now;
+  } else if (message.type === "map-mark") MAP.mark = message.mark;
   else if (message.type === "map-stale") MAP.stale = true;
   else if (message.type === "map-status")
     Object.assign(MAP, { status: message.status, running: message.running, words: wordsOf(message) });

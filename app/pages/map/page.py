@@ -17,7 +17,7 @@ from granchain_core.parameter_maps.cells import cell_of, empty_cells
 from granchain_core.precompile.pieces import ORBIT_KERNELS
 
 from ...parts.toolkit.component import Component
-from ...plots.parameter_map import now_row
+from ...plots.parameter_map import mark_row
 from ...plots.theme import THEMES, Theme
 from ...serve.compiling.compiler import PICTURE_PIECES
 from ...serve.computing.worker_pools import LONG
@@ -86,7 +86,7 @@ class MapPage(Page):
         self._forget_outdated_attractors()
         if not self._visible:
             return
-        self._send_now()
+        self._send_mark()
         if self._stale():
             self._give_up()
             self._send(type="map-stale")
@@ -107,7 +107,7 @@ class MapPage(Page):
                 self._begin()
         else:
             self._begin()
-        self._send_now()
+        self._send_mark()
         if not self._search.running:
             self._show_attractors("done" if self._found else "none")
 
@@ -161,10 +161,10 @@ class MapPage(Page):
     def _send(self, **message: Any) -> None:
         self._view.send(**message)
 
-    def _send_now(self) -> None:
+    def _send_mark(self) -> None:
         scene = self._host.session.scene
         if self._grid is not None:
-            self._send(type="map-now", now=now_row(self._grid, scene.f, scene.A0))
+            self._send(type="map-mark", mark=mark_row(self._grid, scene.f, scene.A0))
 
     def _show_status(self, status: Status, sentence: str = "") -> None:
         self.status = status
@@ -174,7 +174,7 @@ class MapPage(Page):
         assert self._grid is not None
         self._scale = {}
         self._send(**head_message(self._grid, self._theme))
-        self._send_now()
+        self._send_mark()
         self._show(self._cells[self._cells["regime"] >= 0])
 
     def _show(self, rows: np.ndarray) -> None:
@@ -209,11 +209,11 @@ class MapPage(Page):
         job.compile(scene, *PICTURE_PIECES, *(() if scene.cuts_tension else (ORBIT_KERNELS,)))
         job.report("searching")
         starts = _FEW_RANDOM_STATES if scene.cuts_tension else _RANDOM_STATES
-        found = attractors(scene, starts, stop=job.stop)
-        job.next_tick(self._arrived, found, [described_attractor(one) for one in found])
+        result = attractors(scene, starts, stop=job.stop)
+        job.next_tick(self._arrived, result, [described_attractor(attractor) for attractor in result])
 
-    def _arrived(self, found: list[Attractor], shown: list[dict[str, Any]]) -> None:
-        self._found, self._shown = found, shown
+    def _arrived(self, result: list[Attractor], shown: list[dict[str, Any]]) -> None:
+        self._found, self._shown = result, shown
 
     def _show_attractors(self, status: Status, sentence: str = "") -> None:
         shown = self._shown if self._found else []
@@ -228,16 +228,16 @@ class MapPage(Page):
 
     def _load(self, message: dict[str, Any]) -> None:
         """Put the chain on an attractor; from then on settled pictures start from the previous state."""
-        found = check_index("attractor", self._found, message.get("number"))
+        attractor = check_index("attractor", self._found, message.get("number"))
         self._host.session.set_start("previous")
-        self._host.show(found.scene, found.state)
+        self._host.show(attractor.scene, attractor.state)
 
 
 def _batches(grid: Grid, missing: list[int], stop: Stop, pause: Callable[[], None]) -> Iterator[np.ndarray]:
     """Cells as they are computed, in batches."""
     rows: list[np.ndarray] = []
     last = time.monotonic()
-    for result in iter_parameter_map(grid, missing, stop, 1, pause):
+    for result in iter_parameter_map(grid, missing, stop, workers=1, pause=pause):
         rows.append(cell_of(result))
         if time.monotonic() - last > _MESSAGE_EVERY:
             yield np.array(rows)

@@ -54,7 +54,7 @@ export function compared(model) {
     const { pins, rows, full } = comparison;
     pin.disabled = full;
     if (!pins.length) return body.replaceChildren(paragraph(INVITES, "soft"));
-    const titles = element("tr", {}, cell("now", "th"), ...pins.map((one, i) => head(model, one, i)));
+    const titles = element("tr", {}, cell("now", "th"), ...pins.map((pin, i) => head(model, pin, i)));
     return body.replaceChildren(element("table", {}, element("thead", {}, titles), ...rows.map(lines)));
   };
   return { pin, body, show };

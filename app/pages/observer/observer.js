@@ -51,10 +51,10 @@ class ObserverPage {
     const send = (name, more = {}) => model.send_msg({ do: name, ...more });
     const control = (words, name, title) => button(words, () => send(name), { title });
     this.model = model;
-    this.asked = 0; // number of the requested animation frame
+    this.requested = 0; // number of the requested animation frame
     this.history = [];
     this.kappa = new KappaControl((value) => send("set", { name: "kappa", value }), model.state.paper_kappa);
-    this.said = element("b");
+    this.sentence = element("b");
     this.rates = element("span", { className: "soft" });
     this.status = element("span", { className: "soft" });
     this.chains = new Chains(model.state.palette);
@@ -63,7 +63,7 @@ class ObserverPage {
       (step) => this.begin(step),
     );
     const host = element("div", { className: "fill" });
-    this.figure = new BokehFigure(host, (one) => fillDistance(one, this.known));
+    this.figure = new BokehFigure(host, (bokehFigure) => fillDistance(bokehFigure, this.known));
     this.root = element(
       "div",
       { className: "part sheet" },
@@ -74,7 +74,7 @@ class ObserverPage {
         control("from rest", "observer-rest", "Start the observer at rest, with no knowledge of the chain"),
         control("start again", "observer-again", "Start both on the orbit, with the observer nudged"),
       ),
-      element("div", { className: "say" }, this.said, this.rates, this.status),
+      element("div", { className: "say" }, this.sentence, this.rates, this.status),
       this.chains.root,
       element("div", { className: "trace" }, host),
     );
@@ -82,7 +82,7 @@ class ObserverPage {
 
   show() {
     const { state } = this.model;
-    this.said.textContent = state.failure || state.sentence || "";
+    this.sentence.textContent = state.failure || state.sentence || "";
     this.status.textContent = state.progress ?? "";
     this.rates.textContent = rateWords(state);
     this.kappa.show(state.kappa ?? 0);
@@ -110,8 +110,8 @@ class ObserverPage {
 
   // Requests an animation frame. Each requests the next while somebody looks at the page or its tab.
   wake() {
-    this.asked ||= requestAnimationFrame((time) => {
-      this.asked = 0;
+    this.requested ||= requestAnimationFrame((time) => {
+      this.requested = 0;
       this.tick(time);
     });
   }

@@ -23,12 +23,12 @@ export function showDistance(figure, item, known) {
 export function observerTab(_, { placeholder }) {
   const known = () => window.granchain.pages.get("observer") ?? { history: [], prediction: [] };
   const host = element("div", { className: "small" });
-  const figure = new BokehFigure(host, (one) => fillDistance(one, known()));
-  const said = paragraph();
+  const figure = new BokehFigure(host, (bokehFigure) => fillDistance(bokehFigure, known()));
+  const sentence = paragraph();
   const show = () => {
-    said.textContent = known().sentence || placeholder;
+    sentence.textContent = known().sentence || placeholder;
     if (host.isConnected) showDistance(figure, known().small, known());
   };
   requestAnimationFrame(show);
-  return { content: [element("div", { className: "row top" }, said, openButton("observer")), host], show };
+  return { content: [element("div", { className: "row top" }, sentence, openButton("observer")), host], show };
 }

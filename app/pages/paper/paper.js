@@ -40,15 +40,15 @@ class PaperPage {
     this.result = new ResultFigure("paper");
     this.caption = element("p", { className: "caption", ariaLive: "polite" });
     this.rows = element("div", { className: "rows" });
-    const found = element("div", { className: "found" }, this.result.root, this.caption, this.rows);
-    this.root = element("div", { className: "part sheet" }, head, choice, this.warning, found);
+    const result = element("div", { className: "found" }, this.result.root, this.caption, this.rows);
+    this.root = element("div", { className: "part sheet" }, head, choice, this.warning, result);
     this.leave = () => model.state.running && stop();
   }
 
   show() {
     const { chosen, title, caption, rows = [], running, done, progress, failure } = this.model.state;
-    this.buttons.forEach((one, i) => {
-      one.ariaPressed = String(this.numbers[i] === chosen);
+    this.buttons.forEach((choice, i) => {
+      choice.ariaPressed = String(this.numbers[i] === chosen);
     });
     this.meter.hidden = this.stop.hidden = !running;
     this.meter.value = done ?? 0;

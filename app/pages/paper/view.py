@@ -22,7 +22,7 @@ class Paper(ResultFigure):
 
     def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
         super().__init__(received, state={"figures": [
-            {"number": one.number, "title": one.title} for one in FIGURES.values()]}, **params)
+            {"number": figure.number, "title": figure.title} for figure in FIGURES.values()]}, **params)
 
     def choose(self, figure: PaperFigure) -> None:
         """Show what is said of a figure, and nothing drawn."""
@@ -37,5 +37,5 @@ class Paper(ResultFigure):
 
 def rows_of(number: str) -> list[dict[str, str]]:
     """The rows of the table that concern a figure."""
-    return [{"paper": one.paper, "ours": one.ours, "differs": one.differs, "command": one.command}
-            for one in statements() if number in one.figures]
+    return [{"paper": statement.paper, "ours": statement.ours, "differs": statement.differs,
+             "command": statement.command} for statement in statements() if number in statement.figures]

@@ -39,7 +39,7 @@ class ProbePage {
 
   panel(name, words) {
     const host = element("div", { className: "figure" });
-    this.figures.set(name, new BokehFigure(host, (one) => fillModels(one, this.drawn?.[name])));
+    this.figures.set(name, new BokehFigure(host, (bokehFigure) => fillModels(bokehFigure, this.drawn?.[name])));
     return element(
       "section",
       { className: "one" },

@@ -9,7 +9,7 @@ export function probeTab() {
   const known = () => window.granchain.pages.get("probe") ?? {};
   const host = element("div", { className: "circle" });
   const line = paragraph();
-  const figure = new BokehFigure(host, (one) => fillModels(one, known().drawn?.phase));
+  const figure = new BokehFigure(host, (bokehFigure) => fillModels(bokehFigure, known().drawn?.phase));
   const show = () => {
     const { sentence, small, drawn } = known();
     line.textContent = sentence || INVITES;

@@ -45,8 +45,8 @@ def words(motion: Run, bead: int) -> str:
     """What the bead does, in one sentence."""
     u, v = (abs(values[:, bead - 1]).max() for values in (motion.displacement, motion.velocity))
     lasting = motion.time[-1] - motion.time[0]
-    shut = [sum(end - begin for contact, begin, end in closed_spells(motion) if contact == one) / lasting
-            for one in (bead - 1, bead)]
+    shut = [sum(end - begin for contact, begin, end in closed_spells(motion) if contact == beside) / lasting
+            for beside in (bead - 1, bead)]
     return (f"Bead {bead} of {motion.scene.N}: up to {in_words(float(u), 'm', 3)} from its rest position, up to "
             f"{in_words(float(v), 'm/s', 3)} fast; its contacts are closed for {100 * shut[0]:.0f} % (driver’s side) "
             f"and {100 * shut[1]:.0f} % (wall’s side) of the time.")

@@ -13,7 +13,7 @@ export class MultiplierPlane {
     this.watch.addEventListener("change", () => send({ do: "stability-observer", value: this.watch.checked }));
     this.host = element("div", { className: "figure", tabIndex: 0, title: "Arrow keys choose another multiplier" });
     this.host.addEventListener("keydown", ({ key }) => this.step({ ArrowRight: 1, ArrowLeft: -1 }[key] ?? 0));
-    this.figure = new BokehFigure(this.host, (one) => this.fill(one));
+    this.figure = new BokehFigure(this.host, (bokehFigure) => this.fill(bokehFigure));
     this.note = element("span", { className: "soft readout" });
     const label = element("label", { className: "watch", title: OBSERVER }, this.watch, "observer");
     this.root = element(

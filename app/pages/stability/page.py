@@ -157,16 +157,16 @@ class StabilityPage(Page):
 
     # What comes back
 
-    def _arrived(self, found: OrbitAnalysis | OrbitTarget | Section) -> None:
+    def _arrived(self, result: OrbitAnalysis | OrbitTarget | Section) -> None:
         if self._settled is None:
             return
-        if isinstance(found, OrbitAnalysis):
-            self._show(found)
-        elif isinstance(found, OrbitTarget):
+        if isinstance(result, OrbitAnalysis):
+            self._show(result)
+        elif isinstance(result, OrbitTarget):
             self._rank = 0
-            self._follow(found)
+            self._follow(result)
         else:
-            self._section = found
+            self._section = result
             self._show_section()
         self._show_evidence()
 

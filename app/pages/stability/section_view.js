@@ -16,12 +16,12 @@ export class SectionView {
     this.note = element("span", { className: "soft" });
     this.host = element("div", { className: "figure" });
     this.figure = new BokehFigure(this.host, () => this.fill());
-    const tell = () => {
+    const sendChoice = () => {
       this.say();
       send({ do: "stability-section", bead: Number(this.beads.value), phase: Number(this.phase.value) });
     };
-    this.beads.addEventListener("change", tell);
-    this.phase.addEventListener("input", tell);
+    this.beads.addEventListener("change", sendChoice);
+    this.phase.addEventListener("input", sendChoice);
     this.root = element(
       "section",
       { className: "poincare" },

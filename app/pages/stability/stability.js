@@ -25,7 +25,7 @@ class StabilityPage {
     const send = (message) => model.send_msg(message);
     this.model = model;
     this.status = element("span", { className: "status" });
-    this.said = element("b");
+    this.sentence = element("b");
     this.searched = element("span", { className: "searched" });
     this.plane = new MultiplierPlane(model, send);
     this.mode = new ModeView();
@@ -36,7 +36,7 @@ class StabilityPage {
       "div",
       { className: "part sheet" },
       pageHead("Stability", this.status),
-      element("div", { className: "say" }, this.searched, this.said),
+      element("div", { className: "say" }, this.searched, this.sentence),
       this.plane.root,
       this.mode.root,
       this.section.root,
@@ -49,7 +49,7 @@ class StabilityPage {
     const { state } = this.model;
     this.root.classList.toggle("stale", Boolean(state.stale));
     this.status.textContent = state.progress ?? "";
-    this.said.textContent = state.sentence ?? "";
+    this.sentence.textContent = state.sentence ?? "";
     this.searched.textContent = state.searched ? "Found by search; the chain does not follow this orbit." : "";
     this.searched.hidden = !state.searched;
     this.plane.show();

@@ -8,7 +8,7 @@ export function stabilityTab() {
   const host = element("div", { className: "circle" });
   const line = paragraph("", "verdict");
   const more = paragraph("", "soft");
-  const figure = new BokehFigure(host, (one) => fillModels(one, known().state.plane));
+  const figure = new BokehFigure(host, (bokehFigure) => fillModels(bokehFigure, known().state.plane));
   const show = () => {
     const { state, small } = known();
     line.textContent = state.sentence || "Follows the settled picture.";

@@ -18,18 +18,18 @@ class Trail:
         self._last: tuple[int, np.ndarray] | None = None
         self._scene = ""
 
-    def follow(self, found: np.ndarray, period: int, scene: str) -> None:
+    def follow(self, multipliers: np.ndarray, period: int, scene: str) -> None:
         """Add the orbit that the chain follows now."""
         if scene != self._scene:
             self._sets, self._last, self._scene = [], None, scene
-        if self._last is not None and not _same(self._last[1], found):
+        if self._last is not None and not _same(self._last[1], multipliers):
             self._sets = [*self._sets, self._last][-_MOST_SETS:]
-        self._last = period, found
+        self._last = period, multipliers
 
     def before(self, period: int) -> list[np.ndarray]:
         """Earlier sets of multipliers of orbits of this period, oldest first."""
-        return [found for n, found in self._sets if n == period]
+        return [multipliers for n, multipliers in self._sets if n == period]
 
 
-def _same(one: np.ndarray, other: np.ndarray) -> bool:
-    return one.shape == other.shape and bool((np.abs(one - other) < _SAME_SET).all())
+def _same(multipliers: np.ndarray, other: np.ndarray) -> bool:
+    return multipliers.shape == other.shape and bool((np.abs(multipliers - other) < _SAME_SET).all())

@@ -87,8 +87,9 @@ def _observed(orbit: Orbit) -> str:
         return ""
     size = float(np.abs(orbit.observer_multipliers).max())
     certain = orbit.observer_multiplier_errors is None or orbit.observer_stability_certain
-    said = ("stable" if orbit.observer_stable else "unstable") if certain else "not decided to be stable or unstable"
-    return f" Its observer is {said}, |μ| {modulus_words(size)}."
+    decided = "stable" if orbit.observer_stable else "unstable"
+    stability = decided if certain else "not decided to be stable or unstable"
+    return f" Its observer is {stability}, |μ| {modulus_words(size)}."
 
 
 def _leaves(leading: complex) -> str:
@@ -144,7 +145,7 @@ def evidence(settled: Settled, analysis: OrbitAnalysis | None, section: Section 
             "Median distance from later states of the section to the nearest earlier one, relative to the motion; a "
             "quasi-periodic motion stays below the limit.")
     if regime.window_ratios is not None:
-        row("change from window to window", " to ".join(f"{one:.3f}" for one in regime.window_ratios),
+        row("change from window to window", " to ".join(f"{ratio:.3f}" for ratio in regime.window_ratios),
             "Smallest and largest ratio of the largest change in 100 periods to that in the 100 before, over all "
             "periods tried: 1 where nothing shrinks or grows.")
     if analysis is not None:

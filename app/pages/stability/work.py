@@ -78,12 +78,12 @@ def analyse(target: OrbitTarget, observer: bool, rank: int, stop: Stop) -> Orbit
                                "its multipliers are not those of what the chain does.", "another-orbit")
     orbit.find_errors(stop)  # here, because the words about the orbit are made in the event loop
     samples = next((n for n in (PHASES, 24, 12) if n * orbit.period * scene.N <= _MOST_MODE_VALUES), 8)
-    found = mode(orbit, min(rank, len(orbit.multipliers) - 1), samples, stop)
-    if not found.closure <= _LARGEST_MODE_ERROR * max(1.0, abs(found.multiplier)):
+    shape = mode(orbit, min(rank, len(orbit.multipliers) - 1), samples, stop)
+    if not shape.closure <= _LARGEST_MODE_ERROR * max(1.0, abs(shape.multiplier)):
         raise ComputationError("No multipliers are shown: after one orbit a small disturbance differs from their "
-                               f"prediction by {found.closure:.1g} of its size.", "contradicted")
+                               f"prediction by {shape.closure:.1g} of its size.", "contradicted")
     section = orbit_section(orbit, PHASES, stop)
-    return OrbitAnalysis(target, orbit, found, section, distance, time.perf_counter() - began)
+    return OrbitAnalysis(target, orbit, shape, section, distance, time.perf_counter() - began)
 
 
 def section_of(settled: Settled, start: State | None, stop: Stop) -> Iterator[Section]:
@@ -109,10 +109,10 @@ def search(settled: Settled, section: Section | None, period: int, stop: Stop) -
     strobes = np.zeros((0, 2, scene.N))
     if section is not None:
         strobes = section.strobes()[min(transient(settled, section), section.periods // 2) :]
-    found = search_orbit(scene, period, settled.state, strobes, stop)
+    orbit = search_orbit(scene, period, settled.state, strobes, stop)
     run = settled.run
     here = [State(u, v) for u, v in zip(run.displacement[:: run.samples], run.velocity[:: run.samples], strict=True)]
     if settled.regime.name == "periodic":
-        refuse_own_orbit(found, here)
-    return OrbitTarget(scene, found.period, found.state, followed=False, residuals=found.newton_residuals,
-                       distance_of_motion=found.distance_of_motion)
+        refuse_own_orbit(orbit, here)
+    return OrbitTarget(scene, orbit.period, orbit.state, followed=False, residuals=orbit.newton_residuals,
+                       distance_of_motion=orbit.distance_of_motion)

@@ -42,9 +42,9 @@ class StoriesPage(Page):
         self._view = view
         self._task = Task(host, ANALYSES, report_nothing, "The story", report_to_host=True)
         known, refused = _stories_read(host.overlays)
-        self._stories = {one.name: one for one in known}
+        self._stories = {story.name: story for story in known}
         self.actions: Actions = {"story-open": self._open, "story-close": lambda _: self._close()}
-        view.update_state(stories=[{"name": one.name, "title": one.title, "about": one.about} for one in known],
+        view.update_state(stories=[{"name": story.name, "title": story.title, "about": story.about} for story in known],
                           refused=list(refused))
         self.address_applied()
 

@@ -11,7 +11,7 @@ let shownStep = ""; // the step that was shown last
 function point(look, inStory = false) {
   document.getElementById("curves").classList.toggle("in-story", inStory);
   window.granchain.emit("story", inStory);
-  for (const one of document.querySelectorAll(".looked-at")) one.classList.remove("looked-at");
+  for (const marked of document.querySelectorAll(".looked-at")) marked.classList.remove("looked-at");
   if (look) document.getElementById(look).classList.add("looked-at");
 }
 

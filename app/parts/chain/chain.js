@@ -39,7 +39,7 @@ class Chain {
     this.crosshair = new Crosshair(this.clock, this.layout, (bead) => this.link.point(bead));
     this.sound = new Sound();
     this.dirty = true;
-    this.asked = 0; // number of the requested animation frame
+    this.requested = 0; // number of the requested animation frame
     this.compact = null; // the value last sent to the server; null before the first
   }
 
@@ -51,8 +51,8 @@ class Chain {
 
   // Requests an animation frame. Each requests the next while the chain moves, so a chain at rest costs nothing.
   wake() {
-    this.asked ||= requestAnimationFrame((now) => {
-      this.asked = 0;
+    this.requested ||= requestAnimationFrame((now) => {
+      this.requested = 0;
       this.tick(now);
     });
   }
@@ -103,15 +103,18 @@ class Chain {
     this.energies.forEach((label, i) => {
       label.textContent = energy_labels[i];
     });
-    for (const one of this.scales) one.ariaPressed = String((one.value === "fit") === fit);
+    for (const choice of this.scales) choice.ariaPressed = String((choice.value === "fit") === fit);
     // Longer words where there is room, only for the chosen scale.
     const more = (words, rest) => [words, element("span", { className: "roomy", textContent: rest })];
     this.leftTitle.textContent = driven ? "driver" : "left end";
     this.scales[0].replaceChildren(...more("same scale", fit || !driven ? "" : " for all f"));
     this.scales[1].replaceChildren(...(fit ? more("fitted", " to each picture") : ["fit"]));
     this.peaks.forEach((label, i) => {
-      const [most, least] = peaks[i];
-      label.replaceChildren(most, ...(least ? [element("span", { className: "roomy", textContent: least })] : []));
+      const [largest, smallest] = peaks[i];
+      label.replaceChildren(
+        largest,
+        ...(smallest ? [element("span", { className: "roomy", textContent: smallest })] : []),
+      );
     });
   }
 
@@ -152,6 +155,7 @@ class Chain {
   }
 
   load(frames) {
+    const arrived = performance.now();
     Object.assign(frames, unpack(frames).series);
     document.getElementById("dashboard").classList.remove("starting");
     this.showScale(frames);
@@ -167,11 +171,12 @@ class Chain {
     this.clock.show(frames);
     this.mark();
     // Bokeh paints in the next animation frame.
-    requestAnimationFrame(() => afterFrame(() => this.painted(frames)));
+    requestAnimationFrame(() => afterFrame(() => this.painted(frames, performance.now() - arrived)));
   }
 
-  painted({ number, live, sent }) {
-    this.model.send_msg({ do: "painted", number });
+  // `took` is the time since this picture arrived [ms]. The server cannot measure it, and clocks of two machines differ.
+  painted({ number, live, sent }, took) {
+    this.model.send_msg({ do: "painted", number, took });
     window.granchain.emit("painted", { number, live, lag: Date.now() - 1000 * sent });
   }
 

@@ -130,7 +130,7 @@ export class ChainDrawing {
     const xOf = (i) => this.home(i) + at.u(i) * this.exaggeration * pitch;
     this.ground(frames, radius, y, xOf);
     this.driven = frames.driven ?? true;
-    const sizes = frames.radii.map((one) => radius * (one / this.largest));
+    const sizes = frames.radii.map((size) => radius * (size / this.largest));
     for (let i = 1; i <= beads; i++) this.halo(xOf(i), y, sizes[i - 1], at.energy(i) / frames.energy_high);
     this.bodies(xOf, pitch, radius, y, beads);
     for (let i = 1; i <= beads; i++) this.bead(i, xOf, y, sizes, at.energy(i) / frames.energy_high);

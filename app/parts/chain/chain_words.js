@@ -23,7 +23,7 @@ export function writeWords(chain) {
     [`drawn ${magnification}`, `${name} of displacement`],
     [magnification, name],
   ];
-  const widthOf = (form) => form.reduce((sum, one) => sum + g.measureText(one).width, 18 + long);
+  const widthOf = (form) => form.reduce((sum, word) => sum + g.measureText(word).width, 18 + long);
   const room = chain.width - 2 * g.measureText(left).width - 40;
   const [shown, length] = forms.find((form) => widthOf(form) < room) ?? forms.at(-1);
   let x = 0.5 * (chain.width - widthOf([shown, length]));

@@ -2,7 +2,8 @@
 // release is checked here (tests/browser/test_bokeh_internals.py); docs/libraries.md lists the rest.
 
 // All models of this name on the page. Each figure has a document of its own.
-export const modelsNamed = (name) => window.Bokeh.documents.map((one) => one.get_model_by_name(name)).filter(Boolean);
+export const modelsNamed = (name) =>
+  window.Bokeh.documents.map((shown) => shown.get_model_by_name(name)).filter(Boolean);
 
 // What draws a model, if it is drawn.
 export const viewOf = (model) => window.Bokeh.index.find_one(model);
@@ -30,7 +31,7 @@ const holds = (host, node) => {
 
 const figures = () =>
   window.Bokeh.documents
-    .flatMap((one) => one.roots())
+    .flatMap((shown) => shown.roots())
     .filter(({ type }) => FIGURES.has(type))
     .map(viewOf)
     .filter(Boolean);
@@ -56,5 +57,5 @@ export const svgOf = (view) => writtenSvg(view.export("svg", true).ctx);
 
 // Draws Bokeh's JSON in an element as a document of its own, and removes it again.
 export const documentOf = ({ doc }) => window.Bokeh.require("document").Document.from_json(doc);
-export const drawDocument = (one, host) => window.Bokeh.embed.add_document_standalone(one, host);
-export const forgetDocument = (one) => window.Bokeh.documents.splice(window.Bokeh.documents.indexOf(one), 1);
+export const drawDocument = (shown, host) => window.Bokeh.embed.add_document_standalone(shown, host);
+export const forgetDocument = (shown) => window.Bokeh.documents.splice(window.Bokeh.documents.indexOf(shown), 1);

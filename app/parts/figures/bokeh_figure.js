@@ -68,7 +68,7 @@ export class BokehFigure {
   taps(names, choose, pick = (rows, data, at) => nearest(rows, data, at, frameOf(this.views.roots[0]))) {
     const hit = new Map();
     const chosen = () => {
-      const name = names.find((one) => hit.has(one));
+      const name = names.find((candidate) => hit.has(candidate));
       if (name) {
         const { data, selected } = this.model(name);
         choose(name, pick(selected.indices, data, hit.get(name)));

@@ -38,15 +38,15 @@ const chainPiece = () => {
 // The words over the figures, at their places on the screen.
 const wordsOf = (selector) =>
   [...document.querySelectorAll(selector)]
-    .filter((one) => one.checkVisibility() && one.textContent.trim())
-    .map((one) => {
-      const { color, fontSize, fontWeight } = getComputedStyle(one);
+    .filter((element) => element.checkVisibility() && element.textContent.trim())
+    .map((element) => {
+      const { color, fontSize, fontWeight } = getComputedStyle(element);
       const range = document.createRange();
-      range.selectNodeContents(one);
+      range.selectNodeContents(element);
       const { left, top, right, bottom } = range.getBoundingClientRect();
-      const { mark = "" } = one.dataset; // the piece of line before a word of the key
+      const { mark = "" } = element.dataset; // the piece of line before a word of the key
       const box = { left: left - (mark ? 22 : 0), top, right, bottom };
-      return { box, text: mark + one.textContent.trim(), color, fontSize, fontWeight };
+      return { box, text: mark + element.textContent.trim(), color, fontSize, fontWeight };
     });
 
 // The colour bar of the energy.
@@ -58,7 +58,7 @@ const colours = () => {
 function pieces(name) {
   if (name === "chain") return { parts: [chainPiece()], words: [], bars: [] };
   if (name === "stage") {
-    const figures = ["driver", "energy", "wall"].flatMap((one) => views(FIGURES[one][2]).map(figurePiece));
+    const figures = ["driver", "energy", "wall"].flatMap((name) => views(FIGURES[name][2]).map(figurePiece));
     return {
       parts: [chainPiece(), ...figures],
       words: wordsOf("#stage .title, #key span, #scale .colours span"),
@@ -117,9 +117,9 @@ const textOf = (x, y, text, fill, size, weight) => {
 
 // Two drawings in one file must not share the names of their gradients and clips.
 function renamed(drawn, prefix) {
-  for (const one of drawn.querySelectorAll("[id]")) {
-    const { id } = one;
-    one.id = prefix + id;
+  for (const element of drawn.querySelectorAll("[id]")) {
+    const { id } = element;
+    element.id = prefix + id;
     for (const user of drawn.querySelectorAll("*"))
       for (const { name, value } of [...user.attributes])
         if (value.includes(`#${id})`) || value === `#${id}`)
@@ -135,20 +135,21 @@ function barOf(bar, x, y, id) {
   return [draw("linearGradient", { id }, ...stops), draw("rect", { x, y, width, height, fill: `url(#${id})` })];
 }
 
-function svg(title, found) {
-  const { line, lines, width, height, x, y } = sheet(title, found);
+function svg(title, contents) {
+  const { line, lines, width, height, x, y } = sheet(title, contents);
   const root = draw("svg", { xmlns: SVG, width, height, viewBox: `0 0 ${width} ${height}` });
   root.append(draw("title", {}, title), draw("rect", { width: "100%", height: "100%", fill: style("--card") }));
   for (const [number, words] of lines.entries())
     root.append(textOf(MARGIN, MARGIN + 1.25 * line * number, words, style("--ink"), `${line}px`, 600));
-  for (const [number, part] of found.parts.entries()) {
+  for (const [number, part] of contents.parts.entries()) {
     const drawn = renamed(document.importNode(part.svg(), true), `p${number}-`);
     const box = { x: x(part), y: y(part), width: part.box.width, height: part.box.height };
     for (const [name, value] of Object.entries(box)) drawn.setAttribute(name, value);
     root.append(drawn);
   }
-  for (const [number, bar] of found.bars.entries()) root.append(...barOf(bar, x(bar), y(bar), `energy-${number}`));
-  for (const one of found.words) root.append(textOf(x(one), y(one), one.text, one.color, one.fontSize, one.fontWeight));
+  for (const [number, bar] of contents.bars.entries()) root.append(...barOf(bar, x(bar), y(bar), `energy-${number}`));
+  for (const word of contents.words)
+    root.append(textOf(x(word), y(word), word.text, word.color, word.fontSize, word.fontWeight));
   return { text: new XMLSerializer().serializeToString(root), width, height };
 }
 
@@ -169,12 +170,12 @@ function captionOf(what) {
 
 async function savePicture(what, kind) {
   const { name, title } = captionOf(what);
-  const found =
+  const contents =
     what === "page"
       ? { parts: figuresIn(document.getElementById("overlay")).map(figurePiece), words: [], bars: [] }
       : pieces(what);
-  if (!found.parts.length) return;
-  const drawn = svg(title, found);
+  if (!contents.parts.length) return;
+  const drawn = svg(title, contents);
   download(`${name}.${kind}`, kind === "svg" ? new Blob([drawn.text], { type: "image/svg+xml" }) : await png(drawn));
 }
 

@@ -25,7 +25,7 @@ export class Gallery {
   }
 
   receive(cards) {
-    this.cards.replaceChildren(...cards.map((one) => this.card(one)));
+    this.cards.replaceChildren(...cards.map((entry) => this.card(entry)));
     this.mark();
   }
 

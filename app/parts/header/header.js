@@ -209,7 +209,7 @@ class Header {
     this.speed.replaceChildren(...speeds.map((value) => new Option(each(value), value)));
     this.speed.value = String(speed);
     window.granchain.emit("speed", speed);
-    for (const one of this.modes) one.ariaPressed = String(one.value === mode);
+    for (const choice of this.modes) choice.ariaPressed = String(choice.value === mode);
     this.showStart(state);
     this.layoutControls();
   }

@@ -65,19 +65,19 @@ export class Popovers {
 
   close() {
     const inside = this.hasFocus();
-    for (const one of this.all) one.hidden = true;
+    for (const popover of this.all) popover.hidden = true;
     if (inside) this.opener?.focus();
   }
 
   hasFocus() {
-    return this.all.some((one) => one.contains(one.getRootNode().activeElement));
+    return this.all.some((popover) => popover.contains(popover.getRootNode().activeElement));
   }
 
   // Opens a box and moves the focus to this element of it. If a box is opened from another one, the focus
   // later goes back to the opener of the first.
   open(box, focused) {
     if (!this.hasFocus()) this.opener = window.granchain.focused;
-    for (const one of this.all) one.hidden = one !== box;
+    for (const popover of this.all) popover.hidden = popover !== box;
     focused.focus();
   }
 

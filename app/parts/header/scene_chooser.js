@@ -23,9 +23,9 @@ export class SceneChooser {
   }
 
   // Scenes by name and title, or by name alone where the bar is too short for the title; the open list has both.
-  name(whole) {
+  name(withTitle) {
     this.list.style.width = "";
-    for (const option of this.list.options) option.textContent = whole ? option.title : option.value;
+    for (const option of this.list.options) option.textContent = withTitle ? option.title : option.value;
   }
 
   // The scenes to choose from, and the one that is open.

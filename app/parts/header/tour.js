@@ -70,7 +70,7 @@ export class Tour {
   }
 
   mark() {
-    for (const one of document.querySelectorAll(".toured")) one.classList.remove("toured");
+    for (const marked of document.querySelectorAll(".toured")) marked.classList.remove("toured");
     if (this.root.hidden) return;
     this.part().classList.add("toured");
     this.part().scrollIntoView({ block: PHONE.matches ? "start" : "nearest" }); // a phone has the words at the bottom

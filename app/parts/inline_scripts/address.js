@@ -42,17 +42,17 @@
     }
 
     /** Makes an address the next step. */
-    push(there) {
+    push(url) {
       this.#at += 1;
       this.#newest = this.#at;
-      history.pushState({ at: this.#at }, "", there);
+      history.pushState({ at: this.#at }, "", url);
       Steps.#keep(this.#newest);
       this.tell();
     }
 
     /** Gives the present step another address. */
-    replace(there) {
-      history.replaceState({ ...history.state, at: this.#at }, "", there);
+    replace(url) {
+      history.replaceState({ ...history.state, at: this.#at }, "", url);
     }
 
     /** The browser has gone to another step, that of this `history.state`. */
@@ -195,8 +195,8 @@
     // Scene and knobs of the address, including requests that the server has not answered yet.
     #knobsAsked() {
       const query = this.url().searchParams;
-      const asked = ["v", "scene", ...granchain.knobNames];
-      for (const name of [...query.keys()]) if (!asked.includes(name)) query.delete(name);
+      const wanted = ["v", "scene", ...granchain.knobNames];
+      for (const name of [...query.keys()]) if (!wanted.includes(name)) query.delete(name);
       return query.toString();
     }
 
@@ -206,9 +206,9 @@
       clearTimeout(this.#timer);
       this.#timer = setTimeout(() => {
         if (!this.#known || granchain.connection.leaving) return;
-        const there = this.url();
-        if (this.#acted && there.href !== location.href) this.#steps.push(there);
-        else this.#steps.replace(there);
+        const url = this.url();
+        if (this.#acted && url.href !== location.href) this.#steps.push(url);
+        else this.#steps.replace(url);
         this.#acted = false;
       }, FOLLOW_AFTER);
     }

@@ -14,7 +14,7 @@
   const FULL = "The server is full – your place opens as soon as one is free, with your settings …";
   const BACK = "Connected again – restoring your settings …";
   // Keys of the browser's storage. The pictures have one of their own: if they do not fit, the rest is kept all the same.
-  const RESUME = "granchain-again";
+  const RESUME = "granchain-resume";
   const PICTURES = "granchain-pictures";
   const PARTS = ["bar", "side", "stage", "curves", "overlay", "foot"];
 
@@ -53,9 +53,10 @@
     static capture() {
       const canvas = Object.assign(document.createElement("canvas"), { width: innerWidth, height: innerHeight });
       if (!granchain.overlay)
-        for (const one of ["stage", "curve"].flatMap((id) => LastPictures.#canvases(document.getElementById(id)))) {
-          const { x, y, width, height } = one.getBoundingClientRect();
-          if (width && height && one.width && one.height) canvas.getContext("2d").drawImage(one, x, y, width, height);
+        for (const drawn of ["stage", "curve"].flatMap((id) => LastPictures.#canvases(document.getElementById(id)))) {
+          const { x, y, width, height } = drawn.getBoundingClientRect();
+          if (width && height && drawn.width && drawn.height)
+            canvas.getContext("2d").drawImage(drawn, x, y, width, height);
         }
       return canvas.toDataURL("image/webp", 0.7);
     }
@@ -125,8 +126,8 @@
     /** Begins to watch; `send` sends a ping. */
     connect(send) {
       this.#ping = send;
-      for (const one of window.Bokeh.documents)
-        one.on_event("connection_lost", () => {
+      for (const shown of window.Bokeh.documents)
+        shown.on_event("connection_lost", () => {
           this.#closed = true;
           this.#tick();
         });

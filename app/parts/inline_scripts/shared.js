@@ -118,8 +118,8 @@ window.granchain = (() => {
 
   /** The first element that a selector matches in `root`, also inside shadow trees; null if there is none. */
   function find(root, selector) {
-    const found = root.querySelector(selector);
-    if (found) return found;
+    const outside = root.querySelector(selector);
+    if (outside) return outside;
     for (const { shadowRoot } of root.querySelectorAll("*")) {
       const inside = shadowRoot && find(shadowRoot, selector);
       if (inside) return inside;
@@ -181,29 +181,29 @@ window.granchain = (() => {
 
     /** The element that has the focus, also inside shadow trees. */
     get focused() {
-      let found = document.activeElement;
-      while (found?.shadowRoot?.activeElement) found = found.shadowRoot.activeElement;
-      return found;
+      let element = document.activeElement;
+      while (element?.shadowRoot?.activeElement) element = element.shadowRoot.activeElement;
+      return element;
     }
 
     /**
      * Opens the overlay of this name. An unknown name closes the open one. The focus moves to the heading of the
      * overlay, and back to the element that had it.
      */
-    openPage(asked) {
+    openPage(wanted) {
       const sheets = [...document.querySelectorAll("[data-overlay]")];
-      const name = sheets.some((one) => one.dataset.overlay === asked) ? asked : null;
+      const name = sheets.some((sheet) => sheet.dataset.overlay === wanted) ? wanted : null;
       if (name === this.#overlay) return;
       const over = document.getElementById("overlay");
       const inside = over.contains(document.activeElement);
       if (this.#overlay === null) this.#opener = this.focused;
       this.#overlay = name;
       document.getElementById("dashboard").classList.toggle("overlaid", name !== null);
-      for (const one of sheets) one.hidden = one.dataset.overlay !== name;
+      for (const sheet of sheets) sheet.hidden = sheet.dataset.overlay !== name;
       // The main landmark is the part that is on the screen; a web page may have only one.
       over.setAttribute("role", name === null ? "none" : "main");
       this.emit("overlay", name);
-      if (name !== null) this.#focusHeading(sheets.find((one) => !one.hidden));
+      if (name !== null) this.#focusHeading(sheets.find((sheet) => !sheet.hidden));
       else if (inside) this.#focusOpener();
     }
 

@@ -71,8 +71,8 @@ export class Knob {
     });
     this.slider = element("input", { type: "range", min: 0, max: STEPS, step: 1, ariaLabel: label });
     this.el.append(this.field, element("span", { className: "unit", textContent: unit }), this.slider);
-    this.said = element("small", { className: "at-zero" });
-    if (at_zero) this.el.append(this.said);
+    this.idleNote = element("small", { className: "at-zero" });
+    if (at_zero) this.el.append(this.idleNote);
     this.field.addEventListener("input", () => {
       this.editing = true;
       this.field.dataset.typing = "yes";
@@ -129,7 +129,7 @@ export class Knob {
   say(idle) {
     const { at_zero } = this.spec;
     if (!at_zero) return;
-    this.said.textContent = idle || `at 0: ${at_zero}`;
+    this.idleNote.textContent = idle || `at 0: ${at_zero}`;
     this.el.classList.toggle("idle", Boolean(idle));
   }
 

@@ -16,7 +16,7 @@ from .foundation import beside_kappa, foundation_words
 MAIN = tuple(name for name, quantity in QUANTITIES.items() if quantity.main)
 MORE = tuple(name for name in QUANTITIES if name not in MAIN)
 #: The values at which knobs have no effect, those of the fields of `Scene`.
-_DEFAULTS = {one.name: one.default for one in fields(Scene)}
+_DEFAULTS = {field.name: field.default for field in fields(Scene)}
 #: What a knob is without a drive: its label and its meaning.
 _UNDRIVEN = {
     "f": ("time shown = 1/f", "This chain has no drive: 1/f is only the time that is shown."),

@@ -46,9 +46,9 @@ export class Crosshair {
   // Draws at most once in an animation frame.
   moved(event) {
     this.event = event;
-    if (this.asked) return;
-    this.asked = requestAnimationFrame(() => {
-      this.asked = 0;
+    if (this.requested) return;
+    this.requested = requestAnimationFrame(() => {
+      this.requested = 0;
       if (this.event) this.show(this.at(this.event));
     });
   }

@@ -142,15 +142,15 @@ class ForceTrains:
         words = []
         for series, force, error, axis, unit in zip((frames.input_force, frames.output_force), largest, errors,
                                                     self._factors, self._units[1:], strict=True):
-            least = float(series.min())
-            factor, unit = self._readable(max(force, -least), axis, unit)
+            lowest = float(series.min())
+            factor, unit = self._readable(max(force, -lowest), axis, unit)
             most = with_figures(force / factor, figures_of(error, _PEAK_FIGURES))
             words.append([f"max {most}\N{NO-BREAK SPACE}{unit}", ""])
-            if least < -_SHOWN_PULL * force:
-                words[-1][1] = f"min ≈ {with_figures(least / factor, 1)}\N{NO-BREAK SPACE}{unit}"
-            elif least > _SHOWN_PRESSURE * force:
+            if lowest < -_SHOWN_PULL * force:
+                words[-1][1] = f"min ≈ {with_figures(lowest / factor, 1)}\N{NO-BREAK SPACE}{unit}"
+            elif lowest > _SHOWN_PRESSURE * force:
                 decimals = len(most.partition(".")[2])  # so that the smallest never reads larger than the largest
-                words[-1][1] = f"min ≈ {with_decimals(least / factor, decimals)}\N{NO-BREAK SPACE}{unit}"
+                words[-1][1] = f"min ≈ {with_decimals(lowest / factor, decimals)}\N{NO-BREAK SPACE}{unit}"
         return words
 
     def output_words(self, force: float, error: float | None) -> str:

@@ -18,7 +18,7 @@ const stepAbove = (value) => inDecade(value, (of) => STEPS.find((step) => of(ste
 // Round values between low and high, about `count` of them.
 export function ticks(low, high, count) {
   const step = stepAbove((high - low) / count);
-  const found = [];
-  for (let v = Math.ceil(low / step) * step; v <= high + 1e-9 * step; v += step) found.push(Number(v.toPrecision(6)));
-  return found;
+  const values = [];
+  for (let v = Math.ceil(low / step) * step; v <= high + 1e-9 * step; v += step) values.push(Number(v.toPrecision(6)));
+  return values;
 }

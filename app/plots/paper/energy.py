@@ -18,10 +18,10 @@ _LETTERS = {"fig3a": "(a)", "fig3b": "(b)"}
 def energy(shown: EnergyMaps, theme: Theme) -> LayoutDOM:
     """A pair of panels for each orbit, time downwards on both."""
     panels = []
-    for found, periods in shown.parts:
-        index, seconds = repeated(found.run, periods)
-        time = Range1d(periods / (_UNITS.time[0] * found.run.scene.f), 0.0)
-        drive = drive_panel(found.run, index, seconds, time, _UNITS, theme)
-        drive.title.text = _LETTERS[found.run.scene.name]
-        panels += [drive, energy_panel(found.run, index, time, _UNITS, theme)]
+    for settled, periods in shown.parts:
+        index, seconds = repeated(settled.run, periods)
+        time = Range1d(periods / (_UNITS.time[0] * settled.run.scene.f), 0.0)
+        drive = drive_panel(settled.run, index, seconds, time, _UNITS, theme)
+        drive.title.text = _LETTERS[settled.run.scene.name]
+        panels += [drive, energy_panel(settled.run, index, time, _UNITS, theme)]
     return row(panels, sizing_mode="stretch_both")

@@ -30,9 +30,9 @@ def response(shown: RigResponse, theme: Theme) -> LayoutDOM:
 
 def _curves(shown: RigCurves, theme: Theme) -> figure:
     plot = empty_figure(name="curves", min_border=4)
-    for one, dash, role in zip(shown.curves, _DASHES, _COLOURS, strict=False):
-        _curve(plot, one, dash, role, marked=len(shown.curves) == 1)
-    high = max(p.max_output_force_elastic for one in shown.curves for p in one.points
+    for swept, dash, role in zip(shown.curves, _DASHES, _COLOURS, strict=False):
+        _curve(plot, swept, dash, role, marked=len(shown.curves) == 1)
+    high = max(p.max_output_force_elastic for swept in shown.curves for p in swept.points
                if math.isfinite(p.max_output_force_elastic))
     if shown.measured is not None:
         high = max(high, float(shown.measured.force.max()))
@@ -57,9 +57,9 @@ def _curves(shown: RigCurves, theme: Theme) -> figure:
     return plot
 
 
-def _curve(plot: figure, one: Curve, dash: str | list[int], role: str, marked: bool) -> None:
+def _curve(plot: figure, swept: Curve, dash: str | list[int], role: str, marked: bool) -> None:
     """A curve; points that are not periodic are always marked, the others only where there is one curve."""
-    points = [p for p in one.points if math.isfinite(p.max_output_force_elastic)]
+    points = [p for p in swept.points if math.isfinite(p.max_output_force_elastic)]
     keys = [regime_key(p.regime.name, p.regime.period) for p in points]
     source = ColumnDataSource({
         "x": [p.frequency for p in points], "y": [p.max_output_force_elastic for p in points],
@@ -68,7 +68,7 @@ def _curve(plot: figure, one: Curve, dash: str | list[int], role: str, marked: b
         "sentence": [p.regime.sentence for p in points],
         "size": [REGIME_MARKS[key][2] + 1 if marked or not p.regime.period else 0
                  for key, p in zip(keys, points, strict=True)], **forces_in_words(points)})
-    words = f"A0 = {1e6 * one.scene.A0:g} µm"
+    words = f"A0 = {1e6 * swept.scene.A0:g} µm"
     line = plot.line("x", "y", source=source, line_dash=dash, legend_label=words)
     themed(line, line_color=role, line_width=1.8)
     marks = plot.scatter("x", "y", source=source, marker="marker", size="size", fill_color="colour",

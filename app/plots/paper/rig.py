@@ -113,8 +113,8 @@ def _dimension(plot: figure, left: float, right: float, y: float, words: str) ->
     """A line from `left` to `right` with its length."""
     ends = plot.scatter([left, right], [y, y], marker="dash", angle=np.pi / 2, size=10)
     line = plot.segment([left], [y], [right], [y])
-    for one in (ends, line):
-        themed(one, line_color="soft", line_width=1.2)
+    for mark in (ends, line):
+        themed(mark, line_color="soft", line_width=1.2)
     _words(plot, [right if right - left < 60.0 else 0.5 * (left + right)], y, [words], "soft",
            align="left" if right - left < 60.0 else "center", up=right - left >= 60.0)
 

@@ -20,11 +20,11 @@ def transmission(shown: Transmission, theme: Theme) -> figure:
     plot = curve([shown.curve], theme, elastic=True)
     largest = max(p.max_output_force_elastic for p in shown.curve.points)
     scale = force_scale("", largest).factor
-    for name, found, below in (("peaks", peaks(shown.curve), False), ("dips", dips(shown.curve), True)):
+    for name, points, below in (("peaks", peaks(shown.curve), False), ("dips", dips(shown.curve), True)):
         words = [f"1:{p.regime.period}, {p.frequency:g} Hz" if not below
-                 else f"{p.frequency:g} Hz" + ("" if p.regime.period == 1 else f", {p.regime.name}") for p in found]
-        source = ColumnDataSource({"x": [p.frequency for p in found], "words": words,
-                                   "y": [p.max_output_force_elastic / scale for p in found]}, name=name)
+                 else f"{p.frequency:g} Hz" + ("" if p.regime.period == 1 else f", {p.regime.name}") for p in points]
+        source = ColumnDataSource({"x": [p.frequency for p in points], "words": words,
+                                   "y": [p.max_output_force_elastic / scale for p in points]}, name=name)
         text = plot.text("x", "y", text="words", source=source, text_align="center",
                          text_baseline="top" if below else "bottom", y_offset=10 if below else -8)
         themed(text, text_color="soft" if below else "ink", text_font_size="small_figure_text")

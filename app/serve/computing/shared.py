@@ -85,18 +85,18 @@ class Shared(Generic[Item]):
     def _join(self, key: Hashable, compute: Callable[[TurnFlag], Iterator[Item]],
                 cpu_time: CpuTime) -> _Computation[Item]:
         """The computation under way, or a new one; called with the lock held."""
-        found = None if key is None else self._under_way.get(key)
-        if found is None:
-            found = _Computation()
-            found.cpu_time.members.append(cpu_time)
-            self._pool.submit(self._compute, key, found, compute)  # first: it may raise
+        computation = None if key is None else self._under_way.get(key)
+        if computation is None:
+            computation = _Computation()
+            computation.cpu_time.members.append(cpu_time)
+            self._pool.submit(self._compute, key, computation, compute)  # first: it may raise
             self.misses += 1
             if key is not None:
-                self._under_way[key] = found
+                self._under_way[key] = computation
         else:
             self.hits += 1
-            found.cpu_time.members.append(cpu_time)
-        return found
+            computation.cpu_time.members.append(cpu_time)
+        return computation
 
     def _unsubscribe(self, key: Hashable, computation: _Computation[Item], cpu_time: CpuTime) -> None:
         with self._lock:
@@ -141,8 +141,8 @@ class Shared(Generic[Item]):
         error: Exception | None = None
         try:
             computation.stop.check()
-            found = compute(computation.stop)
-            for item in computation.stop.in_turns(found) if self._turns else found:
+            results = compute(computation.stop)
+            for item in computation.stop.in_turns(results) if self._turns else results:
                 with computation.changed:
                     computation.items.append(item)
                     computation.changed.notify_all()

@@ -204,7 +204,7 @@ class Flag(Stop):
 class TurnFlag(Flag):
     """The stop flag of a picture's computation, which takes turns with other computations."""
 
-    __slots__ = ("_began", "_spent", "_turn", "_turns", "cpu_time")
+    __slots__ = ("_began", "_spent", "_turn", "_turns", "cpu_time", "waited")
 
     def __init__(self, cpu_time: CpuTime, turns: Turns = TURNS) -> None:
         super().__init__()
@@ -212,6 +212,8 @@ class TurnFlag(Flag):
         self._turns = turns
         self._turn: _Turn | None = None
         self._began = self._spent = 0.0
+        #: How long its thread has waited for turns [s].
+        self.waited = 0.0
 
     @property
     def is_new(self) -> bool:
@@ -262,11 +264,11 @@ class TurnFlag(Flag):
 
     def in_turns(self, results: Iterable[Result]) -> Iterator[Result]:
         """The results, each computed while a turn is held."""
-        found = iter(results)
+        remaining = iter(results)
         while True:
             with self.held():
                 try:
-                    result = next(found)
+                    result = next(remaining)
                 except StopIteration:
                     return
             self._spent = math.inf
@@ -279,7 +281,9 @@ class TurnFlag(Flag):
 
     def _enter(self) -> None:
         self._lower_priority()
+        asked_at = time.monotonic()
         self._turn = self._turns.begin(self.cpu_time, self, self.is_new)
+        self.waited += time.monotonic() - asked_at
         self._began = time.thread_time()
 
     def _release(self) -> None:

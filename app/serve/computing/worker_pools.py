@@ -120,19 +120,19 @@ class WorkerPool:
         work since it was cancelled.
         """
         with self._lock:
-            held = self._held.get(owners[0]) if owners else None
-            if held is None or do not in held:
+            waiting = self._held.get(owners[0]) if owners else None
+            if waiting is None or do not in waiting:
                 return False
-            held.remove(do)
-            if not held:
+            waiting.remove(do)
+            if not waiting:
                 del self._held[owners[0]]
             return True
 
     def _ended(self, owner: object) -> None:
         """Work of this owner has ended: queue the owner's next work."""
         with self._lock:
-            if held := self._held.get(owner):
-                self._give(held.popleft())
+            if waiting := self._held.get(owner):
+                self._give(waiting.popleft())
                 return
             self._held.pop(owner, None)
             self._taken[owner] -= 1

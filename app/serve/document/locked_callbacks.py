@@ -39,8 +39,8 @@ _FINISHING: set[asyncio.Future[None]] = set()
 
 def can_lock(session: Any) -> bool:
     """Whether `run_locked` can lock this session."""
-    there = set_curdoc is not None and isinstance(getattr(session, "_lock", None), Lock)
-    return there and hasattr(session, "_pending_writes")
+    lockable = set_curdoc is not None and isinstance(getattr(session, "_lock", None), Lock)
+    return lockable and hasattr(session, "_pending_writes")
 
 
 def session_of(document: Document) -> Any:

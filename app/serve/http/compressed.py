@@ -31,9 +31,9 @@ def compressed(path: str, modified: int, size: int) -> bytes | None:
     """The compressed file; None if compression saves nothing. `modified` and `size` distinguish a changed file."""
     if size < _SMALLEST_COMPRESSED or Path(path).suffix not in _COMPRESSED_SUFFIXES:
         return None
-    whole = Path(path).read_bytes()
-    packed = gzip.compress(whole, compresslevel=6, mtime=0)
-    return packed if len(packed) < len(whole) else None
+    content = Path(path).read_bytes()
+    packed = gzip.compress(content, compresslevel=6, mtime=0)
+    return packed if len(packed) < len(content) else None
 
 
 def accepts_gzip(wanted: str) -> bool:
@@ -41,8 +41,8 @@ def accepts_gzip(wanted: str) -> bool:
 
     `*` alone does not count as gzip: a client that names no coding gets the file as it is.
     """
-    for one in wanted.lower().split(","):
-        coding, _, weight = one.replace(" ", "").partition(";")
+    for entry in wanted.lower().split(","):
+        coding, _, weight = entry.replace(" ", "").partition(";")
         if coding == "gzip":
             return re.fullmatch(r"q=0(\.0*)?", weight) is None
     return False
@@ -63,8 +63,8 @@ class CompressedFiles(StaticFileHandler):
         wanted = self.request.headers.get("Accept-Encoding", "")
         if not accepts_gzip(wanted) or "Range" in self.request.headers or self.absolute_path is None:
             return None
-        found = Path(self.absolute_path).stat()
-        return compressed(self.absolute_path, found.st_mtime_ns, found.st_size)
+        status = Path(self.absolute_path).stat()
+        return compressed(self.absolute_path, status.st_mtime_ns, status.st_size)
 
     async def get(self, path: str, include_body: bool = True) -> None:
         """Replace the content of this answer alone; Tornado computes the file's version with the class's own method."""

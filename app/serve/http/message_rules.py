@@ -62,12 +62,12 @@ def checked_content(header: str, content: str) -> dict[str, Any]:
 
 def _object(what: str, text: str) -> dict[str, Any]:
     try:
-        found = json.loads(text)
+        value = json.loads(text)
     except (ValueError, RecursionError):
         raise RefusedMessage(f"unreadable {what}") from None
-    if not isinstance(found, dict):
+    if not isinstance(value, dict):
         raise RefusedMessage(f"unreadable {what}")
-    return found
+    return value
 
 
 def _is_upload(given: dict[str, Any]) -> bool:

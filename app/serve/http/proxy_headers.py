@@ -23,10 +23,10 @@ def read_proxy_headers(request: HTTPServerRequest, header: str = "") -> None:
     it. With a `header` no other is read. Without, both are read if they are there: one of them may be the client's own,
     so the address is unknown if they differ. A request without any comes from the proxy's own machine, not through it.
     """
-    found = {_last(request, name) for name in ([header] if header else ADDRESS_HEADERS) if name in request.headers}
-    if found:
-        address = found.pop()
-        request.remote_ip = address if not found and is_valid_ip(address) else UNKNOWN
+    addresses = {_last(request, name) for name in ([header] if header else ADDRESS_HEADERS) if name in request.headers}
+    if addresses:
+        address = addresses.pop()
+        request.remote_ip = address if not addresses and is_valid_ip(address) else UNKNOWN
     protocol = _last(request, "X-Forwarded-Proto")
     if protocol in ("http", "https"):
         request.protocol = protocol

@@ -35,7 +35,7 @@ class Rules:
         websockets of the page's own origin.
         """
         ancestors = " ".join(("'self'", *self.embedding))
-        found = {
+        sent = {
             "Content-Security-Policy":
                 "default-src 'self'; script-src 'self' 'unsafe-inline' 'unsafe-eval' blob:; "
                 "style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; font-src 'self' data:; "
@@ -45,7 +45,7 @@ class Rules:
             "Referrer-Policy": "same-origin",
             "Server": "granchain",
         }
-        return found if self.embedding else {**found, "X-Frame-Options": "SAMEORIGIN"}
+        return sent if self.embedding else {**sent, "X-Frame-Options": "SAMEORIGIN"}
 
     def serves(self, host: str) -> bool:
         """Whether requests for this host are answered; the names may have Bokeh's wildcards, such as *.example.org."""

@@ -61,8 +61,9 @@ class Sessions:
         """Give the session its one connection; False if the session had one before, or has lost its place."""
         now = time.monotonic()
         present = {session.id for session in self._present()}
-        for old in [one for one, at in self._claimed.items() if at < now - _SESSIONS_REMEMBERED and one not in present]:
-            del self._claimed[old]
+        oldest = now - _SESSIONS_REMEMBERED
+        self._claimed = {known: claimed_at for known, claimed_at in self._claimed.items()
+                         if claimed_at >= oldest or known in present}
         if session_id in self._claimed:
             return False
         self._claimed[session_id] = now

@@ -6,6 +6,7 @@ import asyncio
 import math
 import threading
 import time
+from bisect import bisect_left
 from collections import deque
 from collections.abc import Callable, Mapping
 from functools import partial
@@ -16,12 +17,38 @@ from granchain_core.version import __version__
 from ...former_names import former_metric
 from .process import cpu_seconds, most_descriptors, open_descriptors, os_threads, resident_memory, start_time
 
-#: Upper bounds of the histogram of answers [s].
+#: Upper bounds of both histograms [s].
 BUCKETS = (0.025, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0)
-#: The name and the help text of this histogram.
-HISTOGRAM = "granchain_answer_seconds"
-HISTOGRAM_HELP = ("From the action of a change of scene, knob, start or mode on the event loop until its first picture "
-                  "is offered to the browser: without network and painting.")
+
+
+class Stage(NamedTuple):
+    """A stage of a picture: what happens in it, and what an operator does if it takes long."""
+
+    what: str
+    remedy: str
+
+
+#: The stages of a picture, by the label that `/metrics` gives them.
+STAGES = {
+    "turn": Stage("it waits for the session's computation before it, for a thread and for a time slice (turn)",
+                  "more cores, or another machine"),
+    "kernels": Stage("it waits for kernels that are being compiled", "compile them beforehand with `granchain warm`"),
+    "compute": Stage("it is computed, or a session waits for the same picture of another",
+                     "nothing: the visitor's chain is long"),
+    "prepare": Stage("the arrays that are drawn are made", "more cores: other threads have them"),
+    "loop": Stage("it waits for the event loop", "another process: a process uses one core for its event loop"),
+    "pace": Stage("it waits until the browser has painted earlier pictures", "nothing: see `travel` and `paint`"),
+    "travel": Stage("it is sent and its acknowledgement comes back; both wait for an event loop",
+                    "look at the network and at `granchain_event_loop_lag_seconds`"),
+    "paint": Stage("the browser draws it", "nothing: the visitor's computer is slow"),
+}
+#: The histograms: name and help text.
+ANSWERS, STAGE_TIMES = "granchain_answer_seconds", "granchain_picture_stage_seconds"
+HISTOGRAMS = {
+    ANSWERS: "Latency from the action of a change of scene, knob, start or mode on the event loop until its first "
+             "picture is offered to the browser: without network and painting.",
+    STAGE_TIMES: "Time of each stage of these pictures, counted when the picture is on the screen.",
+}
 #: Time between two measurements of the event loop's lag [s].
 _LAG_INTERVAL = 0.25
 #: Number of measurements that are kept, of ten seconds.
@@ -64,6 +91,29 @@ class Metric(NamedTuple):
         return f"{self.prefix}_{self.name}"
 
 
+class Histogram:
+    """Durations counted by `BUCKETS`; the caller holds a lock."""
+
+    def __init__(self) -> None:
+        self.counts = [0] * (len(BUCKETS) + 1)
+        self.total = 0.0
+
+    def add(self, seconds: float) -> None:
+        """Count a duration."""
+        self.counts[bisect_left(BUCKETS, seconds)] += 1
+        self.total += seconds
+
+    def lines(self, name: str, label: str = "") -> list[str]:
+        """The lines of Prometheus's text format; `label` is a label and its value."""
+        lines, count = [], 0
+        for bound, counted in zip((*BUCKETS, math.inf), self.counts, strict=True):
+            count += counted
+            upper = "+Inf" if bound == math.inf else f"{bound:g}"
+            lines.append(f'{name}_bucket{{{label}{"," * bool(label)}le="{upper}"}} {count}')
+        labels = f"{{{label}}}" if label else ""
+        return [*lines, f"{name}_sum{labels} {_written(self.total)}", f"{name}_count{labels} {count}"]
+
+
 class Metrics:
     """Counts since the start; answers are times from a change to the first picture of it. Any thread may count."""
 
@@ -72,8 +122,8 @@ class Metrics:
         self.sessions = 0
         self.opened = 0
         self.counted = dict.fromkeys(COUNTERS, 0)
-        self.answers = [0] * (len(BUCKETS) + 1)
-        self.answers_total = 0.0
+        self.answers = Histogram()
+        self.stages = {stage: Histogram() for stage in STAGES}
         self._lags: deque[float] = deque(maxlen=_LAGS_KEPT)
         #: Metrics of other modules; the server sets them.
         self.added: tuple[Metric, ...] = ()
@@ -98,10 +148,14 @@ class Metrics:
 
     def answered(self, seconds: float) -> None:
         """Count a first picture that came `seconds` after its request."""
-        bucket = next((i for i, bound in enumerate(BUCKETS) if seconds <= bound), len(BUCKETS))
         with self._lock:
-            self.answers[bucket] += 1
-            self.answers_total += seconds
+            self.answers.add(seconds)
+
+    def picture_painted(self, seconds: Mapping[str, float]) -> None:
+        """Count the stages of a picture that is on the screen, by their names in `STAGES`."""
+        with self._lock:
+            for stage, duration in seconds.items():
+                self.stages[stage].add(duration)
 
     def lagged(self, seconds: float) -> None:
         """Record that an iteration of the event loop was `seconds` late."""
@@ -130,7 +184,7 @@ class Metrics:
             self.lagged(max(0.0, time.monotonic() - due))
 
     def table(self) -> list[Metric]:
-        """All metrics but the histogram."""
+        """All metrics but the histograms."""
         return [
             Metric("build_info", "gauge", "Always 1; the label says which release of granchain answers.",
                    lambda: {__version__: 1}, "version"),
@@ -172,13 +226,13 @@ class Metrics:
                 was = {former.values.get(key, key): one for key, one in value.items()} if isinstance(value, Mapping) \
                     else value
                 lines += _lines(former.former, metric, former.label or metric.label, was)
-        lines += [f"# HELP {HISTOGRAM} {HISTOGRAM_HELP}", f"# TYPE {HISTOGRAM} histogram"]
-        total = 0
-        for bound, count in zip((*BUCKETS, float("inf")), self.answers, strict=True):
-            total += count
-            upper = "+Inf" if bound == float("inf") else f"{bound:g}"
-            lines.append(f'{HISTOGRAM}_bucket{{le="{upper}"}} {total}')
-        lines += [f"{HISTOGRAM}_sum {_written(self.answers_total)}", f"{HISTOGRAM}_count {total}"]
+        for name, text in HISTOGRAMS.items():
+            lines += [f"# HELP {name} {text}", f"# TYPE {name} histogram"]
+            if name == ANSWERS:
+                lines += self.answers.lines(name)
+            else:
+                for stage, histogram in self.stages.items():
+                    lines += histogram.lines(name, f'stage="{stage}"')
         return "\n".join(lines) + "\n"
 
 

@@ -59,15 +59,15 @@ def install_defaults_cache() -> None:
     find: Any = PropertyDescriptor._get_default
     overridden: Any = HasProps._overridden_defaults
     query, visit = HasProps.query_properties_with_values, references.visit_immediate_value_references
-    found = _Remembered()
-    is_unstable = _asks_once(PropertyDescriptor.has_unstable_default, found)
+    remembered = _Remembered()
+    is_unstable = _asks_once(PropertyDescriptor.has_unstable_default, remembered)
     for where, name, ours in (
             (PropertyDescriptor, "has_unstable_default", is_unstable),
-            (PropertyDescriptor, "_get_default", _finds_once(find, is_unstable, found)),
+            (PropertyDescriptor, "_get_default", _finds_once(find, is_unstable, remembered)),
             (HasProps, "themed_values", _theme),
-            (HasProps, "_overridden_defaults", classmethod(_merges_once(overridden, found))),
+            (HasProps, "_overridden_defaults", classmethod(_merges_once(overridden, remembered))),
             (HasProps, "query_properties_with_values", _tells_what_is_there(query)),
-            (references, "visit_immediate_value_references", _visits_what_is_there(visit, found))):
+            (references, "visit_immediate_value_references", _visits_what_is_there(visit, remembered))):
         setattr(where, name, ours)
 
 
@@ -77,18 +77,18 @@ def _theme(model: Any) -> dict[str, Any] | None:
     return themed
 
 
-def _merges_once(overridden: Any, found: _Remembered) -> Callable[[type], dict[str, Any]]:
+def _merges_once(overridden: Any, defaults: _Remembered) -> Callable[[type], dict[str, Any]]:
     """The defaults that a class and its bases override; they never change."""
 
     def overrides(cls: type) -> dict[str, Any]:
-        if cls not in found.overridden:
-            found.overridden[cls] = overridden.__func__(cls)
-        return found.overridden[cls]
+        if cls not in defaults.overridden:
+            defaults.overridden[cls] = overridden.__func__(cls)
+        return defaults.overridden[cls]
 
     return overrides
 
 
-def _asks_once(unstable: Any, found: _Remembered) -> Callable[[Any, Any], bool]:
+def _asks_once(unstable: Any, defaults: _Remembered) -> Callable[[Any, Any], bool]:
     """Whether each model has a default of its own.
 
     For a new model the answer is no where its default would be empty: the default is made when it is asked for, and is
@@ -97,16 +97,16 @@ def _asks_once(unstable: Any, found: _Remembered) -> Callable[[Any, Any], bool]:
 
     def is_unstable(descriptor: Any, model: Any) -> bool:
         key = (model.__class__, descriptor.name)
-        if key not in found.changing:
-            found.changing[key] = unstable(descriptor, model)
-            value = descriptor.instance_default(model) if found.changing[key] else None
-            found.empty[key] = isinstance(value, PropertyValueContainer) and not value
-        return found.changing[key] and not (found.empty[key] and not model._initialized)
+        if key not in defaults.changing:
+            defaults.changing[key] = unstable(descriptor, model)
+            value = descriptor.instance_default(model) if defaults.changing[key] else None
+            defaults.empty[key] = isinstance(value, PropertyValueContainer) and not value
+        return defaults.changing[key] and not (defaults.empty[key] and not model._initialized)
 
     return is_unstable
 
 
-def _finds_once(find: Any, is_unstable: Callable[[Any, Any], bool], found: _Remembered) -> Callable[[Any, Any], Any]:
+def _finds_once(find: Any, is_unstable: Callable[[Any, Any], bool], defaults: _Remembered) -> Callable[[Any, Any], Any]:
     """Find a property's default; a constant that no theme changes is found once per class."""
 
     def remembered(descriptor: Any, model: Any) -> Any:
@@ -114,14 +114,14 @@ def _finds_once(find: Any, is_unstable: Callable[[Any, Any], bool], found: _Reme
         if themed and descriptor.name in themed:
             return find(descriptor, model)
         key = (model.__class__, descriptor.name)
-        if key in found.known:
-            return found.known[key]
+        if key in defaults.known:
+            return defaults.known[key]
         value = find(descriptor, model)
         if isinstance(value, _CONSTANTS) and not is_unstable(descriptor, model):
-            found.known[key] = value
+            defaults.known[key] = value
         return value
 
-    remembered.known = found.known  # type: ignore[attr-defined]
+    remembered.known = defaults.known  # type: ignore[attr-defined]
     return remembered
 
 
@@ -146,7 +146,7 @@ def _tells_what_is_there(query: Any) -> Callable[..., dict[str, Any]]:
     return changed
 
 
-def _visits_what_is_there(visit: Any, found: _Remembered) -> Callable[[Any, Any], None]:
+def _visits_what_is_there(visit: Any, defaults: _Remembered) -> Callable[[Any, Any], None]:
     """Visit the models to which a model refers; empty defaults are not made for this."""
 
     def visit_model(value: Any, visitor: Any) -> None:
@@ -154,10 +154,10 @@ def _visits_what_is_there(visit: Any, found: _Remembered) -> Callable[[Any, Any]
             visit(value, visitor)
             return
         kind, themed = value.__class__, _theme(value) or {}
-        there = value._property_values, value._unstable_default_values, themed
+        kept_values = value._property_values, value._unstable_default_values, themed
         for name in value.properties_with_refs():
             key = (kind, name)
-            if (key in found.known or found.empty.get(key)) and not any(name in values for values in there):
+            if (key in defaults.known or defaults.empty.get(key)) and not any(name in kept for kept in kept_values):
                 continue
             references.visit_value_and_its_immediate_references(getattr(value, name), visitor)
 

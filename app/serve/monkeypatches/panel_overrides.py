@@ -88,10 +88,10 @@ class WithCommonProperties:
         known = _COMMON.get(type(self))
         if known is not None and document is not None:
             return known.properties_of(self, _IMPORTED.setdefault(document, {}))
-        found: dict[str, Any] = super()._get_properties(document)  # type: ignore[misc]
+        properties: dict[str, Any] = super()._get_properties(document)  # type: ignore[misc]
         if type(self) not in _COMMON:
-            _COMMON[type(self)] = _Common.of(self, found)
-        return found
+            _COMMON[type(self)] = _Common.of(self, properties)
+        return properties
 
 
 #: Classes of parts without children, as Panel found for their first instance.
@@ -107,10 +107,10 @@ class WithoutChildren:
     def _get_children(self, *args: Any) -> Any:
         if type(self) in _CHILDLESS:
             return {}, []
-        found = super()._get_children(*args)  # type: ignore[misc]
-        if found == ({}, []):
+        children = super()._get_children(*args)  # type: ignore[misc]
+        if children == ({}, []):
             _CHILDLESS.add(type(self))
-        return found
+        return children
 
 
 class WithoutDesign:

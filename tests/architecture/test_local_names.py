@@ -1,0 +1,41 @@
+"""Locals and parameters of app are called by what they hold: a curve, a sentence, the rows of a case."""
+
+from __future__ import annotations
+
+import ast
+import re
+
+import pytest
+from source import ROOT, by_folder, nodes
+
+#: Words that say nothing of what a variable holds. `asked` is a keyword of `granchain.figure` and so not among them.
+RIDDLES = ("one", "found", "there", "told", "said", "held", "whole", "least", "tell")
+#: Where a script names a variable: a declaration, or the parameter of a function.
+_DECLARED = re.compile(rf"""(?:\b(?:const|let)\s+|[(,]\s*)({'|'.join(RIDDLES)})\b
+                           (?=\s*(?:=[^=]|of\b|,[^()]*\)\s*=>|\)\s*(?:=>|\{{)))""", re.VERBOSE)
+
+
+@pytest.mark.parametrize("folder", by_folder(sorted((ROOT / "app").rglob("*.py"))))
+def test_python_names_its_variables_by_what_they_hold(folder: str) -> None:
+    named = [(path.name, node.lineno, node.arg if isinstance(node, ast.arg) else node.id)
+             for path in sorted((ROOT / folder).glob("*.py")) for node in nodes(path)
+             if isinstance(node, ast.arg) or (isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store))]
+    assert [(file, line, name) for file, line, name in named if name in RIDDLES] == []
+
+
+@pytest.mark.parametrize("folder", by_folder(sorted((ROOT / "app").rglob("*.js"))))
+def test_scripts_name_their_variables_by_what_they_hold(folder: str) -> None:
+    assert [(path.name, name) for path in sorted((ROOT / folder).glob("*.js"))
+            for name in _DECLARED.findall(path.read_text(encoding="utf-8"))] == []
+
+
+@pytest.mark.parametrize("script", ["const found = [];", "let one = 1;", "names.find((one) => hit)",
+                                    "for (const one of all)", "push(there) {", "(one, i) => i"])
+def test_a_script_with_such_a_name_is_noticed(script: str) -> None:
+    assert _DECLARED.search(script)
+
+
+@pytest.mark.parametrize("script", ["this.tell();", "attractors(one)", "// what was found (one, or none)",
+                                    "rows.found = 3"])
+def test_a_word_in_a_comment_or_a_member_is_no_such_name(script: str) -> None:
+    assert not _DECLARED.search(script)
