@@ -221,7 +221,7 @@ def _run_on(scene: Scene, state: State, periods: int, stop: Stop | None) -> tupl
 
 def or_infinite(error: float | None) -> float:
     """A stated error; infinity where none is stated, which is never the least."""
-    return np.inf if error is None else error
+    return math.inf if error is None else error
 
 
 def _attractor(group: list[Found], origins: list[Origin]) -> Attractor:

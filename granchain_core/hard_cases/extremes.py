@@ -68,7 +68,7 @@ def _tridiagonal(slope: np.ndarray) -> np.ndarray:
 
 
 def amplitudes(quick: bool) -> list[Measurement]:
-    """Scaling, statics and the stop band."""
+    """Scaling, statics, and the stop band of the linear lattice: the frequencies above its cut-off."""
     times = (1e-4, 1e4) if quick else tuple(10.0**p for p in range(-4, 5))
     drives = (340.0,) if quick else (10.0, 340.0, 3000.0, 1e5)
     fixed = max(scaled_difference(f, fixed_step_setting(2.0), times) for f in drives)
