@@ -38,7 +38,8 @@ class Response:
     `in_step` is whether the reflected pulse is in step with the driver. It is measured for 1:1 only: it is None for
     every other ratio, and where little is transmitted. `contact_phase` and `peak_phase` are the drive's phases
     [degrees] at which the strongest push begins and is strongest; the phase is 0 where the driver moves forward through
-    its middle, and `contact_phase` is None where driver and bead 1 never part. `returning` is relative to 2πf A0, `transmission` is largest output over largest input force.
+    its middle, and `contact_phase` is None where driver and bead 1 never part. `returning` is relative to 2πf A0,
+    `transmission` is largest output over largest input force.
     """
 
     strong: int
@@ -51,7 +52,7 @@ class Response:
 
     @property
     def kind(self) -> str:
-        """The former attribute: "resonance" in step, and 1:n with n ≥ 2; "anti-resonance" not in step; else ""."""
+        """The older name of `in_step`, in words: "resonance", also for 1:n with n ≥ 2, "anti-resonance" or ""."""
         if self.in_step is None:
             return "resonance" if self.strong == 1 < self.periods and not self.little_transmitted else ""
         return "resonance" if self.in_step else "anti-resonance"

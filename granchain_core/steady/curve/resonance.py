@@ -42,7 +42,8 @@ _VALLEY_FRACTION = 0.1
 #: 570 within 0.03; from 0.08 to 0.15 only three change sides.
 _CURVE_DIFFERENCE = 0.1
 #: [response] Little is transmitted: less than this fraction of the largest input force arrives at the wall. Beyond the
-#: last peak of a curve that is its stop band. That of `sec2` begins at 1960 Hz for 0.14 to 0.25, at 2020 Hz for 0.12 and at 2750 Hz for 0.1; `rig` has none in its range.
+#: last peak of a curve that is its stop band. The stop band of `sec2` begins at 1960 Hz for 0.14 to 0.25, at 2020 Hz
+#: for 0.12 and at 2750 Hz for 0.1; `rig` has none in its range.
 STOP_BAND_FRACTION = 0.15
 
 
