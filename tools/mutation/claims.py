@@ -106,9 +106,9 @@ OBSERVED = (
     Mutant("force-overshoots", "observers/record.py", "from scipy.interpolate import PchipInterpolator  #",
            "from scipy.interpolate import CubicSpline as PchipInterpolator  #",
            "between samples a measured force is above both, or below 0", k.SAMPLING),
-    Mutant("force-in-seconds", "observers/pushed_chain.py", "/ scales.phi ** np.arange(4)", "/ scales.phi ** np.zeros(4)",
+    Mutant("force-in-seconds", "observers/force_driven_chain.py", "/ scales.phi ** np.arange(4)", "/ scales.phi ** np.zeros(4)",
            "the slopes of a measured force are not scaled", k.SAMPLING),
-    Mutant("loss-between-samples", "observers/observation.py", "= IRREGULAR * np.maximum(", "= 1e-3 * IRREGULAR * np.maximum(",
+    Mutant("loss-between-samples", "observers/observe.py", "(IRREGULAR * np.maximum(", "(1e-3 * IRREGULAR * np.maximum(",
            "what is lost between samples is stated a thousand times too small", k.SAMPLING),
 )
 
