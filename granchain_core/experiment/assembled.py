@@ -33,10 +33,10 @@ class Columns:
 
     def one(self, name: str) -> np.ndarray:
         """The only column of a quantity."""
-        found = self.values[name]
-        if len(found) != 1:
-            raise BadInput(f"{len(found)} columns hold the {name.replace('_', ' ')}; name one of them.")
-        return np.asarray(found[0])
+        columns = self.values[name]
+        if len(columns) != 1:
+            raise BadInput(f"{len(columns)} columns hold the {name.replace('_', ' ')}; name one of them.")
+        return np.asarray(columns[0])
 
     def check(self, wrong: np.ndarray, sentence: str, values: np.ndarray | None = None) -> None:
         """Refuse the first row in which something is wrong."""
@@ -48,14 +48,14 @@ class Columns:
 
 def kinds_of(quantities: Sequence[str]) -> list[str]:
     """What a file with these quantities can be, the likeliest first."""
-    there = set(quantities)
-    found = []
-    if "frequency" in there and "time" not in there:
-        found += ["curve"] if there & {"force", "output_force"} else []
-        found += ["shaker"] if there & set(_MOVES) else []
-    if "time" in there and "frequency" not in there and there & set(_IN_TIME):
-        found.append("series")
-    return found
+    present = set(quantities)
+    kinds = []
+    if "frequency" in present and "time" not in present:
+        kinds += ["curve"] if present & {"force", "output_force"} else []
+        kinds += ["shaker"] if present & set(_MOVES) else []
+    if "time" in present and "frequency" not in present and present & set(_IN_TIME):
+        kinds.append("series")
+    return kinds
 
 
 def assembled(columns: Columns, kind: str, layout: str, source: str, note: str) -> Measured | Series | Shaker:

@@ -107,7 +107,7 @@ def _end(problem: Problem, best: np.ndarray, j: int, ridge: np.ndarray, reach: f
     The first point is `reach` away from the best one. `rises` gets the rise of the misfit at each value. Raises
     `BetterMinimum` where the misfit falls below the least by more than −`lowest`.
     """
-    least, others, sign = problem.misfit(best), _others(best, j), math.copysign(1.0, reach)
+    least_misfit, others, sign = problem.misfit(best), _others(best, j), math.copysign(1.0, reach)
     bound = 1.0 if sign > 0.0 else 0.0
     inside, root_inside = float(best[j]), 0.0
     outside, root_outside = math.nan, math.nan
@@ -119,7 +119,7 @@ def _end(problem: Problem, best: np.ndarray, j: int, ridge: np.ndarray, reach: f
         x = np.clip(start + ridge * (trial - start[j]), 0.0, 1.0)
         x[j] = trial
         x = descend(problem, x, others, _DESCENT_CALLS)
-        rise = problem.misfit(x) - least
+        rise = problem.misfit(x) - least_misfit
         if rise < lowest:
             raise BetterMinimum(x)
         root = math.sqrt(max(rise, 0.0))

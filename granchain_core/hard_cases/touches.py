@@ -87,11 +87,11 @@ def touch(cases, driven, work, y, counts, static, chain, found):  # type: ignore
 
 def run(cases: np.ndarray, driven: bool) -> np.ndarray:
     """Results for each case (count, 3)."""
-    row, found = 3, np.zeros((len(cases), 3))
+    row, results = 3, np.zeros((len(cases), 3))
     chain = Chain(np.array([0.0, 1.0, 0.0]), np.ones(2))
     touch(cases, driven, workspace(row), np.zeros(2 * row), np.zeros(4, dtype=np.int64), np.zeros(2), chain,
-          found)
-    return found
+          results)
+    return results
 
 
 def workspace(row: int) -> Dop853Workspace:
@@ -102,9 +102,9 @@ def workspace(row: int) -> Dop853Workspace:
         forces=Forces(np.zeros(row - 1), None))
 
 
-def missed(cases: np.ndarray, found: np.ndarray) -> np.ndarray:
+def missed(cases: np.ndarray, results: np.ndarray) -> np.ndarray:
     """Numbers of the cases whose touch was missed, or invented."""
-    return np.flatnonzero((found[:, CLOSINGS] == 1) != (cases[:, DEPTH] > 0.0))
+    return np.flatnonzero((results[:, CLOSINGS] == 1) != (cases[:, DEPTH] > 0.0))
 
 
 def moved(cases: np.ndarray) -> np.ndarray:

@@ -106,9 +106,9 @@ class File:
 
     def schema(self) -> None:
         """Refuse a layout that is not this version's."""
-        found = self.whole("granchain_schema", 0)
-        if found != SCHEMA:
-            raise Refused(f"its schema is {found}, and this version reads {SCHEMA}")
+        number = self.whole("granchain_schema", 0)
+        if number != SCHEMA:
+            raise Refused(f"its schema is {number}, and this version reads {SCHEMA}")
 
     def scene(self) -> Scene:
         """The scene, its values checked like those of the command line and against the knobs that the file repeats."""

@@ -52,9 +52,9 @@ def departure_words(drifts: bool, multiplier: complex | None) -> str:
 
 def observer_drift(orbit: Orbit) -> str | None:
     """A sentence if the observer of `orbit` drifts, else None; the orbit must have its observer's multipliers."""
-    found = orbit.observer_multipliers
+    multipliers = orbit.observer_multipliers
     # a multiplier that is not known to be inside the unit circle counts as on it
-    if found is None or abs(found[0]) < 1.0 - MULTIPLIER_ERROR:
+    if multipliers is None or abs(multipliers[0]) < 1.0 - MULTIPLIER_ERROR:
         return None
     stroboscopic_map = StroboscopicMap(orbit.scene, orbit.period)
     x = stroboscopic_map.inner(stroboscopic_map.engine.scaled.from_si(orbit.state))

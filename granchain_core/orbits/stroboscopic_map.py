@@ -135,9 +135,9 @@ class StroboscopicMap:
     @property
     def contact_events(self) -> np.ndarray:
         """The contact events of the last run, as in `Flow`."""
-        found = self._contacts.log[: self._contacts.logged[0]].copy()
-        found[:, 1] /= self.engine.scaled.period
-        return found
+        events = self._contacts.log[: self._contacts.logged[0]].copy()
+        events[:, 1] /= self.engine.scaled.period
+        return events
 
     def _run(self, x: np.ndarray, tangent: Tangent | VelocityTangent) -> float:
         engine = self.engine

@@ -49,22 +49,22 @@ def read_given(number: str, takes: Sequence[str], frequencies: Sequence[float], 
         if not takes:
             raise BadInput(f"Figure {number} shows nothing that was measured, so it takes no --data.")
         hertz, path = _split(name)
-        found = read_experiment(path, answers)
-        kind = _KINDS[type(found)]
+        measurement = read_experiment(path, answers)
+        kind = _KINDS[type(measurement)]
         if kind not in takes:
             raise BadInput(f"Figure {number} takes {' and '.join(_WORDS[one] for one in takes)}; "
                            f"{path} is {_WORDS[kind]}.")
-        if isinstance(found, Series):
+        if isinstance(measurement, Series):
             at = _frequency(hertz, frequencies, path, number)
             if at in given.series:
                 raise BadInput(f"Two series are given for {at:g} Hz; give one.")
-            given = replace(given, series={**given.series, at: found})
+            given = replace(given, series={**given.series, at: measurement})
         elif getattr(given, kind) is not None:
             raise BadInput(f"Two files hold {_WORDS[kind]}; give one.")
-        elif isinstance(found, Shaker):
-            given = replace(given, shaker=found)
+        elif isinstance(measurement, Shaker):
+            given = replace(given, shaker=measurement)
         else:
-            given = replace(given, curve=found)
+            given = replace(given, curve=measurement)
     return given
 
 

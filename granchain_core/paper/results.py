@@ -199,9 +199,9 @@ class CoupledRow:
     @property
     def multipliers(self) -> np.ndarray:
         """Panel (a) or (d): the chain's and the observer's multipliers."""
-        found = self.twin.multipliers
-        assert found is not None  # the figure's orbits are periodic
-        return found
+        multipliers = self.twin.multipliers
+        assert multipliers is not None  # the figure's orbits are periodic
+        return multipliers
 
     @property
     def outside(self) -> np.ndarray:

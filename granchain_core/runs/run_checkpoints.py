@@ -35,9 +35,9 @@ class RunCheckpoints:
     def __init__(self, scene: Scene, periods: int, record: int, samples: int, method: str | None,
                  out: str | Path) -> None:
         self._scene = scene
-        asked = {"scene": scene.digest, "periods": periods, "record": record, "samples": samples, "method": method}
+        request = {"scene": scene.digest, "periods": periods, "record": record, "samples": samples, "method": method}
         words = f"{scene.name} with {periods} + {record} periods of {samples} samples"
-        self.kept: Kept[dict[str, Any]] = Kept(out, "run", digest_of(asked), words, _packed, newest_only=True)
+        self.kept: Kept[dict[str, Any]] = Kept(out, "run", digest_of(request), words, _packed, newest_only=True)
         self._there: dict[str, Any] = {}
         #: Number of the present computation, and how many of its discarded periods are done.
         self.computation, self.done = 0, 0

@@ -213,9 +213,9 @@ class HalfContinuation(Iterator[BranchPoint]):
         """Raise `ComputationError` for an orbit of another branch, whose period is a part of this one's."""
         n = self.equations.period
         x, value = self.equations.state(solved.z), self.equations.value(solved.z)
-        least = self.equations.least_period(x, value, _SHORTER_PERIOD_DISTANCE)
-        if least < n:
-            raise ComputationError(f"the step leads to an orbit that repeats after {least} of {n} drive periods",
+        least_period = self.equations.least_period(x, value, _SHORTER_PERIOD_DISTANCE)
+        if least_period < n:
+            raise ComputationError(f"the step leads to an orbit that repeats after {least_period} of {n} drive periods",
                                    "no-convergence")
 
     def _z(self, point: BranchPoint) -> np.ndarray:

@@ -100,10 +100,10 @@ def place_of(frequency: Sequence[float] | np.ndarray, force: Sequence[float] | n
     if not before or not after or F[before[-1]] == F[after[0]]:
         return Place("")
     low, high = sorted((before[-1], after[0]), key=lambda i: F[i])
-    way = (output - F[low]) / (F[high] - F[low])
-    if high in peaks and way > 1.0 - _PEAK_FRACTION:
+    part = (output - F[low]) / (F[high] - F[low])
+    if high in peaks and part > 1.0 - _PEAK_FRACTION:
         return Place("peak", float(f[high]), periods[high])
-    if low in valleys and way < _VALLEY_FRACTION:
+    if low in valleys and part < _VALLEY_FRACTION:
         return Place("valley")
     return Place("flank", float(f[high]), periods[high]) if high in peaks else Place("")
 
@@ -129,10 +129,10 @@ def extrema(force: np.ndarray) -> list[int]:
 
 def peaks_and_valleys(force: np.ndarray) -> tuple[list[int], list[int]]:
     """Indices of the peaks and of the valleys of a curve: extrema that stand out from both sides."""
-    found: tuple[list[int], list[int]] = [], []
+    both: tuple[list[int], list[int]] = [], []
     for before, here in pairwise(extrema(force)[:-1]):
-        found[0 if force[here] > force[before] else 1].append(here)
-    return found
+        both[0 if force[here] > force[before] else 1].append(here)
+    return both
 
 
 def push_words(pushed: tuple[int, int]) -> str:
