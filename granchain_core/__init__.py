@@ -94,7 +94,7 @@ __all__ = [
 
 def __getattr__(name: str) -> Any:
     """Import a public name when it is first used."""
-    whole = _SHORT.get(name, name)
-    if whole not in _MODULE_OF:
+    target = _SHORT.get(name, name)
+    if target not in _MODULE_OF:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(importlib.import_module(f".{_MODULE_OF[whole]}", __name__), whole)
+    return getattr(importlib.import_module(f".{_MODULE_OF[target]}", __name__), target)

@@ -172,8 +172,8 @@ def _at_length(steps: np.ndarray, multiple: int, near: float) -> tuple[float, fl
     """States, rotation number, and the largest difference of the first, middle and last half."""
     count = len(steps)
     halves = [_rotation(steps[int(a * count) : int(b * count)], multiple, near) for a, b in _PARTS]
-    whole = _rotation(steps, multiple, near)
-    return count, folded(whole), max(max(halves) - min(halves), *(abs(half - whole) for half in halves))
+    full = _rotation(steps, multiple, near)
+    return count, folded(full), max(max(halves) - min(halves), *(abs(half - full) for half in halves))
 
 
 def _passes(rotation: float, states: int) -> Fraction | None:

@@ -123,8 +123,8 @@ class Attractors(list[Attractor], Labelled):
     scene: Scene
     failed: list[Origin]
 
-    def __init__(self, chain: Scene, found: Iterable[Attractor] = (), failed: Iterable[Origin] = ()) -> None:
-        super().__init__(found)
+    def __init__(self, chain: Scene, listed: Iterable[Attractor] = (), failed: Iterable[Origin] = ()) -> None:
+        super().__init__(listed)
         self.scene = chain
         self.failed = list(failed)
 
@@ -188,5 +188,5 @@ def failed_sentence(failed: Sequence[Origin]) -> list[str]:
     if not failed:
         return []
     names = ", ".join(origin.name for origin in failed[:_NAMED])
-    more = f" and {len(failed) - _NAMED} more" if len(failed) > _NAMED else ""
-    return [f"{len(failed)} start{'' if len(failed) == 1 else 's'} failed: {names}{more}"]
+    others = f" and {len(failed) - _NAMED} more" if len(failed) > _NAMED else ""
+    return [f"{len(failed)} start{'' if len(failed) == 1 else 's'} failed: {names}{others}"]

@@ -129,8 +129,8 @@ def _check_places(name: str, places: list[tuple[int, str]], kind: str, question:
             raise question.ask(f"Column {title[:40]!r} has no unit.")
 
 
-def _missing(asked: Asked, wanted: Sequence[str]) -> str:
-    unknown = [one.title for one in asked.guesses if one.quantity is None and one.title]
+def _missing(question: Asked, wanted: Sequence[str]) -> str:
+    unknown = [one.title for one in question.guesses if one.quantity is None and one.title]
     several = "" if len(unknown) > 1 else "s"
     sentence = (f"What {' and '.join(repr(one[:30]) for one in unknown[:4])} hold{several} is not clear" if unknown
             else "These columns are not enough")
@@ -144,7 +144,7 @@ def answered(question: Asked, answers: Answers) -> Chosen:
         for number, unit in places:
             if number > len(question.guesses):
                 raise BadInput(f"There is no column {number}; the file has {len(question.guesses)}.")
-            if any(place == number - 1 for there in chosen.values() for place, _ in there):
+            if any(place == number - 1 for columns in chosen.values() for place, _ in columns):
                 raise BadInput(f"Column {number} is assigned to two quantities; name one.")
             chosen.setdefault(quantity, []).append((number - 1, unit))
     return chosen

@@ -33,8 +33,8 @@ class Difference:
     @property
     def misfit(self) -> Misfit | None:
         """The misfit at these frequencies; None where there are none."""
-        there = self.compared
-        return Misfit.of(self.model[there], self.measured.force[there]) if there.any() else None
+        compared = self.compared
+        return Misfit.of(self.model[compared], self.measured.force[compared]) if compared.any() else None
 
     @property
     def sentence(self) -> str:

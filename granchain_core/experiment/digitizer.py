@@ -42,8 +42,8 @@ def datasets_in(content: bytes) -> dict[str, list[tuple[float, float]]]:
     try:
         project = json.loads(_archived(content) if _is_archive(content) else content.decode("utf-8-sig"))
     except (ValueError, RecursionError) as problem:
-        said = " ".join(str(problem).split())[:100]
-        raise BadInput(f"The file looks like JSON but cannot be parsed: {said}.") from None
+        reason = " ".join(str(problem).split())[:100]
+        raise BadInput(f"The file looks like JSON but cannot be parsed: {reason}.") from None
     if not isinstance(project, dict):
         raise BadInput("The file is JSON, but no project of WebPlotDigitizer.")
     if "datasetColl" in project:

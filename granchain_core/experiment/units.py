@@ -111,8 +111,8 @@ def heading(title: str) -> tuple[str | None, str | None, str]:
 
 def bracketed_unit(title: str) -> str | None:
     """The text in brackets at the end of a title, whether or not it is a unit that is known."""
-    found = re.fullmatch(r".*[(\[]\s*([^()\[\]]+?)\s*[)\]]\s*", title.strip())
-    return found[1] if found else None
+    match = re.fullmatch(r".*[(\[]\s*([^()\[\]]+?)\s*[)\]]\s*", title.strip())
+    return match[1] if match else None
 
 
 def _word(text: str) -> str:

@@ -122,8 +122,8 @@ def unequal(mass: float) -> float:
     """Error of the velocities after a bead has met one of `mass` times its own, against the two conservation laws."""
     bench = Bench(2, 8.0 * (1.0 + mass) ** 0.4, 4, ends=(0.0, 0.0), inverse_mass=[1.0, 1.0 / mass], tolerance=1e-14)
     bench.throw([1.0, 0.0])
-    found = bench.record().velocity[-1]
-    return float(np.abs(found - [(1.0 - mass) / (1.0 + mass), 2.0 / (1.0 + mass)]).max())
+    velocities = bench.record().velocity[-1]
+    return float(np.abs(velocities - [(1.0 - mass) / (1.0 + mass), 2.0 / (1.0 + mass)]).max())
 
 
 def free_pulse(beads: int, inverse_mass: list[float], time: float = 20.0) -> float:

@@ -211,8 +211,8 @@ def mode_errors(preload: float, number: int, beads: int = 11) -> tuple[float, fl
     frequency, shape = mode(chosen, number)
     static = float(chosen.static_overlap()[0])
     linear = np.outer(np.cos(2.0 * np.pi * 3.0 * np.arange(49) / 48.0), shape)
-    there, back = (swing(chosen, frequency, sign * shape, 1e-5 * static) for sign in (1.0, -1.0))
-    odd = 0.5 * (there - back)
+    forth, back = (swing(chosen, frequency, sign * shape, 1e-5 * static) for sign in (1.0, -1.0))
+    odd = 0.5 * (forth - back)
     deviations = [float(np.abs(swing(chosen, frequency, shape, a * static) - linear).max()) for a in (1e-4, 1e-3)]
     return float(np.abs(odd - linear).max()), abs(deviations[1] / deviations[0] / 10.0 - 1.0)
 

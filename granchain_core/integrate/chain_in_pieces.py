@@ -128,8 +128,8 @@ def refined(chain: ChainInPieces, start: State, tell: Callable[[int], None]) -> 
         now, maxima = chain.run(start, halvings), chain.maxima
         differences = [relative_difference(now.displacement, before.displacement),
                        *force_differences(maxima, maxima_before, scene.forces_jump)]
-        least = least_errors(setting, chain.scaled, chain.longest_step(halvings), chain.jumps, maxima)
-        computations.add(setting, chain.steps(halvings), np.array(differences), least)
+        typical = least_errors(setting, chain.scaled, chain.longest_step(halvings), chain.jumps, maxima)
+        computations.add(setting, chain.steps(halvings), np.array(differences), typical)
         tell(halvings)
         done = bool(computations.stated[0] <= scene.accuracy)
         if done or computations.rounded:

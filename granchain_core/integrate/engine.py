@@ -56,8 +56,8 @@ class Engine:
     @property
     def scaled(self) -> ScaledChain:
         """The scene in scaled arrays."""
-        found: ScaledChain = self.stepper.scaled
-        return found
+        chain: ScaledChain = self.stepper.scaled
+        return chain
 
     def use(self, scaled: ScaledChain) -> None:
         """Go on with other values or effects of the same chain; the step stays what it is."""

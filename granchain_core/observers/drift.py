@@ -61,6 +61,7 @@ def observer_drift(orbit: Orbit) -> str | None:
     value, vector = eigenpair(stroboscopic_map, x, 0, observer=True)
     if not is_drift(orbit.scene, share_of_translation(vector[: orbit.scene.N].real), value):
         return None
-    way = "" if value.real > 0.0 else ", alternating between the sides"
-    return (f"The observer drifts: its leading multiplier {value.real:.4g} is real and moves all beads together{way}, "
-            f"because nothing holds them in place (k = {orbit.scene.k:g} N/m); give it a foundation.")
+    addition = "" if value.real > 0.0 else ", alternating between the sides"
+    return (f"The observer drifts: its leading multiplier {value.real:.4g} is real and moves all beads "
+            f"together{addition}, because nothing holds them in place (k = {orbit.scene.k:g} N/m); give it a "
+            "foundation.")

@@ -77,8 +77,8 @@ def periodic_orbit(scene: Scene, period: int | None = None, start: State | None 
     refuse_cut(scene)
     n, start, note = _begin(scene, n, start, stop)
     stroboscopic_map = StroboscopicMap(scene, n, stop)
-    found = _iterate(stroboscopic_map, stroboscopic_map.inner(stroboscopic_map.engine.scaled.from_si(start)))
-    return replace(_orbit(scene, n, stroboscopic_map, found, observer), period_note=note)
+    newton = _iterate(stroboscopic_map, stroboscopic_map.inner(stroboscopic_map.engine.scaled.from_si(start)))
+    return replace(_orbit(scene, n, stroboscopic_map, newton, observer), period_note=note)
 
 
 def _begin(scene: Scene, n: int | None, start: State | None, stop: Stop | None) -> tuple[int, State, str]:

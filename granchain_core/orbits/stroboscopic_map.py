@@ -86,8 +86,8 @@ class StroboscopicMap:
         events = np.zeros((EVENTS_PER_CONTACT * (row - 1) * self.periods, 2))
         self._contacts = ContactStatus(np.zeros(2 * row), np.zeros(row - 1, dtype=np.int64), events,
                                        np.zeros(1, dtype=np.int64))
-        held = self.engine.stepper.work.forces._replace(frozen=FrozenContacts(self._contacts.closed))
-        self._work = self.engine.stepper.work._replace(forces=held)
+        frozen = self.engine.stepper.work.forces._replace(frozen=FrozenContacts(self._contacts.closed))
+        self._work = self.engine.stepper.work._replace(forces=frozen)
 
     def inner(self, y: np.ndarray) -> np.ndarray:
         """The beads' part of a whole state array."""

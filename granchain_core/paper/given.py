@@ -24,8 +24,8 @@ class Given:
     @property
     def sentences(self) -> list[str]:
         """How every file was understood."""
-        found = [one.understood for one in (self.curve, self.shaker) if one is not None]
-        return found + [f"at {f:g} Hz {one.understood}" for f, one in sorted(self.series.items())]
+        parts = [measurement.understood for measurement in (self.curve, self.shaker) if measurement is not None]
+        return parts + [f"at {f:g} Hz {measurement.understood}" for f, measurement in sorted(self.series.items())]
 
 
 #: A component smaller than this fraction of the signal's range has no phase to align by.
@@ -118,8 +118,8 @@ def moved_back(series: Series, delay: float) -> Series:
 
 def _component(time: np.ndarray, values: np.ndarray, f: float) -> tuple[float, float]:
     """Phase 2πfs and amplitude of the part a·cos(2πf(t − s)) of `values`, over whole periods where there is one."""
-    whole = np.floor((time[-1] - time[0]) * f + 1e-9) / f
-    inside = time - time[0] <= whole if whole > 0.0 else np.ones(len(time), dtype=bool)
+    duration = np.floor((time[-1] - time[0]) * f + 1e-9) / f
+    inside = time - time[0] <= duration if duration > 0.0 else np.ones(len(time), dtype=bool)
     t, v = time[inside], values[inside]
     component = 2.0 * np.trapezoid((v - v.mean()) * np.exp(2j * np.pi * f * t), t) / (t[-1] - t[0])
     return float(np.angle(component)), float(abs(component))

@@ -152,11 +152,11 @@ def _two_solutions() -> Numbers:
     preset = scene("fig12-100")
     twice = preset.evolve(f=100.0)
     gentle = [attractors(twice.evolve(A0=a, kappa=KAPPA), 32) for a in (RIG_AMPLITUDE, 10e-6)]
-    counts = {float(len(found)) for found in gentle}
+    counts = {float(len(states)) for states in gentle}
     hard = settle(twice, rest(twice))
     shown = attractors(preset, 32)
     return [counts.pop() if len(counts) == 1 else math.nan,
-            " or ".join(sorted({_words(one.regime) for found in gentle for one in found})), _words(hard.regime),
+            " or ".join(sorted({_words(one.regime) for states in gentle for one in states})), _words(hard.regime),
             float(len(shown)), " or ".join(sorted({_words(one.regime) for one in shown}))]
 
 

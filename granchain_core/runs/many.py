@@ -52,8 +52,8 @@ class Runs(list[Any], Labelled):
     scenes: list[Scene]
     failures: list[str]
 
-    def __init__(self, scenes: Sequence[Scene], found: Iterable[Any], failures: Sequence[str]) -> None:
-        super().__init__(found)
+    def __init__(self, scenes: Sequence[Scene], results: Iterable[Any], failures: Sequence[str]) -> None:
+        super().__init__(results)
         self.scenes, self.failures = list(scenes), list(failures)
 
     def tables(self) -> tuple[Table, ...]:

@@ -111,8 +111,7 @@ def checked_fields(data: object) -> dict[str, Any]:
     for name, field in known.items():
         if name not in data and field.default is MISSING:
             raise BadInput(f"The scene has no field {name}.")
-    found = {name: _field(name, value) for name, value in data.items()}
-    return found
+    return {name: _field(name, value) for name, value in data.items()}
 
 
 def _field(name: str, value: object) -> Any:

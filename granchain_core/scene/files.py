@@ -90,8 +90,8 @@ def built(name: str, data: dict[str, Any]) -> Scene:
     return replace(new, preset=tuple((n, new.knobs[n]) for n in QUANTITIES))
 
 
-def _only(found: Iterable[str], kind: str, known: Iterable[str]) -> None:
-    for name in found:
+def _only(names: Iterable[str], kind: str, known: Iterable[str]) -> None:
+    for name in names:
         if name not in tuple(known):
             raise unknown_name(kind, name, known)
 

@@ -62,8 +62,8 @@ def overlap_warnings(scene: Description, largest_overlap: float | np.ndarray) ->
 
 def warnings(scene: Description) -> list[str]:
     """Sentences known before anything is run: the drive amplitude and the preload already overlap the beads."""
-    found = overlap_warnings(scene, np.maximum(scene.drive_amplitude, scene.static_overlap()))
-    return [*found, *([missing] if (missing := missing_impurity(scene)) else [])]
+    listed = overlap_warnings(scene, np.maximum(scene.drive_amplitude, scene.static_overlap()))
+    return [*listed, *([missing] if (missing := missing_impurity(scene)) else [])]
 
 
 def missing_impurity(scene: Description) -> str:

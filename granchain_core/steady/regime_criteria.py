@@ -72,8 +72,8 @@ def window_changes(strobes: np.ndarray, window: int, windows: int, longest: int)
     """
     seen, workspace = np.zeros((longest, windows)), np.zeros((_STATES_AT_ONCE, *strobes.shape[1:]))
     periodicity.window_changes(np.ascontiguousarray(strobes), window, np.zeros(2), workspace, seen)
-    found: list[list[float]] = seen.tolist()
-    return found
+    changes: list[list[float]] = seen.tolist()
+    return changes
 
 
 def find_period(strobes: np.ndarray, longest: int = LONGEST_LOCKED_PERIOD, rounding: float = ROUNDING) -> Regime:

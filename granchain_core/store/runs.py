@@ -102,8 +102,8 @@ def _start(file: File) -> str:
     """Where a run began; files written before it was kept are of runs from rest."""
     if not file.stated("start"):
         return AT_REST
-    found = file.text("start")
-    return GIVEN_STATE if found == _PREVIOUS_STATE else one_of("start", found, RUN_STARTS)
+    text = file.text("start")
+    return GIVEN_STATE if text == _PREVIOUS_STATE else one_of("start", text, RUN_STARTS)
 
 
 def _rows(file: File) -> int:

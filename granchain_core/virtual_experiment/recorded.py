@@ -211,8 +211,8 @@ def _recorded(scene: Scene, count: int, sensors: Sensors, random: np.random.Gene
 def _from_rest(scene: Scene, count: int, sensors: Sensors, random: np.random.Generator,
                stop: Stop | None) -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:
     """Time, velocity, and both forces of `count` samples that begin at rest."""
-    found, times = _settled(scene, stop), np.arange(count) / sensors.rate
-    largest = max(found.run.max_input_force, found.run.max_output_force)
+    settled, times = _settled(scene, stop), np.arange(count) / sensors.rate
+    largest = max(settled.run.max_input_force, settled.run.max_output_force)
     velocity, forces = from_rest(_quick(scene), times, _fastest(scene, largest, sensors), sensors, stop)
     forces = [force + sensors.noise * random.standard_normal(count) for force in forces]
     return times, velocity + sensors.velocity_noise * random.standard_normal(count), forces

@@ -29,19 +29,19 @@ class Between:
 
     def careful(self, a: BranchPoint, b: BranchPoint, fraction: float) -> BranchPoint:
         """The orbit at a fraction of the way from a to b, near the cubic through both with their tangents."""
-        guess, normal, way = self._guess(a, b, fraction)
-        solved = self.equations.solve(guess, normal, a.slope, way)
+        guess, normal, distance = self._guess(a, b, fraction)
+        solved = self.equations.solve(guess, normal, a.slope, distance)
         return self._finished(solved, a.tangent, self._arclength(a, b, fraction))
 
     def exact(self, a: BranchPoint, b: BranchPoint, fraction: float) -> BranchPoint:
         """Like `careful`, but mostly with the known derivatives at a and b."""
-        guess, normal, way = self._guess(a, b, fraction)
-        return self._solved(guess, normal, a.tangent, self._arclength(a, b, fraction), way)
+        guess, normal, distance = self._guess(a, b, fraction)
+        return self._solved(guess, normal, a.tangent, self._arclength(a, b, fraction), distance)
 
     def rough(self, a: BranchPoint, b: BranchPoint, fraction: float) -> BranchPoint:
         """Like `careful`, but by the quick map alone. Values that are alike at a and b are taken from a."""
-        guess, normal, way = self._guess(a, b, fraction)
-        arclength, newton = self._arclength(a, b, fraction), Newton(self.equations, guess, normal, way)
+        guess, normal, distance = self._guess(a, b, fraction)
+        arclength, newton = self._arclength(a, b, fraction), Newton(self.equations, guess, normal, distance)
         near = self._near(arclength)
         newton.solve_quick(near)
         slope, multipliers, tangent = near.slope, a.multipliers, a.tangent

@@ -67,8 +67,8 @@ class Ends:
         """The orbit exactly at the end of the axis that was passed on the way to `beyond`, at zb."""
         axis, za = self.equations.axis, self._z(last)
         fraction = (axis.coordinate(end) - za[-1]) / (zb[-1] - za[-1])
-        way = float(np.linalg.norm(zb - za))
-        guess = cubic(za, zb, way * last.tangent, way * beyond.tangent, fraction)
+        distance = float(np.linalg.norm(zb - za))
+        guess = cubic(za, zb, distance * last.tangent, distance * beyond.tangent, fraction)
         guess[-1] = axis.coordinate(end)
         fixed = np.zeros(len(guess))
         fixed[-1] = 1.0

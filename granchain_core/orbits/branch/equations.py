@@ -106,8 +106,9 @@ class BranchEquations:
 
     def least_period(self, x: np.ndarray, value: float, back: float = SAME_ORBIT_DISTANCE) -> int:
         """Number of drive periods, at most `period`, after which the orbit is within `back` of x, relatively."""
-        least = least_displacement(x, self.drive_rate(self.point(x, value)))
-        return least_period(lambda periods: self.stroboscopic_map(value, periods).end(x), x, self.period, back, least)
+        smallest = least_displacement(x, self.drive_rate(self.point(x, value)))
+        return least_period(lambda periods: self.stroboscopic_map(value, periods).end(x), x, self.period, back,
+                            smallest)
 
     def solve(self, z: np.ndarray, normal: np.ndarray, slope: np.ndarray | None = None,
               farthest: float = np.inf) -> Solved:
