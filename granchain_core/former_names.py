@@ -58,7 +58,7 @@ ATTRIBUTES = (
     FormerName("Branch.arms", "Branch.half_branches"),
     FormerName("BranchPoint.unstable", "BranchPoint.unstable_multipliers"),
     FormerName("SpecialPoint.event", "SpecialPoint.gained", values=EVENTS),
-    FormerName("Response.kind", "Response.in_step", values={True: "resonance", False: "anti-resonance", None: ""}),
+    FormerName("Response.kind", "Response.in_step"),  # orbits/response.py has its own values
     FormerName("Orbit.changes", "Orbit.contact_events"),
     FormerName("Regime.contraction", "Regime.assumed_contraction"),
     FormerName("Regime.decay", "Regime.observed_contraction"),
@@ -98,9 +98,9 @@ def of_module(module: str) -> Callable[[str], Any]:
 
 
 def with_former_names(one: _Class) -> _Class:
-    """Class decorator: the attributes under their former names too."""
+    """Class decorator: the attributes under their former names too, but for those that the class itself defines."""
     for row in ATTRIBUTES:
-        if row.former.startswith(f"{one.__name__}."):
+        if row.former.startswith(f"{one.__name__}.") and not hasattr(one, row.last):
             setattr(one, row.last, property(row.of, doc=f"The former name of `{row.name.rpartition('.')[2]}`."))
     return one
 

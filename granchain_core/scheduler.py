@@ -63,10 +63,10 @@ def _some(waiting: set[Any]) -> tuple[set[Any], set[Any]]:
     from distributed import wait
 
     try:
-        found = wait(waiting, timeout=_LOOK, return_when="FIRST_COMPLETED")
+        ready = wait(waiting, timeout=_LOOK, return_when="FIRST_COMPLETED")
     except TimeoutError:
         return set(), waiting
-    return set(found.done), set(found.not_done)
+    return set(ready.done), set(ready.not_done)
 
 
 def _result(future: Any) -> Any:

@@ -64,11 +64,11 @@ class Lesson:
 def lesson(scene: Scene, stop: Stop) -> Lesson:
     """Run the naive methods at usual steps. Raises `ComputationError` where the reference fails, and `Cancelled`."""
     first = (_RUN - _SHOWN) * _SAMPLES if scene.is_driven else 0
-    whole = output_force(scene, _TRUE, stop)
-    true = whole[first:]
+    forces = output_force(scene, _TRUE, stop)
+    true = forces[first:]
     time = (first + np.arange(len(true))) / _SAMPLES * scene.period
-    found = Lesson(time, true)
-    largest = float(np.abs(whole).max())
+    result = Lesson(time, true)
+    largest = float(np.abs(forces).max())
     for method in METHODS.values():
         if method.variables != "uv":
             continue
@@ -76,11 +76,11 @@ def lesson(scene: Scene, stop: Stop) -> Lesson:
             try:
                 force = output_force(scene, PlainSteps(method.name, steps=steps), stop)[first:]
             except ComputationError as problem:
-                found.drawn.append(Naive(method.name, steps, float("inf"), np.zeros(0), problem.sentence))
+                result.drawn.append(Naive(method.name, steps, float("inf"), np.zeros(0), problem.sentence))
                 continue
             error = float(np.abs(force - true).max()) / largest if largest > 0.0 else 0.0
-            found.drawn.append(Naive(method.name, steps, error, force))
-    return found
+            result.drawn.append(Naive(method.name, steps, error, force))
+    return result
 
 
 def output_force(scene: Scene, setting: MethodSetting, stop: Stop) -> np.ndarray:

@@ -70,10 +70,10 @@ class ScipyMotion:
 
     def __call__(self, t: float, inner: np.ndarray) -> np.ndarray:
         """Slope (2N,) at time t of the period."""
-        row, whole = self._row, self._whole
+        row, full_state = self._row, self._whole
         self.evaluations += 1
-        whole[1 : row - 1], whole[row + 1 : 2 * row - 1] = inner[: row - 2], inner[row - 2 :]
-        evaluate(self.scaled.slots, self.scaled.beta, t, whole, self._slope, self._forces)
+        full_state[1 : row - 1], full_state[row + 1 : 2 * row - 1] = inner[: row - 2], inner[row - 2 :]
+        evaluate(self.scaled.slots, self.scaled.beta, t, full_state, self._slope, self._forces)
         return self.inner(self._slope)
 
     def overlaps(self, t: float, inner: np.ndarray) -> np.ndarray:
@@ -125,43 +125,44 @@ def _period(motion: ScipyMotion, solver: Solver, tolerance: float, inner: np.nda
         return make(motion, t, state, end, max_step=period / LEAST_STEPS_PER_PERIOD, atol=tolerance,
                     rtol=max(tolerance, _LEAST_RTOL))
 
-    one, event = start(0.0, inner, period), period
+    stepper, event = start(0.0, inner, period), period
     while t < period:
         if motion.stop:
             raise Cancelled
-        before = one.y.copy()
-        one.step()
-        if one.status == "failed":
+        before = stepper.y.copy()
+        stepper.step()
+        if stepper.status == "failed":
             raise ComputationError(f"SciPy's {solver.name} gave up after {t / period:.3g} of a drive period at "
                                    f"tolerance {tolerance:g}.", "solver-gave-up")
-        dense = one.dense_output()
-        if located and one.t_bound == period:
-            event = _first_event(motion, dense, one, before)
-            if event < one.t:
-                one = start(t, before, event)
+        dense = stepper.dense_output()
+        if located and stepper.t_bound == period:
+            event = _first_event(motion, dense, stepper, before)
+            if event < stepper.t:
+                stepper = start(t, before, event)
                 continue
-        inside = (times > t) & (times <= one.t)
+        inside = (times > t) & (times <= stepper.t)
         if inside.any():
             rows[inside] = dense(times[inside])[:n].T
-        t, inner = one.t, one.y
-        if one.status == "finished" and t < period:
-            one = start(t, inner, period)
+        t, inner = stepper.t, stepper.y
+        if stepper.status == "finished" and t < period:
+            stepper = start(t, inner, period)
     return inner, rows
 
 
-def _first_event(motion: ScipyMotion, dense: Any, one: Any, before: np.ndarray) -> float:
+def _first_event(motion: ScipyMotion, dense: Any, stepper: Any, before: np.ndarray) -> float:
     """Scaled time at which the first contact opens or closes inside the step just taken; infinite where none does.
 
-    `dense` is the step's interpolant, `one` the solver after it, and `before` the state (2N,) where it began.
+    `dense` is the step's interpolant, `stepper` the solver after it, and `before` the state (2N,) where it began.
     """
     from scipy.optimize import brentq
 
-    changed = (motion.overlaps(one.t_old, before) > 0.0) != (motion.overlaps(one.t, one.y) > 0.0)
+    changed = (motion.overlaps(stepper.t_old, before) > 0.0) != (motion.overlaps(stepper.t, stepper.y) > 0.0)
     near = _SAME_EVENT * motion.scaled.period
     first = np.inf
     for c in np.flatnonzero(changed):
-        if (motion.overlaps(one.t_old + near, dense(one.t_old + near))[c] > 0.0) == (
-                motion.overlaps(one.t, one.y)[c] > 0.0):
+        if (motion.overlaps(stepper.t_old + near, dense(stepper.t_old + near))[c] > 0.0) == (
+                motion.overlaps(stepper.t, stepper.y)[c] > 0.0):
             continue
-        first = min(first, brentq(lambda t, c=c: motion.overlaps(t, dense(t))[c], one.t_old + near, one.t, xtol=1e-14))
+        first = min(first, brentq(lambda t, c=c: motion.overlaps(t, dense(t))[c], stepper.t_old + near, stepper.t,
+                                  xtol=1e-14))
     return first

@@ -104,7 +104,7 @@ def work_precision(scene: Scene, stop: Stop | None = None, progress: Callable[[f
         nonlocal done
         done += 1
         if report is not None:
-            report(found)
+            report(comparison)
         if progress is not None:
             progress(done / total)
         if pause is not None:
@@ -112,26 +112,26 @@ def work_precision(scene: Scene, stop: Stop | None = None, progress: Callable[[f
         if stop:
             raise Cancelled
 
-    found = WorkPrecision(scene, f"dop853 with located events, tolerance {_REFERENCE.tolerance:g}",
+    comparison = WorkPrecision(scene, f"dop853 with located events, tolerance {_REFERENCE.tolerance:g}",
                           f"SciPy DOP853, started anew at contact events, tolerance {_SECOND[1]:g}")
     compile_methods(scene.evolve(f=max(scene.f, 1000.0)))  # else a method's first row would include compiling
     exact = _within("The reference", stop, _REFERENCE_LIMIT, lambda stop: _ours(scene, _REFERENCE, stop)).moved
     advance()
-    found.lesson = lesson(scene, stop)
+    comparison.lesson = lesson(scene, stop)
     advance()
     for choice in todo:
-        found.rows.append(_row(scene, choice, exact, stop))
+        comparison.rows.append(_row(scene, choice, exact, stop))
         advance()
     for place, choice in enumerate(todo):
-        found.rows[place] = _faster(found.rows[place], scene, choice, exact, stop)
+        comparison.rows[place] = _faster(comparison.rows[place], scene, choice, exact, stop)
         advance()
     try:
         other = _within("It", stop, _REFERENCE_LIMIT, lambda stop: _scipys(scene, *_SECOND, stop, located=True))
-        found.agreement = _distance(other.moved, exact)
+        comparison.agreement = _distance(other.moved, exact)
     except ComputationError as problem:
-        found.disagreement = problem.sentence
+        comparison.disagreement = problem.sentence
     advance()
-    return found
+    return comparison
 
 
 def compile_methods(scene: Scene) -> None:

@@ -179,9 +179,9 @@ def pulse(run: Run) -> Pulse:
         raise BadInput(f"A pulse is followed over at least three beads, and the chain has {scene.N}.")
     contacts = np.arange(1, scene.N)
     firsts = [_first_maximum(run, c) for c in range(1, scene.N + 1)]
-    found = np.array([_passing(run, int(c), firsts) for c in contacts])
-    time, force, half, arrived = found[:, 0].T
-    time_change, force_change, half_change, arrival_change = np.abs(found[:, 1] - found[:, 0]).T
+    passing = np.array([_passing(run, int(c), firsts) for c in contacts])
+    time, force, half, arrived = passing[:, 0].T
+    time_change, force_change, half_change, arrival_change = np.abs(passing[:, 1] - passing[:, 0]).T
     late = _ERROR_OVER_CHANGE * arrival_change
     if len(backwards := np.flatnonzero(time[:-2] >= time[2:])):
         c = int(contacts[backwards[0]])

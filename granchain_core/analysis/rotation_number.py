@@ -238,18 +238,18 @@ def _recorded(engine: Engine, periods: int, reported: Callable[[float], None]) -
     """The rotation number of the last record, and its length: the first has `periods`, each other one twice as many."""
     for number in range(_MOST_RECORDS):
         length = periods << number
-        found = winding_of(_strobes(engine, length))
+        winding = winding_of(_strobes(engine, length))
         reported((2.0 ** (number + 1) - 1.0) / (2.0**_MOST_RECORDS - 1.0))
-        if found.error is not None and found.error < _SMALL_ERROR:
+        if winding.error is not None and winding.error < _SMALL_ERROR:
             break
-    return found, length
+    return winding, length
 
 
 def _strobes(engine: Engine, periods: int) -> np.ndarray:
     """The strobes (P, 2, n) of the next periods, of all beads or of at most `_MOST_BEADS` of a longer chain."""
-    every = -(-engine.scaled.beads // _MOST_BEADS)
+    stride = -(-engine.scaled.beads // _MOST_BEADS)
     parts = [min(_PERIODS_AT_ONCE, periods - first) for first in range(0, periods, _PERIODS_AT_ONCE)]
-    return np.concatenate([engine.periods(part, watch=False)[0][1:, :, ::every] for part in parts])
+    return np.concatenate([engine.periods(part, watch=False)[0][1:, :, ::stride] for part in parts])
 
 
 def _compared(longer: Winding, shorter: Winding) -> tuple[Winding, float | None]:
@@ -264,7 +264,7 @@ def _compared(longer: Winding, shorter: Winding) -> tuple[Winding, float | None]
     return shorter, IRREGULAR * folded(longer.value - shorter.value)
 
 
-def _result(scene: Scene, regime: Regime, periods: int, found: Winding, step_error: float | None) -> RotationNumber:
-    convergence = np.full((LENGTHS, 3), np.nan) if found.convergence is None else found.convergence
-    return RotationNumber(scene, regime, found.value, found.error, step_error, found.curves, periods,
-                          found.projections, found.reason, convergence)
+def _result(scene: Scene, regime: Regime, periods: int, winding: Winding, step_error: float | None) -> RotationNumber:
+    convergence = np.full((LENGTHS, 3), np.nan) if winding.convergence is None else winding.convergence
+    return RotationNumber(scene, regime, winding.value, winding.error, step_error, winding.curves, periods,
+                          winding.projections, winding.reason, convergence)

@@ -83,10 +83,10 @@ def basic_frequency(lines: np.ndarray, periods: int) -> Basic | None:
     the curve: then the basic frequency is one of (ν₁ + j)/k with j = 0 … k − 1.
     """
     for k in range(1, _LARGEST_STRONGEST + 1):
-        found = [Basic((lines[0] + j) / k, multiples) for j in range(k)
+        candidates = [Basic((lines[0] + j) / k, multiples) for j in range(k)
                  if (multiples := _multiples(lines, (lines[0] + j) / k, periods)) and math.gcd(*multiples) == 1]
-        if found:
-            return min(found, key=lambda basic: max(map(abs, basic.multiples)))
+        if candidates:
+            return min(candidates, key=lambda basic: max(map(abs, basic.multiples)))
     return None
 
 

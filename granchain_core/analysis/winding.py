@@ -120,16 +120,16 @@ def _on_one_curve(embedded: np.ndarray, lines: np.ndarray, curves: int) -> Windi
     increments = [(steps, multiple) for steps, multiple in _projections(embedded, lines, basic) if steps is not None]
     if len(increments) < 2:
         return _none(curves, "no two projections were found in which they go round a closed curve")
-    found = [_rotation(steps, multiple, basic.frequency) for steps, multiple in increments]
-    few = _passes(found[0], count)
+    rotations = [_rotation(steps, multiple, basic.frequency) for steps, multiple in increments]
+    few = _passes(rotations[0], count)
     if few is not None:
-        return _none(curves, f"the rotation number is within {abs(folded(found[0]) - few):.1e} of {few}, and the "
+        return _none(curves, f"the rotation number is within {abs(folded(rotations[0]) - few):.1e} of {few}, and the "
                              "record is too short to show that the motion is not locked there")
-    errors = [abs(other - found[0]) for other in (*found[1:], basic.frequency)]
+    errors = [abs(other - rotations[0]) for other in (*rotations[1:], basic.frequency)]
     steps, multiple = increments[0]
     convergence = np.array([_at_length(steps[: count >> k], multiple, basic.frequency) for k in range(LENGTHS)][::-1])
     error = max(_STATED * max(*errors, convergence[-1, 2]), _ROUNDING)
-    return Winding(folded(found[0]), float(error), curves, "", len(found), convergence)
+    return Winding(folded(rotations[0]), float(error), curves, "", len(rotations), convergence)
 
 
 def _projections(embedded: np.ndarray, lines: np.ndarray, basic: Basic) -> list[tuple[np.ndarray | None, int]]:
@@ -172,8 +172,8 @@ def _at_length(steps: np.ndarray, multiple: int, near: float) -> tuple[float, fl
     """States, rotation number, and the largest difference of the first, middle and last half."""
     count = len(steps)
     halves = [_rotation(steps[int(a * count) : int(b * count)], multiple, near) for a, b in _PARTS]
-    whole = _rotation(steps, multiple, near)
-    return count, folded(whole), max(max(halves) - min(halves), *(abs(half - whole) for half in halves))
+    full = _rotation(steps, multiple, near)
+    return count, folded(full), max(max(halves) - min(halves), *(abs(half - full) for half in halves))
 
 
 def _passes(rotation: float, states: int) -> Fraction | None:

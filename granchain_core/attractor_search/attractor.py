@@ -123,8 +123,8 @@ class Attractors(list[Attractor], Labelled):
     scene: Scene
     failed: list[Origin]
 
-    def __init__(self, chain: Scene, found: Iterable[Attractor] = (), failed: Iterable[Origin] = ()) -> None:
-        super().__init__(found)
+    def __init__(self, chain: Scene, listed: Iterable[Attractor] = (), failed: Iterable[Origin] = ()) -> None:
+        super().__init__(listed)
         self.scene = chain
         self.failed = list(failed)
 
@@ -146,31 +146,31 @@ class Attractors(list[Attractor], Labelled):
         return as_text(self.heading(), self.summary())
 
 
-def attractor_methods(scene: Scene, found: Iterable[Attractor]) -> str:
+def attractor_methods(scene: Scene, listed: Iterable[Attractor]) -> str:
     """The methods behind the attractors of `scene` in words, for their provenance."""
-    has_orbits = any(one.orbit is not None for one in found)
+    has_orbits = any(one.orbit is not None for one in listed)
     return settling_methods(scene, "start") + (f"; orbits by {FLOW_METHOD}" if has_orbits else "")
 
 
-def attractors_table(scene: Scene, found: Sequence[Attractor]) -> Table:
+def attractors_table(scene: Scene, listed: Sequence[Attractor]) -> Table:
     """Steady states as a table."""
     along = ("attractor",)
-    forces = np.array([[getattr(one, name) for name in MAXIMA] for one in found]).reshape(-1, 3)
-    errors = np.array([one.force_errors.row for one in found]).reshape(-1, 3)
-    stable = np.array([-1 if one.stable is None else int(one.stable) for one in found], dtype=np.int8)
-    starts = np.array([", ".join(origin.name for origin in one.origins) for one in found], dtype=object)
-    states = np.array([[one.state.displacement, one.state.velocity] for one in found]).reshape(-1, 2, scene.N)
+    forces = np.array([[getattr(one, name) for name in MAXIMA] for one in listed]).reshape(-1, 3)
+    errors = np.array([one.force_errors.row for one in listed]).reshape(-1, 3)
+    stable = np.array([-1 if one.stable is None else int(one.stable) for one in listed], dtype=np.int8)
+    starts = np.array([", ".join(origin.name for origin in one.origins) for one in listed], dtype=object)
+    states = np.array([[one.state.displacement, one.state.velocity] for one in listed]).reshape(-1, 2, scene.N)
     return Table("attractors", {
-        **axis("attractor", np.arange(1, len(found) + 1), "1", "number of the steady state"), **bead_axis(scene.N)}, {
+        **axis("attractor", np.arange(1, len(listed) + 1), "1", "number of the steady state"), **bead_axis(scene.N)}, {
         **force_columns(forces, along), **error_columns(errors, along),
-        **regime_columns([one.regime for one in found], "attractor"),
-        **evidence_columns([one.regime for one in found], "attractor"),
+        **regime_columns([one.regime for one in listed], "attractor"),
+        **evidence_columns([one.regime for one in listed], "attractor"),
         "stable": Column(stable, along, "1", "1 if no multiplier of its orbit is outside, 0 if one is, -1 unknown"),
-        "share": Column(np.array([or_nan(one.share) for one in found]), along, "1",
+        "share": Column(np.array([or_nan(one.share) for one in listed]), along, "1",
                         "fraction of the random states, or of a plane's starts, that end here"),
-        "share_error": Column(np.array([or_nan(one.share_error) for one in found]), along, "1",
+        "share_error": Column(np.array([or_nan(one.share_error) for one in listed]), along, "1",
                               "standard error of the share"),
-        "share_of": Column(np.array([one.share_of for one in found], dtype=object), along, "",
+        "share_of": Column(np.array([one.share_of for one in listed], dtype=object), along, "",
                            "which starts the share is a fraction of"),
         "starts": Column(starts, along, "", "starts that end here"),
         **state_columns(states[:, 0], states[:, 1], ("attractor", "bead"))})
@@ -178,9 +178,9 @@ def attractors_table(scene: Scene, found: Sequence[Attractor]) -> Table:
 
 def listing(attractors_found: Sequence[Attractor]) -> Iterator[str]:
     """The attractors in words, one line each."""
-    for one in attractors_found:
-        share = "" if one.share is None else f"{one.share_words} of {one.share_of}; "
-        yield f"{one.regime.sentence}; {one.max_output_force:.4g} N, {share}{len(one.origins)} starts"
+    for attractor in attractors_found:
+        share = "" if attractor.share is None else f"{attractor.share_words} of {attractor.share_of}; "
+        yield f"{attractor.regime.sentence}; {attractor.max_output_force:.4g} N, {share}{len(attractor.origins)} starts"
 
 
 def failed_sentence(failed: Sequence[Origin]) -> list[str]:
@@ -188,5 +188,5 @@ def failed_sentence(failed: Sequence[Origin]) -> list[str]:
     if not failed:
         return []
     names = ", ".join(origin.name for origin in failed[:_NAMED])
-    more = f" and {len(failed) - _NAMED} more" if len(failed) > _NAMED else ""
-    return [f"{len(failed)} start{'' if len(failed) == 1 else 's'} failed: {names}{more}"]
+    others = f" and {len(failed) - _NAMED} more" if len(failed) > _NAMED else ""
+    return [f"{len(failed)} start{'' if len(failed) == 1 else 's'} failed: {names}{others}"]

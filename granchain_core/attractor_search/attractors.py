@@ -154,10 +154,10 @@ def _beside(group: list[Found], stop: Stop | None) -> Iterator[Start]:
     orbit = group[0].orbit
     assert orbit is not None
     u, v = orbit.state.displacement, orbit.state.velocity
-    for one in group:
-        shape = np.random.default_rng(one.result.number).standard_normal((2, len(u)))
+    for member in group:
+        shape = np.random.default_rng(member.result.number).standard_normal((2, len(u)))
         near = State(u + _DEPARTURE * np.abs(u).max() * shape[0], v + _DEPARTURE * np.abs(v).max() * shape[1])
-        yield Start(orbit.scene, _run_on(orbit.scene, near, _DEPARTURE_PERIODS, stop)[0], one.result.number)
+        yield Start(orbit.scene, _run_on(orbit.scene, near, _DEPARTURE_PERIODS, stop)[0], member.result.number)
 
 
 def _later(group: list[Found], stop: Stop | None) -> Iterator[Start]:
@@ -167,12 +167,12 @@ def _later(group: list[Found], stop: Stop | None) -> Iterator[Start]:
         yield Start(result.scene, _run_on(result.scene, result.state, _LATER_PERIODS, stop)[0], result.number)
 
 
-def _locks(one: Found, stop: Stop | None) -> bool:
+def _locks(candidate: Found, stop: Stop | None) -> bool:
     """Whether a motion that does not repeat comes to an orbit after all, within `_LATER_PERIODS`."""
-    if one.result.regime.period is not None:
+    if candidate.result.regime.period is not None:
         return False
-    _, strobes, _ = _run_on(one.result.scene, one.result.state, _LATER_PERIODS, stop)
-    rounding = rounding_of(following_setting(one.result.scene.cuts_tension))
+    _, strobes, _ = _run_on(candidate.result.scene, candidate.result.state, _LATER_PERIODS, stop)
+    rounding = rounding_of(following_setting(candidate.result.scene.cuts_tension))
     return find_period(strobes[-REMEMBERED:], rounding=rounding).period is not None
 
 
@@ -222,7 +222,7 @@ def _run_on(scene: Scene, state: State, periods: int, stop: Stop | None) -> tupl
 
 def or_infinite(error: float | None) -> float:
     """A stated error; infinity where none is stated, which is never the least."""
-    return np.inf if error is None else error
+    return math.inf if error is None else error
 
 
 def _attractor(group: list[Found], origins: list[Origin]) -> Attractor:

@@ -122,24 +122,24 @@ def _join(groups: list[list[Found]], new: list[Found]) -> None:
     groups.append(new)
 
 
-def _polished(one: Found) -> Found:
+def _polished(candidate: Found) -> Found:
     """The result on its converged orbit, if Newton's method ends on the orbit that it began at."""
-    period = one.result.regime.period
-    if period is None or one.orbit is not None:
-        return one
+    period = candidate.result.regime.period
+    if period is None or candidate.orbit is not None:
+        return candidate
     try:
-        orbit = periodic_orbit(one.result.scene, period, one.result.state)
+        orbit = periodic_orbit(candidate.result.scene, period, candidate.result.state)
         section = _strobes(orbit.scene, orbit.state, period, _DOP853_SETTING)
         shortest = least_period_of(orbit)
         if shortest < period:  # in the batch a slow approach with alternating sign looked like twice the period
-            orbit = periodic_orbit(one.result.scene, shortest, orbit.state)
+            orbit = periodic_orbit(candidate.result.scene, shortest, orbit.state)
     except (BadInput, ComputationError):  # a scene that cuts tension has no converged orbits
-        return one
+        return candidate
     # states are known less well than forces; a stable orbit that is as near as this is the one the motion settled on
-    most = _LARGEST_DIFFERENCE if orbit.stable else 10.0 * one.tolerance + 1e-6
-    if _distance(section, one.section) > most:
-        return one
-    result = replace(one.result, regime=replace(one.result.regime, period=shortest))
+    most = _LARGEST_DIFFERENCE if orbit.stable else 10.0 * candidate.tolerance + 1e-6
+    if _distance(section, candidate.section) > most:
+        return candidate
+    result = replace(candidate.result, regime=replace(candidate.result.regime, period=shortest))
     return Found(result, section[:shortest], orbit)
 
 
@@ -149,10 +149,10 @@ def _same(a: Found, b: Found) -> bool:
     if a.result.regime.period is not None:
         return _distance(a.section, b.section) <= a.tolerance + b.tolerance
     for states in _STATES_OF_SECTION:
-        one, other = a.section_of(states), b.section_of(states)
-        scale = _scale(one, other)
-        apart = max(_to_nearest(one, other, scale), _to_nearest(other, one, scale))
-        if apart <= _SECTION_FACTOR * max(_own(one, scale), _own(other, scale)):
+        first, second = a.section_of(states), b.section_of(states)
+        scale = _scale(first, second)
+        apart = max(_to_nearest(first, second, scale), _to_nearest(second, first, scale))
+        if apart <= _SECTION_FACTOR * max(_own(first, scale), _own(second, scale)):
             return True
     return False
 

@@ -120,10 +120,10 @@ class _Branch:
             off = np.append(flow.end - X[:-1], direction @ (X - guess))
             return -np.linalg.solve(_bordered(flow.derivative, slope, direction), off)
 
-        found = iterate(self.map, step, guess)
-        if not found.converged:
+        newton = iterate(self.map, step, guess)
+        if not newton.converged:
             raise ComputationError("Newton's method lost the branch.", "no-convergence")
-        return found.z, found.flow.derivative
+        return newton.z, newton.flow.derivative
 
     @staticmethod
     def tangent(derivative: np.ndarray, slope: np.ndarray, along: np.ndarray) -> np.ndarray:
@@ -205,11 +205,11 @@ def _nearest(branch: _Branch, kind: str, guess: np.ndarray, along: np.ndarray, y
         for _ in range(_MOST_SECANTS):
             if _met(mu, kind):
                 return BifurcationPoint(float(before[-1]) * branch.unit, value_of(branch.scene, y), mu, before[:-1])
-            X, there, mu = _advanced(branch, kind, before, step, slope)
-            gain = condition - there
-            factor = there / gain if gain != 0.0 else _LONGEST_SECANT
+            X, condition_ahead, mu = _advanced(branch, kind, before, step, slope)
+            gain = condition - condition_ahead
+            factor = condition_ahead / gain if gain != 0.0 else _LONGEST_SECANT
             step = (X - before) * float(np.clip(factor, -_LONGEST_SECANT, _LONGEST_SECANT))
-            before, condition = X, there
+            before, condition = X, condition_ahead
     except (np.linalg.LinAlgError, BadInput) as problem:
         raise ComputationError(f"The branch could not be followed: {problem}.", "no-convergence") from None
     raise ComputationError(f"No {kind.replace('_', ' ')} was found on this branch near {branch.knob} = "
@@ -248,7 +248,7 @@ def follow_curve(scene: Scene, kind: str, state: State | np.ndarray, values: Ite
     """`points_of_curve`, and why the curve ends at its least and at its largest y, each one of `CURVE_ENDS`."""
     first = bifurcation_point(scene, kind, state, period, x, y, stop)
     wanted = sorted({float(QUANTITIES[y].check(value)) for value in values} - {first.y})
-    found = [first]
+    listed = [first]
     if on_point is not None:
         on_point(first)
     ends = []
@@ -264,41 +264,42 @@ def follow_curve(scene: Scene, kind: str, state: State | np.ndarray, values: Ite
             points.append(following)
             if on_point is not None:
                 on_point(following)
-        found += points[1:]
+        listed += points[1:]
         ends.append(ended)
-    return sorted(found, key=lambda point: point.y), ends[0], ends[1]
+    return sorted(listed, key=lambda point: point.y), ends[0], ends[1]
 
 
 def _follow(scene: Scene, kind: str, points: list[BifurcationPoint], value: float, period: int, x: str, y: str,
             stop: Stop | None) -> BifurcationPoint | str:
-    """The curve's point at y = `value`, by smaller steps where one is too large; where the curve ends, why."""
-    way, part = points[-2:], 1.0
-    whole = abs(value - way[-1].y)
-    while way[-1].y != value:
-        end = value if abs(value - way[-1].y) <= part * whole else way[-1].y + part * (value - points[-1].y)
-        following = _stepped(scene, kind, way, end, period, x, y, stop)
+    """The curve's point at y = `value`, by smaller steps where one is too large; the reason where the curve ends."""
+    last_two, part = points[-2:], 1.0
+    distance = abs(value - last_two[-1].y)
+    while last_two[-1].y != value:
+        y_now = last_two[-1].y
+        end = value if abs(value - y_now) <= part * distance else y_now + part * (value - points[-1].y)
+        following = _stepped(scene, kind, last_two, end, period, x, y, stop)
         if isinstance(following, BifurcationPoint):
-            way = [way[-1], following]
+            last_two = [last_two[-1], following]
             continue
         part *= 0.5
         if part < _LEAST_FRACTION:
             return following
-    return way[-1]
+    return last_two[-1]
 
 
-def _stepped(scene: Scene, kind: str, way: list[BifurcationPoint], end: float, period: int, x: str, y: str,
+def _stepped(scene: Scene, kind: str, last_two: list[BifurcationPoint], end: float, period: int, x: str, y: str,
              stop: Stop | None) -> BifurcationPoint | str:
-    """The point at y = `end` by one step from the last two; if none continues smoothly, why."""
-    guess, state = _extrapolated(way, end, x, y)
+    """The point at y = `end` by one step from the last two; the reason if no point continues the curve smoothly."""
+    guess, state = _extrapolated(last_two, end, x, y)
     try:
-        branch = _Branch(scene.evolve(**{x: guess, y: end}), x, guess, period, stop, way[-1].multiplier)
+        branch = _Branch(scene.evolve(**{x: guess, y: end}), x, guess, period, stop, last_two[-1].multiplier)
         along = _inwards(branch, state) if kind == "fold" else np.append(np.zeros(len(state)), 1.0)
-        found = _nearest(branch, kind, np.append(state, 1.0), along, y)
+        point = _nearest(branch, kind, np.append(state, 1.0), along, y)
     except ComputationError as problem:
         return MULTIPLIER_LOST if problem.status == "no-point" else BRANCH_LOST
     except BadInput:
         return BRANCH_LOST
-    return found if _continues(way[-1], found) else ANOTHER_CURVE
+    return point if _continues(last_two[-1], point) else ANOTHER_CURVE
 
 
 def _inwards(branch: _Branch, state: np.ndarray) -> np.ndarray:
@@ -311,16 +312,16 @@ def _inwards(branch: _Branch, state: np.ndarray) -> np.ndarray:
     return np.append(rows[-1], 0.0)
 
 
-def _extrapolated(way: list[BifurcationPoint], y: float, x_knob: str, y_knob: str) -> tuple[float, np.ndarray]:
+def _extrapolated(last_two: list[BifurcationPoint], y: float, x_knob: str, y_knob: str) -> tuple[float, np.ndarray]:
     """Knob x and state at y: on the line through the last two points; from one alone by f ∝ A0^{1/4}, else unchanged.
 
     (A0, f) → (s A0, s^{1/4} f) leaves the scaled orbit unchanged where D and k go along, and nearly where they do not.
     The line is one in logarithms, but on the way to or from a knob that is 0.
     """
-    if len(way) == 1:
+    if len(last_two) == 1:
         power = {("f", "A0"): RATE_POWER, ("A0", "f"): 1.0 / RATE_POWER}.get((x_knob, y_knob), 0.0)
-        return way[0].x * (y / way[0].y) ** power if y > 0.0 else way[0].x, way[0].state
-    a, b = way[-2:]
+        return last_two[0].x * (y / last_two[0].y) ** power if y > 0.0 else last_two[0].x, last_two[0].state
+    a, b = last_two[-2:]
     if min(y, a.y, b.y) <= 0.0:
         part = (y - b.y) / (b.y - a.y)
         return float(b.x + part * (b.x - a.x)), b.state + part * (b.state - a.state)

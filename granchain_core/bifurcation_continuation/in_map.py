@@ -68,10 +68,11 @@ class BifurcationCurve:
         for knob, values in ((x, [point.x for point in self.points]), (y, [point.y for point in self.points])):
             unit = QUANTITIES[knob].unit
             ends.append(f"{knob} {min(values):.7g} to {max(values):.7g}{'' if unit in ('', '1') else ' ' + unit}")
-        said = f"{self.kind.replace('_', ' ')} of period {self.period}: {', '.join(ends)}, {len(self.points)} points"
+        description = (f"{self.kind.replace('_', ' ')} of period {self.period}: {', '.join(ends)}, "
+                       f"{len(self.points)} points")
         early = [f"ends at the {side} {y}: {END_WORDS[why]}" for side, why in
                  (("least", self.ended_low), ("largest", self.ended_high)) if why not in ("", REACHED)]
-        return "; ".join([said, *early])
+        return "; ".join([description, *early])
 
 
 @dataclass(frozen=True)
@@ -84,8 +85,8 @@ class _Pair:
     period: int
 
 
-def bifurcation_curves(found: ParameterMap, rows: Iterable[int] | None = None, values: Iterable[float] | None = None,
-                       stop: Stop | None = None,
+def bifurcation_curves(parameter_map: ParameterMap, rows: Iterable[int] | None = None,
+                       values: Iterable[float] | None = None, stop: Stop | None = None,
                        on_curve: Callable[[BifurcationCurve], None] | None = None) -> list[BifurcationCurve]:
     """The bifurcation curves in a parameter map: folds, period doublings and Neimark–Sacker points over its two knobs.
 
@@ -95,7 +96,7 @@ def bifurcation_curves(found: ParameterMap, rows: Iterable[int] | None = None, v
 
     Parameters
     ----------
-    found : ParameterMap
+    parameter_map : ParameterMap
         The parameter map.
     rows : iterable of int, optional
         The rows in which neighbours are compared, from 0; the middle one if not given.
@@ -126,7 +127,7 @@ def bifurcation_curves(found: ParameterMap, rows: Iterable[int] | None = None, v
     >>> [f"{point.x:.1f} Hz, {point.multiplier.real:.3f}" for point in curve.points]
     ['1842.5 Hz, -1.000', '1882.4 Hz, -1.000']
     """
-    grid = found.grid
+    grid = parameter_map.grid
     refuse_cut(grid.scene)
     chosen = [grid.shape[0] // 2] if rows is None else list(rows)
     if any(not 0 <= row < grid.shape[0] for row in chosen):
@@ -134,9 +135,9 @@ def bifurcation_curves(found: ParameterMap, rows: Iterable[int] | None = None, v
     heights = list(grid.y.values if values is None else values)
     curves: list[BifurcationCurve] = []
     for row in chosen:
-        for pair in _pairs(found, row):
-            kind, point = _between(found, pair, stop)
-            if point is None or any(_lies_on(found, point, kind, pair.period, curve) for curve in curves):
+        for pair in _pairs(parameter_map, row):
+            kind, point = _between(parameter_map, pair, stop)
+            if point is None or any(_lies_on(parameter_map, point, kind, pair.period, curve) for curve in curves):
                 continue
             scene = grid.cell(pair.inside).evolve(**{grid.x.knob: point.x})
             try:
@@ -149,47 +150,48 @@ def bifurcation_curves(found: ParameterMap, rows: Iterable[int] | None = None, v
     return curves
 
 
-def _pairs(found: ParameterMap, row: int) -> Iterator[_Pair]:
+def _pairs(parameter_map: ParameterMap, row: int) -> Iterator[_Pair]:
     """Neighbours in a row of which one is periodic and the other something else."""
-    width = found.grid.shape[1]
-    names = np.array(CELL_REGIMES)[found.cells["regime"]]
+    width = parameter_map.grid.shape[1]
+    regimes, periods = parameter_map.cells["regime"], parameter_map.cells["period"]
+    names = np.array(CELL_REGIMES)[regimes]
     for column in range(width - 1):
         numbers = row * width + column, row * width + column + 1
         for inside, outside in (numbers, numbers[::-1]):
-            period, other = int(found.cells["period"][inside]), int(found.cells["period"][outside])
-            if period == 0 or other == period or found.cells["regime"][outside] < 0:
+            period, neighbour_period = int(periods[inside]), int(periods[outside])
+            if period == 0 or neighbour_period == period or regimes[outside] < 0:
                 continue
-            kinds = _kinds(period, other, str(names[outside]))
+            kinds = _kinds(period, neighbour_period, str(names[outside]))
             if kinds:
                 yield _Pair(inside, outside, kinds, period)
 
 
-def _kinds(period: int, other: int, regime: str) -> tuple[str, ...]:
+def _kinds(period: int, neighbour_period: int, regime: str) -> tuple[str, ...]:
     """What to try between an orbit of `period` and a neighbour of this regime and period, 0 where it has none."""
-    if regime in ("unsettled", "failed") or period == 2 * other:
+    if regime in ("unsettled", "failed") or period == 2 * neighbour_period:
         return ()
     if regime == "quasi-periodic":
         return ("neimark_sacker",)
-    if other == 0:
+    if neighbour_period == 0:
         return ("period_doubling", "neimark_sacker", "fold")
-    if other == 2 * period:
+    if neighbour_period == 2 * period:
         return ("period_doubling",)
-    return ("period_doubling", "fold") if other % period == 0 else ("fold",)
+    return ("period_doubling", "fold") if neighbour_period % period == 0 else ("fold",)
 
 
-def _between(found: ParameterMap, pair: _Pair, stop: Stop | None) -> tuple[str, BifurcationPoint | None]:
+def _between(parameter_map: ParameterMap, pair: _Pair, stop: Stop | None) -> tuple[str, BifurcationPoint | None]:
     """The first of the pair's kinds that is found between its cells, and the point; None where there is none."""
     point = None
     for kind in pair.kinds:
-        point = _point_between(found, pair, kind, stop)
+        point = _point_between(parameter_map, pair, kind, stop)
         if point is not None:
             return kind, point
     return pair.kinds[-1], None
 
 
-def _point_between(found: ParameterMap, pair: _Pair, kind: str, stop: Stop | None) -> BifurcationPoint | None:
+def _point_between(parameter_map: ParameterMap, pair: _Pair, kind: str, stop: Stop | None) -> BifurcationPoint | None:
     """The point of one kind, from the orbit that comes nearest to it; None where there is none."""
-    grid = found.grid
+    grid = parameter_map.grid
     columns = [number % grid.shape[1] for number in (pair.inside, pair.outside)]
     a, b = (grid.x.values[column] for column in columns)
     best, nearest = None, np.inf
@@ -221,12 +223,13 @@ def _away(orbit: Orbit, kind: str) -> float:
     return float(np.abs(orbit.multipliers - (1.0 if kind == "fold" else -1.0)).min())
 
 
-def _lies_on(found: ParameterMap, point: BifurcationPoint, kind: str, period: int, curve: BifurcationCurve) -> bool:
+def _lies_on(parameter_map: ParameterMap, point: BifurcationPoint, kind: str, period: int,
+             curve: BifurcationCurve) -> bool:
     """Whether a point is on a curve found before; beyond the curve's ends it is not."""
-    rows = [one.y for one in curve.points]
+    rows = [known.y for known in curve.points]
     if (curve.kind, curve.period) != (kind, period) or not rows[0] <= point.y <= rows[-1]:
         return False
-    values = found.grid.x.values
+    values = parameter_map.grid.x.values
     cell = (values[-1] - values[0]) / (len(values) - 1)
-    there = np.interp(point.y, rows, [one.x for one in curve.points])
-    return bool(abs(there - point.x) <= _CELLS_APART * cell)
+    x_on_curve = np.interp(point.y, rows, [known.x for known in curve.points])
+    return bool(abs(x_on_curve - point.x) <= _CELLS_APART * cell)

@@ -75,11 +75,12 @@ class Kept(Generic[Piece]):
             raise self._denied(problem) from None
         if head is None:
             raise BadInput(f"{self._head_file} is damaged; delete {self.folder} to begin again.")
-        found = json.loads(head)
-        if (found.get("version"), found.get("digest")) != (_VERSION, self._head["digest"]):
-            raise BadInput(f"{self.folder} holds another {self._kind}, {found.get('words', 'of another version')}, not "
-                           f"{self._words} with these knobs; add --resume to the command line of that {self._kind}, "
-                           "give another --out, or delete the folder.")
+        header = json.loads(head)
+        if (header.get("version"), header.get("digest")) != (_VERSION, self._head["digest"]):
+            words = header.get("words", "of another version")
+            raise BadInput(f"{self.folder} holds another {self._kind}, {words}, not {self._words} with these knobs; "
+                           f"add --resume to the command line of that {self._kind}, give another --out, or delete the "
+                           "folder.")
 
     def blocks(self) -> Iterator[bytes]:
         """The contents of the blocks that are whole, in the order in which they were written."""

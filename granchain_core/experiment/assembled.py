@@ -33,10 +33,10 @@ class Columns:
 
     def one(self, name: str) -> np.ndarray:
         """The only column of a quantity."""
-        found = self.values[name]
-        if len(found) != 1:
-            raise BadInput(f"{len(found)} columns hold the {name.replace('_', ' ')}; name one of them.")
-        return np.asarray(found[0])
+        columns = self.values[name]
+        if len(columns) != 1:
+            raise BadInput(f"{len(columns)} columns hold the {name.replace('_', ' ')}; name one of them.")
+        return np.asarray(columns[0])
 
     def check(self, wrong: np.ndarray, sentence: str, values: np.ndarray | None = None) -> None:
         """Refuse the first row in which something is wrong."""
@@ -48,14 +48,14 @@ class Columns:
 
 def kinds_of(quantities: Sequence[str]) -> list[str]:
     """What a file with these quantities can be, the likeliest first."""
-    there = set(quantities)
-    found = []
-    if "frequency" in there and "time" not in there:
-        found += ["curve"] if there & {"force", "output_force"} else []
-        found += ["shaker"] if there & set(_MOVES) else []
-    if "time" in there and "frequency" not in there and there & set(_IN_TIME):
-        found.append("series")
-    return found
+    present = set(quantities)
+    kinds = []
+    if "frequency" in present and "time" not in present:
+        kinds += ["curve"] if present & {"force", "output_force"} else []
+        kinds += ["shaker"] if present & set(_MOVES) else []
+    if "time" in present and "frequency" not in present and present & set(_IN_TIME):
+        kinds.append("series")
+    return kinds
 
 
 def assembled(columns: Columns, kind: str, layout: str, source: str, note: str) -> Measured | Series | Shaker:
@@ -64,8 +64,10 @@ def assembled(columns: Columns, kind: str, layout: str, source: str, note: str) 
     named = ", ".join(f"{name.replace('_', ' ')} in {unit}" for name, unit in columns.units.items())
     layout = f"{named}; {layout}"
     made: dict[str, Callable[..., Measured | Series | Shaker]] = {"curve": _curve, "shaker": _shaker, "series": _series}
-    found = made[kind](columns, layout, about)
-    return replace(found, understood=f"{VIRTUAL}, nothing measured: {found.understood}") if found.virtual else found
+    measurement = made[kind](columns, layout, about)
+    if not measurement.virtual:
+        return measurement
+    return replace(measurement, understood=f"{VIRTUAL}, nothing measured: {measurement.understood}")
 
 
 def _curve(at: Columns, layout: str, about: dict[str, Any]) -> Measured:
@@ -114,8 +116,9 @@ def _series(at: Columns, layout: str, about: dict[str, Any]) -> Series:
     at.check(np.diff(time, prepend=-np.inf) <= 0.0, "time{} s does not come after that of the line before; times must "
              "ascend.", time)
     quantities = ", ".join(name.replace("_", " ") for name in at.values if name != "time")
-    found = {name: at.one(name) if at.has(name) else None for name in ("velocity", "input_force", "output_force")}
-    return Series(time - time[0], found["velocity"], found["input_force"], found["output_force"],
+    velocity, input_force, output_force = (at.one(name) if at.has(name) else None
+                                           for name in ("velocity", "input_force", "output_force"))
+    return Series(time - time[0], velocity, input_force, output_force,
                   f"{len(time)} samples over {time[-1] - time[0]:.4g} s of {quantities}; {layout}",
                   at.one("displacement") if at.has("displacement") else None, **about, lines=at.lines,
                   began=float(time[0]))

@@ -67,22 +67,22 @@ class Asked:
         return Unclear(Question(reason, ("columns",), tuple(self.guesses), self.rows))
 
 
-def chosen_columns(asked: Asked, answers: Answers, wanted: Sequence[str], numeric: Sequence[int],
+def chosen_columns(question: Asked, answers: Answers, wanted: Sequence[str], numeric: Sequence[int],
                    convention: Convention = NO_CONVENTION) -> Chosen:
     """The columns that are read. Raises `Unclear` where titles, answers and convention do not settle it."""
     if answers.columns:
-        return answered(asked, answers)
-    if not asked.titled and 2 <= len(asked.guesses) == len(numeric) <= len(convention.untitled):
+        return answered(question, answers)
+    if not question.titled and 2 <= len(question.guesses) == len(numeric) <= len(convention.untitled):
         return {name: [(place, convention.units[name])]
                 for place, name in enumerate(convention.untitled[: len(numeric)])}
-    if not asked.titled:
-        if len(numeric) in (2, 3) and not any(one.unit for one in asked.guesses):
+    if not question.titled:
+        if len(numeric) in (2, 3) and not any(one.unit for one in question.guesses):
             likely = [Guess(i + 1, "", quantity, unit) for i, (quantity, unit) in
-                      enumerate((("frequency", "Hz"), ("force", "N"), ("error", "N"))[: len(asked.guesses)])]
-            asked = replace(asked, guesses=likely)
-        raise asked.ask("The columns have no titles.")
-    found: Chosen = {}
-    for place, guess in enumerate(asked.guesses):
+                      enumerate((("frequency", "Hz"), ("force", "N"), ("error", "N"))[: len(question.guesses)])]
+            question = replace(question, guesses=likely)
+        raise question.ask("The columns have no titles.")
+    chosen: Chosen = {}
+    for place, guess in enumerate(question.guesses):
         if guess.quantity is None or place not in numeric:
             continue
         quantity = convention.same.get(guess.quantity, guess.quantity)
@@ -91,73 +91,73 @@ def chosen_columns(asked: Asked, answers: Answers, wanted: Sequence[str], numeri
             raise BadInput(f"The header says the {quantity.replace('_', ' ')} is in {guess.unit}, and {usual} was "
                            "asked for; they must agree.")
         known = guess.unit or ("" if bracketed_unit(guess.title) else usual)
-        found.setdefault(quantity, []).append((place, known))
-    kinds = [kind for kind in kinds_of(list(found)) if kind in wanted]
+        chosen.setdefault(quantity, []).append((place, known))
+    kinds = [kind for kind in kinds_of(list(chosen)) if kind in wanted]
     if not kinds:
-        raise asked.ask(_missing(asked, wanted))
+        raise question.ask(_missing(question, wanted))
     kind = kinds[0]
-    needed = _needed(kind, found)
-    found = {name: places for name, places in found.items() if name in needed}
-    for name, places in found.items():
-        _check_places(name, places, kind, asked)
-    return found
+    needed = _needed(kind, chosen)
+    chosen = {name: places for name, places in chosen.items() if name in needed}
+    for name, places in chosen.items():
+        _check_places(name, places, kind, question)
+    return chosen
 
 
-def _needed(kind: str, found: Chosen) -> tuple[str, ...]:
+def _needed(kind: str, chosen: Chosen) -> tuple[str, ...]:
     """The quantities that a kind uses of those that there are."""
     if kind == "curve":
-        return ("frequency", "force" if "force" in found else "output_force", "error")
+        return ("frequency", "force" if "force" in chosen else "output_force", "error")
     if kind == "shaker":
-        return ("frequency", next(one for one in ("displacement", "velocity", "acceleration") if one in found))
+        return ("frequency", next(one for one in ("displacement", "velocity", "acceleration") if one in chosen))
     return ("time", "velocity", "displacement", "input_force", "output_force")
 
 
-def _check_places(name: str, places: list[tuple[int, str]], kind: str, asked: Asked) -> None:
-    titles = [asked.guesses[place].title for place, _ in places]
+def _check_places(name: str, places: list[tuple[int, str]], kind: str, question: Asked) -> None:
+    titles = [question.guesses[place].title for place, _ in places]
     numbered = len(set(titles)) == len(titles) and all(re.search(r"\d", one) for one in titles)
     repeats = numbered and kind == "curve" and name in ("force", "output_force")
     if len(places) > 1 and not repeats:
-        raise asked.ask(f"The columns {' and '.join(map(repr, titles))} both say {name.replace('_', ' ')}.")
+        raise question.ask(f"The columns {' and '.join(map(repr, titles))} both say {name.replace('_', ' ')}.")
     for place, unit in places:
-        title = asked.guesses[place].title
+        title = question.guesses[place].title
         if unit in VOLTS:
-            raise asked.ask(f"Column {title!r} is a voltage; its sensor's sensitivity is needed, as 2.248V/kN.")
+            raise question.ask(f"Column {title!r} is a voltage; its sensor's sensitivity is needed, as 2.248V/kN.")
         strange = bracketed_unit(title)
         if not unit and strange:
-            raise asked.ask(f"The unit {strange[:20]!r} of column {title[:40]!r} is not known.")
+            raise question.ask(f"The unit {strange[:20]!r} of column {title[:40]!r} is not known.")
         if not unit and kind != "curve":
-            raise asked.ask(f"Column {title[:40]!r} has no unit.")
+            raise question.ask(f"Column {title[:40]!r} has no unit.")
 
 
-def _missing(asked: Asked, wanted: Sequence[str]) -> str:
-    unknown = [one.title for one in asked.guesses if one.quantity is None and one.title]
+def _missing(question: Asked, wanted: Sequence[str]) -> str:
+    unknown = [one.title for one in question.guesses if one.quantity is None and one.title]
     several = "" if len(unknown) > 1 else "s"
     sentence = (f"What {' and '.join(repr(one[:30]) for one in unknown[:4])} hold{several} is not clear" if unknown
             else "These columns are not enough")
     return f"{sentence}: {'; '.join(_NEEDS[kind] for kind in wanted)}."
 
 
-def answered(asked: Asked, answers: Answers) -> Chosen:
+def answered(question: Asked, answers: Answers) -> Chosen:
     """The columns that a person has named."""
-    found: Chosen = {}
+    chosen: Chosen = {}
     for quantity, places in answers.columns.items():
         for number, unit in places:
-            if number > len(asked.guesses):
-                raise BadInput(f"There is no column {number}; the file has {len(asked.guesses)}.")
-            if any(place == number - 1 for there in found.values() for place, _ in there):
+            if number > len(question.guesses):
+                raise BadInput(f"There is no column {number}; the file has {len(question.guesses)}.")
+            if any(place == number - 1 for columns in chosen.values() for place, _ in columns):
                 raise BadInput(f"Column {number} is assigned to two quantities; name one.")
-            found.setdefault(quantity, []).append((number - 1, unit))
-    return found
+            chosen.setdefault(quantity, []).append((number - 1, unit))
+    return chosen
 
 
-def in_si(values: dict[str, np.ndarray], chosen: Chosen, asked: Asked, lines: Sequence[int], layout: str,
+def in_si(values: dict[str, np.ndarray], chosen: Chosen, question: Asked, lines: Sequence[int], layout: str,
           wanted: Sequence[str], source: str, note: str, asked_for: bool) -> Series | Shaker | Measured:
     """The measurement of columns as they stand in the file."""
     scaled, units = {}, {}
     for quantity, places in chosen.items():
         factors = []
         for place, unit in places:
-            stated = asked.guesses[place].unit
+            stated = question.guesses[place].unit
             unit = unit or next(iter(UNITS[QUANTITIES[quantity]]))
             factor = factor_of(quantity, unit, stated)
             if factor is None:
@@ -167,15 +167,15 @@ def in_si(values: dict[str, np.ndarray], chosen: Chosen, asked: Asked, lines: Se
         scaled[quantity] = values[quantity] * np.array(factors)[:, None]
     kinds = [kind for kind in kinds_of(list(scaled)) if kind in wanted]
     if not kinds:
-        there = " and ".join(one.replace("_", " ") for one in scaled)
+        quantities = " and ".join(one.replace("_", " ") for one in scaled)
         needed = " or ".join(_WORDS[kind] for kind in wanted)
-        raise BadInput(f"{there[0].upper()}{there[1:]} are not enough for {needed}.")
+        raise BadInput(f"{quantities[0].upper()}{quantities[1:]} are not enough for {needed}.")
     if not asked_for:
-        _check_plausible(scaled, chosen, asked)
+        _check_plausible(scaled, chosen, question)
     return assembled(Columns(scaled, lines, units), kinds[0], layout, source, note)
 
 
-def _check_plausible(scaled: dict[str, np.ndarray], chosen: Chosen, asked: Asked) -> None:
+def _check_plausible(scaled: dict[str, np.ndarray], chosen: Chosen, question: Asked) -> None:
     """Ask for units that no title names where Hz and N would be strange."""
     for quantity, strange in (("frequency", f"all would be below {_TOO_SLOW:g} Hz"),
                               ("force", f"one would exceed {_TOO_STRONG:g} N")):
@@ -183,5 +183,5 @@ def _check_plausible(scaled: dict[str, np.ndarray], chosen: Chosen, asked: Asked
             continue
         largest = float(scaled[quantity].max())
         if largest < _TOO_SLOW if quantity == "frequency" else largest > _TOO_STRONG:
-            title = asked.guesses[chosen[quantity][0][0]].title
-            raise asked.ask(f"Column {title[:40]!r} has no unit, and {strange}.")
+            title = question.guesses[chosen[quantity][0][0]].title
+            raise question.ask(f"Column {title[:40]!r} has no unit, and {strange}.")

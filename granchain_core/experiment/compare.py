@@ -33,20 +33,20 @@ class Difference:
     @property
     def misfit(self) -> Misfit | None:
         """The misfit at these frequencies; None where there are none."""
-        there = self.compared
-        return Misfit.of(self.model[there], self.measured.force[there]) if there.any() else None
+        compared = self.compared
+        return Misfit.of(self.model[compared], self.measured.force[compared]) if compared.any() else None
 
     @property
     def sentence(self) -> str:
         """The misfit in words, with its unit."""
-        there, misfit = self.compared, self.misfit
+        compared, misfit = self.compared, self.misfit
         if misfit is None:
             return "No measured frequency lies on the computed curve."
-        place = f"{self.measured.frequency[there][misfit.index]:g} Hz"
-        words = f"Model − measured at {there.sum()} of {len(there)} frequencies: {misfit.words(place)}"
+        place = f"{self.measured.frequency[compared][misfit.index]:g} Hz"
+        words = f"Model − measured at {compared.sum()} of {len(compared)} frequencies: {misfit.words(place)}"
         error = self.measured.error
-        if error is not None and (error[there] > 0.0).all():
-            words += f"; rms {np.sqrt(np.mean((self.residuals[there] / error[there]) ** 2)):.3g} stated errors"
+        if error is not None and (error[compared] > 0.0).all():
+            words += f"; rms {np.sqrt(np.mean((self.residuals[compared] / error[compared]) ** 2)):.3g} stated errors"
         return words + "."
 
 

@@ -99,7 +99,7 @@ def compared_forces(measured: Series, motion: Motion, sensors: Sensors | None = 
     sensors = sensors or Sensors()
     time, first, last = measured.time, float(motion.time[0]), float(motion.time[-1])
     within = (time >= first) & (time <= last)
-    found = {}
+    misfits = {}
     for name in FORCES:
         values = getattr(measured, name)
         if values is None:
@@ -111,14 +111,14 @@ def compared_forces(measured: Series, motion: Motion, sensors: Sensors | None = 
         if not within.any():
             raise BadInput(f"No sample of the measured {words} lies within the motion: the samples are from "
                            f"{time.min():.6g} to {time.max():.6g} s, the motion is from {first:.6g} to {last:.6g} s.")
-        there = values[within]
+        measured_within = values[within]
         force = getattr(motion, name)
         if name == "input_force" and sensors.tip_mass > 0.0:
             force = force + sensors.tip_mass * _acceleration(motion)
-        misfit = Misfit.of(sensors.passed(motion.time, force, time[within]), there)
-        found[name] = ForceDifference(**asdict(misfit), force=name, compared=len(there), samples=len(time),
+        misfit = Misfit.of(sensors.passed(motion.time, force, time[within]), measured_within)
+        misfits[name] = ForceDifference(**asdict(misfit), force=name, compared=len(measured_within), samples=len(time),
                                       at=float(time[within][misfit.index]), word=measured.word)
-    return found
+    return misfits
 
 
 def _acceleration(motion: Motion) -> np.ndarray:

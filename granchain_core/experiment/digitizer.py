@@ -42,8 +42,8 @@ def datasets_in(content: bytes) -> dict[str, list[tuple[float, float]]]:
     try:
         project = json.loads(_archived(content) if _is_archive(content) else content.decode("utf-8-sig"))
     except (ValueError, RecursionError) as problem:
-        said = " ".join(str(problem).split())[:100]
-        raise BadInput(f"The file looks like JSON but cannot be parsed: {said}.") from None
+        reason = " ".join(str(problem).split())[:100]
+        raise BadInput(f"The file looks like JSON but cannot be parsed: {reason}.") from None
     if not isinstance(project, dict):
         raise BadInput("The file is JSON, but no project of WebPlotDigitizer.")
     if "datasetColl" in project:
@@ -73,10 +73,10 @@ def _archived(content: bytes) -> bytes:
 
 
 def _listed(project: dict[str, Any], name: str) -> list[dict[str, Any]]:
-    found = project.get(name, [])
-    if not isinstance(found, list) or not all(isinstance(one, dict) for one in found):
+    listed = project.get(name, [])
+    if not isinstance(listed, list) or not all(isinstance(one, dict) for one in listed):
         raise BadInput(f"In the project {name} is not a list of objects.")
-    return found
+    return listed
 
 
 def _types(axes: list[dict[str, Any]]) -> dict[Any, Any]:
@@ -84,20 +84,20 @@ def _types(axes: list[dict[str, Any]]) -> dict[Any, Any]:
 
 
 def _checked(datasets: list[dict[str, Any]], types: dict[Any, Any]) -> dict[str, list[tuple[float, float]]]:
-    found: dict[str, list[tuple[float, float]]] = {}
-    for number, one in enumerate(datasets, 1):
-        name = str(one.get("name") or f"dataset {number}")[:100]
-        kind = types.get(None, types.get(str(one.get("axesName")), "XYAxes"))
-        points = _listed(one, "data")
+    points_by_name: dict[str, list[tuple[float, float]]] = {}
+    for number, dataset in enumerate(datasets, 1):
+        name = str(dataset.get("name") or f"dataset {number}")[:100]
+        kind = types.get(None, types.get(str(dataset.get("axesName")), "XYAxes"))
+        points = _listed(dataset, "data")
         if not points:
             continue
         if kind != "XYAxes":
             raise BadInput(f"Dataset {name!r} has axes of the type {kind}; only XYAxes are a table of two quantities.")
-        name = name if name not in found else f"{name} ({number})"
-        found[name] = [_point(name, i, point.get("value")) for i, point in enumerate(points, 1)]
-    if not found:
+        name = name if name not in points_by_name else f"{name} ({number})"
+        points_by_name[name] = [_point(name, i, point.get("value")) for i, point in enumerate(points, 1)]
+    if not points_by_name:
         raise BadInput("The project has no dataset with points.")
-    return found
+    return points_by_name
 
 
 def _point(name: str, number: int, value: Any) -> tuple[float, float]:

@@ -127,24 +127,24 @@ def _digitised(datasets: dict[str, list[tuple[float, float]]], reading: Reading,
                                first_rows(rows), names))
     if len(rows) > reading.most_rows:
         raise BadInput(f"The dataset {name[:40]!r} has {len(rows)} points; at most {reading.most_rows} are read.")
-    asked = Asked(guesses, first_rows(rows), True)
-    chosen = answered(asked, answers)
+    question = Asked(guesses, first_rows(rows), True)
+    chosen = answered(question, answers)
     points = np.array(datasets[name])
     values = {quantity: np.array([points[:, place] for place, _ in places]) for quantity, places in chosen.items()}
-    return in_si(values, chosen, asked, range(1, len(points) + 1), f"dataset {name[:40]!r} of {what}", reading.wanted,
-                 answers.source or reading.source, answers.note, True)
+    return in_si(values, chosen, question, range(1, len(points) + 1), f"dataset {name[:40]!r} of {what}",
+                 reading.wanted, answers.source or reading.source, answers.note, True)
 
 
 def _pairs(rows: list[Row], decimal: str) -> dict[str, list[tuple[float, float]]]:
     """The datasets of a table with a row of names over pairs of X and Y; columns may end early."""
-    found: dict[str, list[tuple[float, float]]] = {}
+    points_by_name: dict[str, list[tuple[float, float]]] = {}
     names = rows[0][1]
     for place in range(0, len(rows[1][1]) - 1, 2):
         name = (names[place] if place < len(names) else "") or f"dataset {place // 2 + 1}"
         pairs = [(line, fields[place : place + 2]) for line, fields in rows[2:] if any(fields[place : place + 2])]
         if pairs:
-            found[name] = [(number_of(line, pair[0], decimal), number_of(line, "".join(pair[1:]), decimal))
+            points_by_name[name] = [(number_of(line, pair[0], decimal), number_of(line, "".join(pair[1:]), decimal))
                            for line, pair in pairs]
-    if not found:
+    if not points_by_name:
         raise BadInput(f"Line {rows[1][0]}: there is no number below the names of the datasets.")
-    return found
+    return points_by_name

@@ -62,8 +62,8 @@ def grid_of(content: bytes, most_bytes: int, most_rows: int, separator: str | No
     for number, line in enumerate(lines, 1):
         plain = line.replace("\u00a0", " ").replace("\u202f", " ").replace("\u2009", " ").replace("\u2212", "-")
         text = plain.strip()
-        if number == 1 and (found := re.fullmatch(r'"?sep=(.)"?', plain.strip("\ufeff \n"), re.IGNORECASE)):
-            mark = mark or found[1]
+        if number == 1 and (heading := re.fullmatch(r'"?sep=(.)"?', plain.strip("\ufeff \n"), re.IGNORECASE)):
+            mark = mark or heading[1]
         elif text.startswith(_COMMENT) and not text.upper().startswith(_EXCEL_ERRORS):
             comments.append(text.lstrip("#%/ ").strip())
         elif text:

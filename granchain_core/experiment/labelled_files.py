@@ -34,8 +34,8 @@ def read_labelled(path: str | Path, answers: Answers, wanted: Sequence[str], sou
         columns = [np.asarray(file.numbers(name, stored[name].shape, "any"), dtype=float) for name in names]
         note = answers.note or _note(file)
     rows = tuple((i + 1, tuple(f"{values[i]:.6g}" for values in columns)) for i in range(min(5, len(columns[0]))))
-    asked = Asked(guesses, rows, True)
-    chosen = chosen_columns(asked, answers, wanted, range(len(columns)))
+    question = Asked(guesses, rows, True)
+    chosen = chosen_columns(question, answers, wanted, range(len(columns)))
     values = {}
     for quantity, places in chosen.items():
         values[quantity] = np.array([columns[place] for place, _ in places])
@@ -45,13 +45,13 @@ def read_labelled(path: str | Path, answers: Answers, wanted: Sequence[str], sou
     used = {place for places in chosen.values() for place, _ in places}
     left = [name for place, name in enumerate(names) if place not in used]
     layout = "HDF5" + (f"; left out: {', '.join(left)[:200]}" if left else "")
-    return in_si(values, chosen, asked, range(1, len(columns[0]) + 1), layout, wanted, answers.source or source, note,
-                 bool(answers.columns))
+    return in_si(values, chosen, question, range(1, len(columns[0]) + 1), layout, wanted,
+                 answers.source or source, note, bool(answers.columns))
 
 
 def _rows(file: File, most_rows: int) -> tuple[dict[str, Stored], str]:
     """The rows of numbers in a file, and why others are not read."""
-    found, refused = {}, ""
+    datasets, refused = {}, ""
     for name in file.names():
         try:
             stored = file.described(name)
@@ -63,8 +63,8 @@ def _rows(file: File, most_rows: int) -> tuple[dict[str, Stored], str]:
         if stored.shape[0] > most_rows:
             refused = refused or f"/{name} has {stored.shape[0]} numbers; at most {most_rows} are read"
             continue
-        found[name] = stored
-    return found, refused
+        datasets[name] = stored
+    return datasets, refused
 
 
 def _group(stored: dict[str, Stored]) -> list[str]:

@@ -37,15 +37,16 @@ def decimal_mark(fields: Iterable[tuple[int, str]]) -> str | None:
 
     Raises `BadInput` where neither reading fits all of them.
     """
-    marked = [(line, one) for line, one in fields if ("." in one or "," in one) and LIKE_A_NUMBER.fullmatch(one)]
-    fits = {mark: next(((line, one) for line, one in marked if not _READ_AS[mark].fullmatch(one)), None)
-            for mark in _READ_AS}
-    possible = [mark for mark, misfit in fits.items() if misfit is None]
+    marked = [(line, field) for line, field in fields
+              if ("." in field or "," in field) and LIKE_A_NUMBER.fullmatch(field)]
+    misfits = {mark: next(((line, field) for line, field in marked if not _READ_AS[mark].fullmatch(field)), None)
+               for mark in _READ_AS}
+    possible = [mark for mark, misfit in misfits.items() if misfit is None]
     if not possible:
-        (line, one), (other_line, other) = fits["point"], fits["comma"]  # type: ignore[misc]  # neither is None
-        raise BadInput(f"Line {line}: {one[:30]!r} does not have a decimal point, and {other[:30]!r} in line "
+        (line, no_point), (other_line, no_comma) = misfits["point"], misfits["comma"]  # type: ignore[misc]  # not None
+        raise BadInput(f"Line {line}: {no_point[:30]!r} does not have a decimal point, and {no_comma[:30]!r} in line "
                        f"{other_line} no decimal comma; write every number with the same decimal mark.")
-    different = [one for _, one in marked if number_as(one, "point") != number_as(one, "comma")]
+    different = [field for _, field in marked if number_as(field, "point") != number_as(field, "comma")]
     if not different:
         return possible[0] if len(possible) == 1 else "point"
     if len(possible) == 2:

@@ -112,7 +112,7 @@ def answers_of(columns: Sequence[str] = (), decimal: str | None = None, separato
 
     Raises `BadInput` for what is not one.
     """
-    found: dict[str, tuple[tuple[int, str], ...]] = {}
+    columns_by_quantity: dict[str, tuple[tuple[int, str], ...]] = {}
     for text in columns:
         name, _, rest = text.partition("=")
         place, _, unit = rest.partition(":")
@@ -127,9 +127,9 @@ def answers_of(columns: Sequence[str] = (), decimal: str | None = None, separato
         if factor_of(quantity, unit) is None:
             raise BadInput(f"--column {text!r}: {unit!r} is not a unit of {quantity.replace('_', ' ')}; known: "
                            f"{', '.join(known)}, or a sensitivity as 2.248V/{next(iter(known))}.")
-        found[quantity] = (*found.get(quantity, ()), (number, unit))
+        columns_by_quantity[quantity] = (*columns_by_quantity.get(quantity, ()), (number, unit))
     if decimal is not None and decimal not in DECIMALS:
         raise unknown_name("decimal mark", decimal, DECIMALS)
     if separator is not None and separator not in SEPARATORS:
         raise unknown_name("separator", separator, SEPARATORS)
-    return Answers(found, decimal, separator, dataset, source, note)
+    return Answers(columns_by_quantity, decimal, separator, dataset, source, note)

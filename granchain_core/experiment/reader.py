@@ -33,12 +33,12 @@ def read_experiment(path: str | Path, answers: Answers | None = None,
     except OSError as problem:
         raise BadInput(f"Cannot read {str(path)[:200]}: {problem.strerror or problem}.") from None
     try:
-        found = format_of(content).read(content, Reading(answers or Answers(), wanted, path.name, path=path))
+        measurement = format_of(content).read(content, Reading(answers or Answers(), wanted, path.name, path=path))
     except Unclear as unclear:
         raise Unclear(replace(unclear.question, reason=f"{path.name}: {unclear.question.reason}")) from None
     except BadInput as problem:
         raise BadInput(f"{path.name}: {problem}") from None
-    return replace(found, understood=f"{path.name}: {found.understood}")
+    return replace(measurement, understood=f"{path.name}: {measurement.understood}")
 
 
 def read_data(content: bytes, answers: Answers | None = None, wanted: Sequence[str] = TABLE_KINDS,

@@ -80,7 +80,7 @@ class Sensors:
                  (f"bandwidth {self.bandwidth:g} Hz", math.isfinite(self.bandwidth)),
                  (f"tip of {self.tip_mass:g} kg before the input sensor", self.tip_mass > 0.0),
                  (f"{self.rate:g} samples/s", True)]
-        return ", ".join(words for words, there in parts if there)
+        return ", ".join(words for words, present in parts if present)
 
     @property
     def filters(self) -> bool:
@@ -135,8 +135,8 @@ class Sensors:
         kept, first, second = _integrals(pole, since)
         end = force[left] + np.divide(since, step, out=np.zeros_like(since), where=step > 0.0) * (
             force[left + 1] - force[left])
-        found = kept * state[left] + since * (force[left] * (first - second) + end * second)
-        return np.asarray(2.0 * (scale * found).real)
+        response = kept * state[left] + since * (force[left] * (first - second) + end * second)
+        return np.asarray(2.0 * (scale * response).real)
 
 
 def _advanced(begin: complex, kept: np.ndarray, added: np.ndarray) -> np.ndarray:

@@ -84,15 +84,15 @@ def _header(fields: list[str], width: int) -> list[str]:
     """The titles of the columns; words that spaces divided are joined with their units; empty if it is not a header."""
     if len(fields) != width:
         joined: list[str] = []
-        for one in fields:
-            if joined and one.startswith(("(", "[", "/")):
-                joined[-1] += f" {one}"
+        for title in fields:
+            if joined and title.startswith(("(", "[", "/")):
+                joined[-1] += f" {title}"
             else:
-                joined.append(one)
+                joined.append(title)
         fields = joined
     if len(fields) == width - 1 or (len(fields) == width + 1 and not fields[-1]):
         fields = [*fields, ""][:width]
-    return list(fields) if len(fields) == width and any(re.search(r"[^\W\d_]", one) for one in fields) else []
+    return list(fields) if len(fields) == width and any(re.search(r"[^\W\d_]", title) for title in fields) else []
 
 
 def _wide(fields: list[str], width: int) -> list[str]:
@@ -101,14 +101,14 @@ def _wide(fields: list[str], width: int) -> list[str]:
 
 def _trimmed(data: list[Row], width: int) -> list[Row]:
     """Rows without empty fields at their ends beyond the width, refusing rows that are too short or too long."""
-    found = []
+    rows = []
     for number, fields in data:
         while len(fields) > width and not fields[-1]:
             fields = fields[:-1]
         if len(fields) != width:
             raise BadInput(f"Line {number} has {len(fields)} columns where {width} were expected.")
-        found.append((number, fields))
-    return found
+        rows.append((number, fields))
+    return rows
 
 
 def read_text_table(grid: TextGrid, answers: Answers, wanted: Sequence[str], source: str,
@@ -122,14 +122,14 @@ def read_text_table(grid: TextGrid, answers: Answers, wanted: Sequence[str], sou
         width -= 1
         guesses.pop()  # a separator ends every line
     header = [(parts.header_line, parts.titles)] if parts.titles else []
-    asked = Asked(guesses, first_rows([*header, *parts.data]), bool(parts.titles))
-    chosen = chosen_columns(asked, answers, wanted, numeric, convention)
+    question = Asked(guesses, first_rows([*header, *parts.data]), bool(parts.titles))
+    chosen = chosen_columns(question, answers, wanted, numeric, convention)
     used = sorted({place for places in chosen.values() for place, _ in places})
     fields = [(number, row[place]) for number, row in parts.data for place in used]
     if grid.separator == "," and not any("," in field for _, field in fields):
         decimal = answers.decimal or "point"  # who divides columns by commas does not write decimals with them
     else:
-        decimal = decimal_of(fields, answers, asked.rows, guesses)
+        decimal = decimal_of(fields, answers, question.rows, guesses)
     values: dict[str, np.ndarray] = {}
     for quantity, places in chosen.items():
         values[quantity] = np.array([[number_of(number, row[place], decimal) for number, row in parts.data]
@@ -139,9 +139,9 @@ def read_text_table(grid: TextGrid, answers: Answers, wanted: Sequence[str], sou
     left = [guess.title or str(guess.number) for i, guess in enumerate(guesses) if i not in used]
     layout += f"; left out: {', '.join(left)}" if left else ""
     note = note_of(" ".join((*parts.preface, *grid.comments))[:500], answers.note)
-    found = in_si(values, chosen, asked, [number for number, _ in parts.data], layout, wanted, answers.source or source,
-                  note, bool(answers.columns))
-    return replace(found, left_out=tuple(left)) if isinstance(found, Series) else found
+    measurement = in_si(values, chosen, question, [number for number, _ in parts.data], layout, wanted,
+                        answers.source or source, note, bool(answers.columns))
+    return replace(measurement, left_out=tuple(left)) if isinstance(measurement, Series) else measurement
 
 
 def _guess(place: int, parts: _Parts) -> Guess:
@@ -163,9 +163,9 @@ def decimal_of(fields: list[tuple[int, str]], answers: Answers, rows: Sequence[t
     """The decimal mark that fields with their lines have, or that was answered. Raises `Unclear` and `BadInput`."""
     if answers.decimal is not None:
         return answers.decimal
-    found = decimal_mark(fields)
-    if found is not None:
-        return found
+    decimal = decimal_mark(fields)
+    if decimal is not None:
+        return decimal
     line, field = next((line, one) for line, one in fields if number_as(one, "point") != number_as(one, "comma")
                        and ("," in one or "." in one))
     read = [number_as(field, mark) for mark in ("point", "comma")]

@@ -77,10 +77,10 @@ def factor_of(quantity: str, unit: str, column: str | None = None) -> float | No
 
     A sensitivity as 2.248V/kN is a unit as well: of a column in volts, or in `column` where its header says mV.
     """
-    found = UNITS[QUANTITIES[quantity]].get(unit_named(unit) or "")
+    factor = UNITS[QUANTITIES[quantity]].get(unit_named(unit) or "")
     sensitivity = _SENSITIVITY.fullmatch(unit.strip())
-    if found is not None or sensitivity is None:
-        return found
+    if factor is not None or sensitivity is None:
+        return factor
     size, volt = number_in(sensitivity[1]), column if column in VOLTS else sensitivity[2]
     per = UNITS[QUANTITIES[quantity]].get(unit_named(sensitivity[3]) or "")
     if size is None or size <= 0.0 or per is None:
@@ -98,10 +98,10 @@ def heading(title: str) -> tuple[str | None, str | None, str]:
         return None, unit_named(text), ""
     for pattern in (r"(.*?)\s*[(\[{<]\s*([^()\[\]{}<>]*?)\s*[)\]}>]\s*", r"(.*?)\s*,\s*([^,]+)", r"(.*?)\s+in\s+(\S.*)",
                     r"(.*?)\s*/\s*(\S.*)", r"(.*)[_\s]([^_\s]+[_/][^_\s]+)", r"(.*)[_\s]([^_\s]+)"):
-        found = re.fullmatch(pattern, text)
-        unit = unit_named(found[2]) if found else None
-        if found and unit is not None and found[1]:
-            return _quantity(found[1], unit), unit, _word(found[1])
+        match = re.fullmatch(pattern, text)
+        unit = unit_named(match[2]) if match else None
+        if match and unit is not None and match[1]:
+            return _quantity(match[1], unit), unit, _word(match[1])
     strange = bracketed_unit(text)
     if strange is not None:
         bare = text[: text.rfind(strange) - 1].strip()
@@ -111,8 +111,8 @@ def heading(title: str) -> tuple[str | None, str | None, str]:
 
 def bracketed_unit(title: str) -> str | None:
     """The text in brackets at the end of a title, whether or not it is a unit that is known."""
-    found = re.fullmatch(r".*[(\[]\s*([^()\[\]]+?)\s*[)\]]\s*", title.strip())
-    return found[1] if found else None
+    match = re.fullmatch(r".*[(\[]\s*([^()\[\]]+?)\s*[)\]]\s*", title.strip())
+    return match[1] if match else None
 
 
 def _word(text: str) -> str:
@@ -131,7 +131,7 @@ def _quantity(name: str, unit: str | None) -> str | None:
         return None
     word = _word(bare)
     known = {**_QUANTITY, **_OF_FORCE} if dimension == "force" else _QUANTITY
-    found = known.get(word) or known.get(re.sub(r"_?\d+$", "", word))
-    if found is None or dimension in (None, "voltage", QUANTITIES[found]):
-        return found
+    quantity = known.get(word) or known.get(re.sub(r"_?\d+$", "", word))
+    if quantity is None or dimension in (None, "voltage", QUANTITIES[quantity]):
+        return quantity
     return dimension if word == "amplitude" and dimension in ("velocity", "acceleration", "force") else None

@@ -1,10 +1,13 @@
 """Fits of parameters to measured data: misfit, search, profile likelihood, verdict; a measured series over a run."""
 
 from .beginning import Beginning, settled_beginning
-from .fit import Fit, fit
+from .curve_target import CurveTarget
+from .feature_target import FeatureTarget
+from .fit import fit
 from .parameters import Free, per_frequency
 from .records import RecordsTarget
-from .targets import CurveTarget, FeatureTarget, SeriesTarget
+from .result import Fit
+from .series_target import SeriesTarget
 from .virtual_data import virtual_curve, virtual_series
 
 __all__ = ["Beginning", "CurveTarget", "FeatureTarget", "Fit", "Free", "RecordsTarget", "SeriesTarget", "fit",

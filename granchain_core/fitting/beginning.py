@@ -30,7 +30,7 @@ from .trains import Train
 _SAMPLES = 2048
 #: Part of a measured velocity, in root mean square, that may be no sine of the scene's frequency.
 _NO_SINE = 0.1
-#: Relative difference between the measured amplitude of the drive and the scene's that is said.
+#: Relative difference between the measured amplitude of the drive and the scene's above which a sentence states it.
 _OTHER_AMPLITUDE = 0.02
 #: First sample over the largest one from which a record counts as begun in motion.
 _IN_MOTION = 0.05
@@ -71,11 +71,11 @@ def settled_beginning(scene: Scene, series: Series, sensors: Sensors | None = No
     """
     refuse_undriven(scene)
     phase, amplitude = _drive_phase(scene, series)
-    found = settle(scene, samples=_SAMPLES, stop=stop)
-    if found.regime.name != "periodic":
-        raise BadInput(f"The settled motion of {scene.name} is {found.regime.name}: it has no state that belongs to a "
-                       "drive phase. Start at rest, or in the state of a recorded run.")
-    run, periods = found.run, found.regime.period or 1
+    settled = settle(scene, samples=_SAMPLES, stop=stop)
+    if settled.regime.name != "periodic":
+        raise BadInput(f"The settled motion of {scene.name} is {settled.regime.name}: it has no state that belongs to "
+                       "a drive phase. Start at rest, or in the state of a recorded run.")
+    run, periods = settled.run, settled.regime.period or 1
     begins = [(phase + turn) / scene.f for turn in range(periods)]
     best = int(np.argmin(_squares(series, run, begins, sensors or Sensors()))) if periods > 1 else 0
     time = run.time - run.time[0]
@@ -112,7 +112,7 @@ def _drive_phase(scene: Scene, series: Series) -> tuple[float, float]:
 
 def _squares(series: Series, run: Run, begins: list[float], sensors: Sensors) -> list[float]:
     """For each beginning [s] on the orbit, the sum of squares by which its forces differ from the measured ones."""
-    time, found = series.time - series.time[0], [0.0] * len(begins)
+    time, squares = series.time - series.time[0], [0.0] * len(begins)
     width = float(np.median(np.diff(time)))
     for name in FORCES:
         measured = getattr(series, name)
@@ -120,8 +120,8 @@ def _squares(series: Series, run: Run, begins: list[float], sensors: Sensors) ->
             continue
         train = Train.of(run, name)
         for i, begin in enumerate(begins):
-            found[i] += float(((train.recorded(time + begin, width, sensors) - measured) ** 2).sum())
-    return found
+            squares[i] += float(((train.recorded(time + begin, width, sensors) - measured) ** 2).sum())
+    return squares
 
 
 def in_motion(series: Series, rest_force: float) -> str:
@@ -129,13 +129,13 @@ def in_motion(series: Series, rest_force: float) -> str:
 
     `rest_force` is the force of the contacts at rest, the scene's F0 [N].
     """
-    found = []
-    for name, rest in (("velocity", 0.0), *((one, rest_force) for one in FORCES)):
+    moving = []
+    for name, rest in (("velocity", 0.0), *((force, rest_force) for force in FORCES)):
         values = getattr(series, name)
         if values is not None and abs(values[0] - rest) > _IN_MOTION * float(np.abs(values - rest).max()):
-            found.append(name.replace("_", " "))
-    if not found:
+            moving.append(name.replace("_", " "))
+    if not moving:
         return ""
-    return (f"The record begins in motion: the first sample of its {' and '.join(found)} is not that of a chain at "
+    return (f"The record begins in motion: the first sample of its {' and '.join(moving)} is not that of a chain at "
             "rest. The chain starts at rest and the driver at displacement 0, so at least the first part differs; "
             "--start settled begins on the settled motion.")

@@ -20,6 +20,14 @@ _DESCENT_CALLS = 6
 _ROOT_TOLERANCE = 0.03
 #: [fit] A misfit lower than the least so far by this, in its unit, is another minimum.
 _BETTER_BY = 0.3
+#: [fit] First distance from the best value at which an end is sought where χ² has no curvature, as a part of the range.
+_FLAT_REACH = 0.25
+#: [fit] Distance of two values of a parameter below which they are the same, as a fraction of the range.
+_SAME_VALUE = 1e-9
+#: [fit] By how much farther than the secant's root an end is sought while no value outside is known.
+_OVERSHOOT = 1.2
+#: [fit] Least part of the bracket that a step of the secant leaves on either side.
+_LEAST_PART = 0.1
 
 
 class BetterMinimum(Exception):
@@ -46,61 +54,76 @@ class Profile:
     open_high: bool
 
 
-def limit(scale: float = 1.0, freedom: int | None = None) -> float:
+def limit(scale: float = 1.0, degrees_of_freedom: int | None = None) -> float:
     """Rise of the misfit at the ends of an interval for one parameter.
 
-    Where the errors are known it is that of χ² with one degree of freedom. Where their variance is estimated with
-    `freedom` degrees of freedom, from repeats or as `scale` from the fit, the rise in its unit has the distribution F.
+    Where the errors are known it is that of χ² with one degree of freedom. Where their variance is estimated, from
+    repeats or as `scale` from the fit, with so many `degrees_of_freedom`, the rise in its unit has the distribution F.
     """
-    return float(chi2.ppf(LEVEL, 1) if freedom is None else f.ppf(LEVEL, 1, freedom)) * scale
+    return float(chi2.ppf(LEVEL, 1) if degrees_of_freedom is None else f.ppf(LEVEL, 1, degrees_of_freedom)) * scale
 
 
-def profile(problem: Problem, best: np.ndarray, j: int, scale: float, freedom: int | None, last: bool) -> Profile:
-    """The profile of parameter j; `scale` and `freedom` are those of `limit`.
+def profile(problem: Problem, best: np.ndarray, j: int, scale: float, degrees_of_freedom: int | None,
+            last: bool) -> Profile:
+    """The profile of parameter j; `scale` and `degrees_of_freedom` are those of `limit`.
 
     Raises `BetterMinimum` where it finds a point that is better than `best`, unless it is the `last` try.
     """
-    least, top = problem.misfit(best), math.sqrt(limit(scale, freedom))
-    others = [i for i in range(len(best)) if i != j]
-    slopes = problem.jacobian(best, range(len(best)))
-    normal = slopes.T @ slopes
+    top, lowest = math.sqrt(limit(scale, degrees_of_freedom)), -math.inf if last else -_BETTER_BY * scale
+    ridge, reach = _ridge(problem, best, j, top)
+    rises: dict[float, float] = {float(best[j]): 0.0}
+    (low, open_low), (high, open_high) = (_end(problem, best, j, ridge, sign * reach, top, lowest, rises)
+                                          for sign in (-1.0, 1.0))
+    parameter = problem.free[j]
+    along = sorted(rises)
+    return Profile(tuple(parameter.value(x) for x in along), tuple(rises[x] for x in along), parameter.value(low),
+                   parameter.value(high), open_low, open_high)
+
+
+def _ridge(problem: Problem, best: np.ndarray, j: int, top: float) -> tuple[np.ndarray, float]:
+    """The direction (P,) in which χ² rises least with parameter j, and the change of j by which √Δχ² rises to `top`.
+
+    Both are those of the parabola at the best point.
+    """
+    others = _others(best, j)
+    curvature = problem.curvature(best)
     ridge = np.zeros(len(best))
     if others:
-        ridge[others] = -np.linalg.lstsq(normal[np.ix_(others, others)], normal[others, j], rcond=None)[0]
+        ridge[others] = -np.linalg.lstsq(curvature[np.ix_(others, others)], curvature[others, j], rcond=None)[0]
     ridge[j] = 1.0
-    curvature = float(ridge @ normal @ ridge)
-    reach = min(1.0, top / math.sqrt(curvature)) if curvature > 0.0 else 0.25
-    found: dict[float, float] = {float(best[j]): 0.0}
-    ends = []
-    for sign in (-1.0, 1.0):
-        lowest = -math.inf if last else -_BETTER_BY * scale
-        ends.append(_end(problem, best, j, others, ridge, sign, reach, top, least, lowest, found))
-    one = problem.free[j]
-    along = sorted(found)
-    (low, open_low), (high, open_high) = ends
-    return Profile(tuple(one.value(x) for x in along), tuple(found[x] for x in along), one.value(low),
-                   one.value(high), open_low, open_high)
+    along = float(ridge @ curvature @ ridge)
+    return ridge, min(1.0, top / math.sqrt(along)) if along > 0.0 else _FLAT_REACH
 
 
-def _end(problem: Problem, best: np.ndarray, j: int, others: list[int], ridge: np.ndarray, sign: float, reach: float,
-         top: float, least: float, lowest: float, found: dict[float, float]) -> tuple[float, bool]:
-    """Where √Δχ² crosses its limit on one side: the root between points below and above it, by the secant."""
+def _others(best: np.ndarray, j: int) -> list[int]:
+    """The numbers of all parameters but j."""
+    return [i for i in range(len(best)) if i != j]
+
+
+def _end(problem: Problem, best: np.ndarray, j: int, ridge: np.ndarray, reach: float, top: float, lowest: float,
+         rises: dict[float, float]) -> tuple[float, bool]:
+    """Where √Δχ² crosses its limit on the side of `reach`, by the secant between points below and above; whether open.
+
+    The first point is `reach` away from the best one. `rises` gets the rise of the misfit at each value. Raises
+    `BetterMinimum` where the misfit falls below the least by more than −`lowest`.
+    """
+    least_misfit, others, sign = problem.misfit(best), _others(best, j), math.copysign(1.0, reach)
     bound = 1.0 if sign > 0.0 else 0.0
     inside, root_inside = float(best[j]), 0.0
     outside, root_outside = math.nan, math.nan
-    start, trial = best, best[j] + sign * reach
+    start, trial = best, best[j] + reach
     for _ in range(_MOST_STEPS):
         trial = min(max(trial, 0.0), 1.0)
-        if abs(trial - inside) < 1e-9:
+        if abs(trial - inside) < _SAME_VALUE:
             break
         x = np.clip(start + ridge * (trial - start[j]), 0.0, 1.0)
         x[j] = trial
         x = descend(problem, x, others, _DESCENT_CALLS)
-        rise = problem.misfit(x) - least
+        rise = problem.misfit(x) - least_misfit
         if rise < lowest:
             raise BetterMinimum(x)
         root = math.sqrt(max(rise, 0.0))
-        found[float(trial)] = max(rise, 0.0)
+        rises[float(trial)] = max(rise, 0.0)
         if root <= top:
             inside, root_inside, start = trial, root, x
         else:
@@ -112,10 +135,10 @@ def _end(problem: Problem, best: np.ndarray, j: int, others: list[int], ridge: n
         if math.isnan(outside):
             slope = root_inside / abs(inside - best[j]) if root_inside > 0.0 else 0.0
             ahead = (top - root_inside) / slope if slope > 0.0 else 2.0 * abs(inside - best[j])
-            trial = inside + sign * min(1.2 * ahead, 2.0 * abs(inside - best[j]) + 1e-6)
+            trial = inside + sign * min(_OVERSHOOT * ahead, 2.0 * abs(inside - best[j]) + 1e-6)
         else:
             part = (top - root_inside) / (root_outside - root_inside)
-            trial = inside + min(max(part, 0.1), 0.9) * (outside - inside)
+            trial = inside + min(max(part, _LEAST_PART), 1.0 - _LEAST_PART) * (outside - inside)
     if math.isnan(outside):
-        return inside, True  # the limit was never crossed: the interval goes on, nobody knows how far
+        return inside, True  # the limit was never crossed: how far the interval goes on is not known
     return inside + (top - root_inside) / (root_outside - root_inside) * (outside - inside), False

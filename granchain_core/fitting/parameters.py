@@ -54,16 +54,16 @@ class Free:
 
     @property
     def at(self) -> float | None:
-        """The frequency [Hz] of an amplitude that holds at one only."""
+        """The frequency [Hz] of an amplitude that holds at one frequency only."""
         return number_in(self.name.partition("@")[2])
 
     @property
     def unit(self) -> str:
-        """Its unit."""
+        """The unit of the parameter."""
         return UNITS[self.knob]
 
     def value(self, part: float) -> float:
-        """Its value at this part of its range, from 0 (low) to 1 (high)."""
+        """The parameter at a fraction `part` of its range, from 0 (low) to 1 (high)."""
         if self.low > 0.0:
             return float(self.low * (self.high / self.low) ** part)
         return float(self.low + (self.high - self.low) * part)
@@ -77,7 +77,7 @@ def free_of(text: str, prior: str | None = None) -> Free:
 
 
 def _two(what: str, text: str, form: str) -> tuple[float, float]:
-    numbers = [number_in(one) for one in text.split(":")]
+    numbers = [number_in(part) for part in text.split(":")]
     if len(numbers) != 2 or numbers[0] is None or numbers[1] is None:
         raise BadInput(f"{what} must have the form {form}.")
     return numbers[0], numbers[1]
@@ -85,18 +85,22 @@ def _two(what: str, text: str, form: str) -> tuple[float, float]:
 
 def per_frequency(free: Sequence[Free], frequencies: Sequence[float] | np.ndarray) -> list[Free]:
     """The free parameters with one A0 for each frequency in place of the constant one."""
-    found: list[Free] = []
-    for one in free:
-        found += [replace(one, name=f"A0@{f:.10g}") for f in frequencies] if one.name == "A0" else [one]
-    return found
+    listed: list[Free] = []
+    for parameter in free:
+        if parameter.name == "A0":
+            listed += [replace(parameter, name=f"A0@{f:.10g}") for f in frequencies]
+        else:
+            listed.append(parameter)
+    return listed
 
 
 def with_values(scene: Scene, free: Sequence[Free],
                 values: Sequence[float] | np.ndarray) -> tuple[Scene, Amplitude | None]:
     """The scene with these values, and the drive amplitude over the frequency where there is one for each."""
-    changes = {one.knob: float(value) for one, value in zip(free, values, strict=True) if one.at is None}
+    given = list(zip(free, values, strict=True))
+    changes = {parameter.knob: float(value) for parameter, value in given if parameter.at is None}
     stiffness = changes.pop("K", None)
-    amplitudes = sorted((one.at, float(value)) for one, value in zip(free, values, strict=True) if one.at is not None)
+    amplitudes = sorted((parameter.at, float(value)) for parameter, value in given if parameter.at is not None)
     if stiffness is not None:
         scene = stiffened(scene, stiffness / scene.K)
     scene = scene.evolve(**changes)

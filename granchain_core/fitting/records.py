@@ -10,7 +10,8 @@ import numpy as np
 from ..errors import BadInput
 from ..execution.stop import Stop
 from ..scene import Amplitude, Scene
-from .targets import Compared, Evaluation, SeriesTarget
+from .evaluation import Compared, Evaluation
+from .series_target import SeriesTarget
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,16 +26,16 @@ class RecordsTarget(Compared):
     def __post_init__(self) -> None:
         if not self.records:
             raise BadInput("There is no record to fit.")
-        for number, one in enumerate(self.records, start=1):
-            if one.frequency is None:
+        for number, record in enumerate(self.records, start=1):
+            if record.frequency is None:
                 raise BadInput(f"Record {number} of {len(self.records)} has no drive frequency; give each its own.")
-        if len({one.sigma_known for one in self.records}) > 1:
+        if len({record.sigma_known for record in self.records}) > 1:
             raise BadInput("Some of the records have an error and some have none; give all of them one, or none.")
 
     @property
     def frequencies(self) -> np.ndarray:
         """The drive frequencies [Hz], ascending, each once."""
-        return np.unique([one.frequency for one in self.records if one.frequency is not None])
+        return np.unique([record.frequency for record in self.records if record.frequency is not None])
 
     @property
     def sigma_known(self) -> bool:
@@ -44,13 +45,13 @@ class RecordsTarget(Compared):
     @property
     def sizes(self) -> list[int]:
         """Number of data of each record."""
-        return [len(one.channels) * len(one.time) for one in self.records]
+        return [len(record.channels) * len(record.time) for record in self.records]
 
     def where(self, datum: int) -> str:
         """Which record, force and time a datum is, in words."""
-        for one, size in zip(self.records, self.sizes, strict=True):
+        for record, size in zip(self.records, self.sizes, strict=True):
             if datum < size:
-                return f"{one.where(datum)} of the record at {one.frequency:g} Hz"
+                return f"{record.where(datum)} of the record at {record.frequency:g} Hz"
             datum -= size
         raise IndexError(datum)
 
@@ -59,14 +60,15 @@ class RecordsTarget(Compared):
 
         Raises `Cancelled`.
         """
-        found = [one.evaluate(scene, amplitude, stop) for one in self.records]
-        return Evaluation(np.concatenate([one.residuals for one in found]), sum(one.log_variance for one in found),
-                          tuple(regime for one in found for regime in one.regimes),
-                          np.concatenate([one.model for one in found]))
+        evaluations = [record.evaluate(scene, amplitude, stop) for record in self.records]
+        return Evaluation(np.concatenate([evaluation.residuals for evaluation in evaluations]),
+                          sum(evaluation.log_variance for evaluation in evaluations),
+                          tuple(regime for evaluation in evaluations for regime in evaluation.regimes),
+                          np.concatenate([evaluation.model for evaluation in evaluations]))
 
     def parts(self, evaluation: Evaluation) -> Iterator[tuple[SeriesTarget, slice, str]]:
         """Each record with the place of its data in the evaluation, and the model's regime there."""
         begin = 0
-        for one, size, regime in zip(self.records, self.sizes, evaluation.regimes, strict=True):
-            yield one, slice(begin, begin + size), regime
+        for record, size, regime in zip(self.records, self.sizes, evaluation.regimes, strict=True):
+            yield record, slice(begin, begin + size), regime
             begin += size

@@ -5,6 +5,10 @@ be sampled. From the best points SciPy's `least_squares` descends, a trust-regio
 (Branch, Coleman & Li 1999): it uses that χ² is a sum of squares, needs some ten times fewer curves than a method that
 does not, and refuses a step over a jump that makes χ² larger. Where the regimes differ around the point where it stops,
 or residuals are not smooth at all (frequencies of peaks), Nelder and Mead's simplex, which uses no slopes, goes on.
+
+The misfit has a term that is no sum of squares, L = Σ ln(σ'²/σ²) of enlarged variances. The descent has √L as one more
+residual: its square is L, so the gradient is right. But the slope L'/(2√L) is unbounded at L = 0, and its part of JᵀJ
+is not the curvature of L. So the curvature for correlations and profiles is computed without this residual.
 """
 
 from __future__ import annotations
@@ -20,13 +24,17 @@ from scipy.stats import qmc
 from ..execution.stop import Stop
 from ..scene import Amplitude, Scene
 from ..scheduler import results
+from .curve_target import CurveTarget
+from .evaluation import Evaluation
+from .feature_target import FeatureTarget
 from .parameters import Free, with_values
 from .records import RecordsTarget
-from .targets import CurveTarget, Evaluation, FeatureTarget, SeriesTarget
+from .series_target import SeriesTarget
 
 Target = CurveTarget | SeriesTarget | RecordsTarget | FeatureTarget
-#: [fit] Step of derivatives, in parts of the bounds. It is above the noise of a curve's points (1e-5) and below a
-#: peak's width.
+# Lengths are fractions of the range between a parameter's bounds. All but `STEP` are chosen, not measured: they decide
+# how many evaluations a search takes, and whether it finds the best regime, but not where the minimum is.
+#: [fit] Step of derivatives. It is above the noise of a curve's points (1e-5) and below a peak's width.
 STEP = 2e-3
 #: [fit] Initial points from which the search descends in a round.
 _STARTS = 3
@@ -38,6 +46,22 @@ _SIMPLEX_CALLS = 40
 _APART_BY = 0.1
 #: [fit] Most rounds of the search, each with twice as many initial points.
 _MOST_ROUNDS = 3
+#: [fit] Distance of the initial points from the bounds.
+_MARGIN = 0.02
+#: [fit] Distance from the bounds at which a descent begins: `least_squares` starts inside them only.
+_INSIDE = 1e-6
+#: [fit] Unit of length in `least_squares` (`x_scale`), from which the size of its first step follows.
+_LENGTH_SCALE = 0.1
+#: [fit] Relative change of the point, or of the misfit, at which a descent ends: the noise of a curve's points.
+_DESCENT_TOLERANCE = 1e-5
+#: [fit] Size of the first simplex where a descent has stopped between regimes: it goes on near the point.
+_NEAR_SIMPLEX = 0.02
+#: [fit] Size of the first simplex where slopes are not used at all.
+_FIRST_SIMPLEX = 0.1
+#: [fit] Size of the simplex at which its search ends, a twentieth of `STEP`.
+_LAST_SIMPLEX = 1e-4
+#: [fit] Range of the simplex's misfits at which its search ends. It is far below the rise of 3.84 at an interval's end.
+_LAST_RANGE = 1e-3
 
 
 @dataclass(eq=False)
@@ -65,9 +89,9 @@ class Problem:
         if self.scheduler is None or len(new) < 2:
             return
         tasks = [(self.target, *with_values(self.scene, self.free, self.values(x))) for x in new.values()]
-        found = dict(results(self.scheduler, evaluated, tasks, self.stop))
-        for number, x in enumerate(new.values()):  # in the order asked, whoever was first
-            self._keep(x, found[number])
+        evaluations = dict(results(self.scheduler, evaluated, tasks, self.stop))
+        for number, x in enumerate(new.values()):  # in the order of the points, whichever was ready first
+            self._keep(x, evaluations[number])
 
     def evaluate(self, x: np.ndarray) -> Evaluation:
         """The target's evaluation at x (P,), whose numbers are clipped to the cube. Raises `Cancelled`."""
@@ -79,25 +103,25 @@ class Problem:
             self._keep(x, self.target.evaluate(scene, amplitude, self.stop))
         return self._known[key]
 
-    def _keep(self, x: np.ndarray, found: Evaluation) -> None:
-        self._known[x.tobytes()] = found
+    def _keep(self, x: np.ndarray, evaluation: Evaluation) -> None:
+        self._known[x.tobytes()] = evaluation
         self.points.append(x)
-        self.misfits.append(self._misfit(found, x))
+        self.misfits.append(self._misfit(evaluation, x))
         self.tell(len(self.misfits))
 
     def values(self, x: np.ndarray) -> np.ndarray:
         """Parameters (P,) at x (P,), each in its own unit."""
-        return np.array([one.value(float(part)) for one, part in zip(self.free, x, strict=True)])
+        return np.array([parameter.value(float(part)) for parameter, part in zip(self.free, x, strict=True)])
 
     def priors(self, x: np.ndarray) -> np.ndarray:
         """Residuals of the priors at x, one for each parameter that has one, in standard deviations."""
-        return np.array([(value - one.prior[0]) / one.prior[1]
-                         for one, value in zip(self.free, self.values(np.clip(x, 0, 1)), strict=True) if one.prior])
+        return np.array([(value - parameter.prior[0]) / parameter.prior[1] for parameter, value
+                         in zip(self.free, self.values(np.clip(x, 0, 1)), strict=True) if parameter.prior])
 
     def residuals(self, x: np.ndarray) -> np.ndarray:
-        """Residuals (R,) at x: of the data, of the priors, and the root of the logarithms of the variances."""
-        found = self.evaluate(x)
-        return np.concatenate([found.residuals, self.priors(x), [np.sqrt(max(found.log_variance, 0.0))]])
+        """Residuals (R + 1,) at x: of the data, of the priors, and last the root of the logarithms of the variances."""
+        evaluation = self.evaluate(x)
+        return np.concatenate([evaluation.residuals, self.priors(x), [np.sqrt(max(evaluation.log_variance, 0.0))]])
 
     def misfit(self, x: np.ndarray) -> float:
         """What is made least: χ² and the logarithms of the variances, −2 ln of the likelihood but for a constant."""
@@ -107,27 +131,34 @@ class Problem:
         """The sum of the squared residuals and priors at x, whose distribution is known if the model is true."""
         return self.misfit(x) - self.evaluate(x).log_variance
 
-    def _misfit(self, found: Evaluation, x: np.ndarray) -> float:
-        return float((found.residuals**2).sum() + (self.priors(x) ** 2).sum() + found.log_variance)
+    def _misfit(self, evaluation: Evaluation, x: np.ndarray) -> float:
+        return float((evaluation.residuals**2).sum() + (self.priors(x) ** 2).sum() + evaluation.log_variance)
 
     def jacobian(self, x: np.ndarray, moving: Sequence[int]) -> np.ndarray:
-        """Derivatives (R, M) of the residuals by the M parameters `moving`, given by number.
+        """Derivatives (R + 1, M) of the residuals by the M parameters `moving`, given by number.
 
         They are differences over `STEP` of the cube, to the side that stays within the bounds.
         """
         beside = [_beside(x, j) for j in moving]
         self.ahead([x, *beside])
         base = self.residuals(x)
-        return np.stack([(self.residuals(other) - base) / (STEP if x[j] + STEP <= 1.0 else -STEP)
-                         for j, other in zip(moving, beside, strict=True)], axis=1)
+        return np.stack([(self.residuals(neighbour) - base) / (STEP if x[j] + STEP <= 1.0 else -STEP)
+                         for j, neighbour in zip(moving, beside, strict=True)], axis=1)
+
+    def curvature(self, x: np.ndarray) -> np.ndarray:
+        """JᵀJ (P, P) of the residuals of data and priors: half the second derivatives of χ², by Gauss and Newton.
+
+        The logarithms of enlarged variances are left out: JᵀJ of their root is not their curvature.
+        """
+        slopes = self.jacobian(x, range(len(x)))[:-1]
+        return np.asarray(slopes.T @ slopes)
 
     def correlation(self, x: np.ndarray) -> np.ndarray:
-        """Correlation (P, P) of the estimates at a minimum, from the inverse of JᵀJ; NaN where it has none.
+        """Correlation (P, P) of the estimates at a minimum, from the inverse of `curvature`; NaN where it has none.
 
-        It is that of the likelihood's parabola, which ends where a regime does.
+        It describes the parabola by which χ² rises from its minimum, and ends where the regime does.
         """
-        slopes = self.jacobian(x, range(len(x)))
-        curvature = slopes.T @ slopes
+        curvature = self.curvature(x)
         if np.linalg.matrix_rank(curvature) < len(x):  # a parameter that changes nothing, or two that do the same
             return np.full(curvature.shape, np.nan)
         covariance = np.linalg.inv(curvature)
@@ -151,9 +182,9 @@ def _inside(x: np.ndarray) -> np.ndarray:
 
 def _beside(x: np.ndarray, j: int) -> np.ndarray:
     """A step of derivatives away in parameter j, to the side that stays within the bounds."""
-    other = np.array(x, dtype=float)
-    other[j] += STEP if x[j] + STEP <= 1.0 else -STEP
-    return other
+    neighbour = np.array(x, dtype=float)
+    neighbour[j] += STEP if x[j] + STEP <= 1.0 else -STEP
+    return neighbour
 
 
 def descend(problem: Problem, x: np.ndarray, moving: Sequence[int], most: int = _DESCENT_CALLS) -> np.ndarray:
@@ -162,38 +193,40 @@ def descend(problem: Problem, x: np.ndarray, moving: Sequence[int], most: int = 
     if not moving:
         return x
 
-    def whole(part: np.ndarray) -> np.ndarray:
-        there = np.array(x, dtype=float)
-        there[moving] = part
-        return there
+    def with_all(part: np.ndarray) -> np.ndarray:
+        """The point whose parameters `moving` are `part`."""
+        point = np.array(x, dtype=float)
+        point[moving] = part
+        return point
 
-    found = least_squares(lambda part: problem.residuals(whole(part)), np.clip(x[moving], 1e-6, 1.0 - 1e-6),
-                          jac=lambda part: problem.jacobian(whole(part), moving), bounds=(0.0, 1.0), method="trf",
-                          x_scale=0.1, xtol=1e-5, ftol=1e-5, max_nfev=most)
-    better = whole(found.x)
-    return better if problem.misfit(better) <= problem.misfit(x) else x
+    descent = least_squares(lambda part: problem.residuals(with_all(part)),
+                            np.clip(x[moving], _INSIDE, 1.0 - _INSIDE),
+                            jac=lambda part: problem.jacobian(with_all(part), moving), bounds=(0.0, 1.0), method="trf",
+                            x_scale=_LENGTH_SCALE, xtol=_DESCENT_TOLERANCE, ftol=_DESCENT_TOLERANCE, max_nfev=most)
+    end = with_all(descent.x)
+    return end if problem.misfit(end) <= problem.misfit(x) else x
 
 
 def descend_by_simplex(problem: Problem, x: np.ndarray, size: float) -> np.ndarray:
-    """The point to which Nelder and Mead's simplex of the first `size` goes from x."""
+    """The point to which Nelder and Mead's simplex goes from x, where it is of `size`."""
     count = len(x)
     corners = np.vstack([x, *(x + (size if x[j] + size <= 1.0 else -size) * np.eye(count)[j]
                                   for j in range(count))])
-    found = minimize(problem.misfit, x, method="Nelder-Mead", bounds=[(0.0, 1.0)] * count,
-                     options={"initial_simplex": corners, "maxfev": _SIMPLEX_CALLS * count, "xatol": 1e-4,
-                              "fatol": 1e-3})
-    better = np.clip(found.x, 0.0, 1.0)
-    return better if problem.misfit(better) <= problem.misfit(x) else x
+    descent = minimize(problem.misfit, x, method="Nelder-Mead", bounds=[(0.0, 1.0)] * count,
+                       options={"initial_simplex": corners, "maxfev": _SIMPLEX_CALLS * count, "xatol": _LAST_SIMPLEX,
+                                "fatol": _LAST_RANGE})
+    end = np.clip(descent.x, 0.0, 1.0)
+    return end if problem.misfit(end) <= problem.misfit(x) else x
 
 
-def search(problem: Problem, initial: int, enough: Callable[[np.ndarray], bool]) -> np.ndarray:
-    """The best point: `initial` points over the bounds, descents from the best, a simplex where regimes change.
+def search(problem: Problem, initial_points: int, enough: Callable[[np.ndarray], bool]) -> np.ndarray:
+    """The best point: initial points over the bounds, descents from the best, a simplex where regimes change.
 
-    Where the best point is not good `enough`, the initial points are doubled until there were `_MOST_ROUNDS`: a valley
-    that was missed must not be a verdict on the model.
+    Where the best point is not good `enough`, the number of initial points is doubled, `_MOST_ROUNDS` rounds at most: a
+    valley that was missed must not be a verdict on the model.
     """
     count = len(problem.free)
-    size = max(1, (initial - 1).bit_length())
+    size = max(1, (initial_points - 1).bit_length())
     sequence = qmc.Sobol(count, scramble=False)
     tried: list[np.ndarray] = []
     starts: list[np.ndarray] = []
@@ -206,13 +239,13 @@ def search(problem: Problem, initial: int, enough: Callable[[np.ndarray], bool])
         if enough(best):
             break
     if problem.target.smooth and problem.jumps_beside(best):
-        best = descend(problem, descend_by_simplex(problem, best, 0.02), range(count))
+        best = descend(problem, descend_by_simplex(problem, best, _NEAR_SIMPLEX), range(count))
     return best
 
 
 def _inner_points(points: np.ndarray, spacing: float) -> np.ndarray:
-    """Points of [0, 1)ⁿ moved by half their spacing, cyclically, and into 0.02 to 0.98: none begins on a bound."""
-    return np.asarray(0.02 + 0.96 * ((points + 0.5 * spacing) % 1.0))
+    """Points of [0, 1)ⁿ moved by half their spacing, cyclically, and away from the bounds by `_MARGIN`."""
+    return np.asarray(_MARGIN + (1.0 - 2.0 * _MARGIN) * ((points + 0.5 * spacing) % 1.0))
 
 
 def _next_starts(problem: Problem, tried: list[np.ndarray], starts: list[np.ndarray]) -> list[np.ndarray]:
@@ -220,7 +253,7 @@ def _next_starts(problem: Problem, tried: list[np.ndarray], starts: list[np.ndar
     new: list[np.ndarray] = []
     problem.ahead(tried)
     for x in sorted(tried, key=problem.misfit):
-        if all(np.abs(x - other).max() > _APART_BY for other in starts):
+        if all(np.abs(x - start).max() > _APART_BY for start in starts):
             starts.append(x)
             new.append(x)
         if len(new) == _STARTS:
@@ -232,4 +265,4 @@ def _minimize(problem: Problem, start: np.ndarray) -> np.ndarray:
     """Descend with the method for this target's residuals."""
     if problem.target.smooth:
         return descend(problem, start, range(len(start)))
-    return descend_by_simplex(problem, start, 0.1)
+    return descend_by_simplex(problem, start, _FIRST_SIMPLEX)

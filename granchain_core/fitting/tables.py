@@ -7,11 +7,14 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..tables import Column, Table, axis
+from .curve_target import CurveTarget
+from .evaluation import Evaluation
+from .feature_target import FeatureTarget
 from .intervals import Profile
 from .parameters import Free
 from .records import RecordsTarget
 from .search import Target
-from .targets import CurveTarget, Evaluation, FeatureTarget, SeriesTarget
+from .series_target import SeriesTarget
 
 
 def parameter_table(free: Sequence[Free], best: np.ndarray, profiles: Sequence[Profile]) -> Table:
@@ -19,17 +22,18 @@ def parameter_table(free: Sequence[Free], best: np.ndarray, profiles: Sequence[P
     along = ("parameter",)
     columns = {
         "best": Column(best, along, "", "value with the least misfit, in `unit`"),
-        "bound_low": Column(np.array([one.low for one in free]), along, "", "lower bound, in `unit`"),
-        "bound_high": Column(np.array([one.high for one in free]), along, "", "upper bound, in `unit`"),
-        "unit": Column(np.array([one.unit for one in free], dtype=object), along, "", "unit of the parameter")}
+        "bound_low": Column(np.array([parameter.low for parameter in free]), along, "", "lower bound, in `unit`"),
+        "bound_high": Column(np.array([parameter.high for parameter in free]), along, "", "upper bound, in `unit`"),
+        "unit": Column(np.array([parameter.unit for parameter in free], dtype=object), along, "",
+                       "unit of the parameter")}
     if profiles:
         for end in ("low", "high"):
-            columns[end] = Column(np.array([getattr(one, end) for one in profiles]), along, "",
+            columns[end] = Column(np.array([getattr(profile, end) for profile in profiles]), along, "",
                                   f"{'lower' if end == 'low' else 'upper'} end of the 95 % interval, in `unit`")
             columns[f"open_{end}"] = Column(
-                np.array([getattr(one, f"open_{end}") for one in profiles], dtype=np.int8), along, "1",
+                np.array([getattr(profile, f"open_{end}") for profile in profiles], dtype=np.int8), along, "1",
                 "1 where the interval goes on beyond that end: it is a bound, or the farthest value that was tried")
-    return Table("parameters", axis("parameter", np.array([one.name for one in free], dtype=object), "",
+    return Table("parameters", axis("parameter", np.array([parameter.name for parameter in free], dtype=object), "",
                                     "name of the parameter"), columns)
 
 
@@ -52,15 +56,15 @@ def data_table(target: Target, evaluation: Evaluation) -> Table:
 
 
 def _samples(records: Sequence[SeriesTarget]) -> dict[str, Column]:
-    """What was measured, sample by sample, of one record after another; with drive frequencies that are their own."""
+    """The measured samples of one record after another, with the drive frequencies of records that have their own."""
     along = ("datum",)
-    forces = [values for one in records for values in one.channels.values()]
-    names = [name for one in records for name, values in one.channels.items() for _ in values]
-    times = [one.time for one in records for _ in one.channels]
+    forces = [values for record in records for values in record.channels.values()]
+    names = [name for record in records for name, values in record.channels.items() for _ in values]
+    times = [record.time for record in records for _ in record.channels]
     columns = {"measured": Column(np.concatenate(forces), along, "N", "measured force"),
                "channel": Column(np.array(names, dtype=object), along, "", "which force"),
                "time": Column(np.concatenate(times), along, "s", "time in the series")}
-    own = [one.frequency for one in records for values in one.channels.values() for _ in values]
+    own = [record.frequency for record in records for values in record.channels.values() for _ in values]
     if all(f is not None for f in own):
         columns["frequency"] = Column(np.array(own, dtype=float), along, "Hz", "measured or stated frequency")
     return columns
@@ -68,9 +72,9 @@ def _samples(records: Sequence[SeriesTarget]) -> dict[str, Column]:
 
 def profile_table(free: Sequence[Free], profiles: Sequence[Profile]) -> Table:
     """The profiles of all parameters below each other."""
-    names = [one.name for one, found in zip(free, profiles, strict=True) for _ in found.values]
-    values = [value for found in profiles for value in found.values]
-    rises = [rise for found in profiles for rise in found.rises]
+    names = [parameter.name for parameter, profile in zip(free, profiles, strict=True) for _ in profile.values]
+    values = [value for profile in profiles for value in profile.values]
+    rises = [rise for profile in profiles for rise in profile.rises]
     along = ("place",)
     return Table("profiles", axis("place", np.arange(len(names)), "1", "place on a profile"), {
         "name": Column(np.array(names, dtype=object), along, "", "name of the parameter"),
@@ -83,5 +87,6 @@ def landscape_table(free: Sequence[Free], landscape: tuple[np.ndarray, np.ndarra
     values, misfits = landscape
     along = ("trial",)
     return Table("landscape", axis("trial", np.arange(len(misfits)), "1", "number of the evaluation"), {
-        **{one.name: Column(values[:, i], along, one.unit, f"value of {one.name}") for i, one in enumerate(free)},
+        **{parameter.name: Column(values[:, i], along, parameter.unit, f"value of {parameter.name}")
+           for i, parameter in enumerate(free)},
         "misfit": Column(misfits, along, "1", "χ² and the logarithms of the variances")})

@@ -33,9 +33,9 @@ def virtual_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, error
 
 def virtual_series(scene: Scene, periods: int, samples: int, error: float, random: np.random.Generator) -> Series:
     """The model's forces over `periods` drive periods, begun at any phase, with normal noise of `error` [N]."""
-    found = settle(scene, samples=_FINER * samples).run
+    motion = settle(scene, samples=_FINER * samples).run
     time = np.arange(periods * samples) / (samples * scene.f)
-    begun, width = random.random() * float(found.time[-1] - found.time[0]), 1.0 / (samples * scene.f)
-    forces = [Train.of(found, name).mean_over(time + begun, width) + error * random.standard_normal(len(time))
+    begun, width = random.random() * float(motion.time[-1] - motion.time[0]), 1.0 / (samples * scene.f)
+    forces = [Train.of(motion, name).mean_over(time + begun, width) + error * random.standard_normal(len(time))
               for name in ("input_force", "output_force")]
     return Series(time, None, forces[0], forces[1], f"virtual: {scene.name} with noise of {error:g} N", note=VIRTUAL)

@@ -88,14 +88,14 @@ def at_once_picture() -> Picture:
 
     The step is a hundredth of the shortest contact.
     """
-    beads, samples, every, damping = 5, 200, 10, 0.02
+    beads, samples, stride, damping = 5, 200, 10, 0.02
     step = contact_time(2.0) / 100.0
     velocity = np.random.default_rng(beads).uniform(-1.0, 1.0, beads)
     velocity -= velocity[::-1]
-    bench = Bench(beads, samples * every * step, samples, LinearDashpot(damping))
+    bench = Bench(beads, samples * stride * step, samples, LinearDashpot(damping))
     bench.throw(velocity)
     ours = bench.record().displacement
-    naive = one_after_another(velocity, damping, step, samples * every)[::every]
+    naive = one_after_another(velocity, damping, step, samples * stride)[::stride]
     middle, largest = beads // 2, np.abs(ours).max()
     return Picture(bench.time, "scaled time", "middle bead, over the largest displacement", (
         Trace("granchain", ours[:, middle] / largest),
@@ -122,8 +122,8 @@ def unequal(mass: float) -> float:
     """Error of the velocities after a bead has met one of `mass` times its own, against the two conservation laws."""
     bench = Bench(2, 8.0 * (1.0 + mass) ** 0.4, 4, ends=(0.0, 0.0), inverse_mass=[1.0, 1.0 / mass], tolerance=1e-14)
     bench.throw([1.0, 0.0])
-    found = bench.record().velocity[-1]
-    return float(np.abs(found - [(1.0 - mass) / (1.0 + mass), 2.0 / (1.0 + mass)]).max())
+    velocities = bench.record().velocity[-1]
+    return float(np.abs(velocities - [(1.0 - mass) / (1.0 + mass), 2.0 / (1.0 + mass)]).max())
 
 
 def free_pulse(beads: int, inverse_mass: list[float], time: float = 20.0) -> float:
@@ -183,15 +183,15 @@ def collisions(quick: bool) -> list[Measurement]:
 
 def collisions_picture() -> Picture:
     """Velocities of a cradle's last two beads, and those by explicit Euler with 40 steps a contact."""
-    beads, samples, every = 5, 120, 2
+    beads, samples, stride = 5, 120, 2
     step = contact_time(1.0) / 40.0
-    bench = Bench(beads, samples * every * step, samples, ends=(1e-9, 1e-9))
+    bench = Bench(beads, samples * stride * step, samples, ends=(1e-9, 1e-9))
     bench.throw(np.eye(beads)[0])
     apart = np.full(beads + 1, 0.0)
     apart[[0, -1]] = -1e6
     slope = plain_slope(PlainChain(bench.masses, np.ones(beads + 1), apart, 0.0, 0.0, 1.0))
     start = np.concatenate([np.zeros(beads), np.eye(beads)[0]])
-    naive = euler(slope, start, step, samples * every)[::every, beads:]
+    naive = euler(slope, start, step, samples * stride)[::stride, beads:]
     return Picture(bench.time, "scaled time", "velocity over the first bead's", tuple(
         Trace(f"{label}: bead {i}", velocity[:, i - 1])
         for label, velocity in (("granchain", bench.record().velocity), ("explicit Euler, 40 steps a contact", naive))

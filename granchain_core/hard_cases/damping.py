@@ -77,11 +77,11 @@ def restitutions(quick: bool) -> list[Measurement]:
     strengths = (0.1, 0.6) if quick else (0.01, 0.1, 0.3, 0.6, 1.0)
     exact = max(abs(bounce("tsuji", tsuji_strength(e), False, v) - e)
                 for e in (0.95, 0.7, 0.3) for v in ((1.0,) if quick else (0.01, 1.0, 10.0)))
-    found = [Measurement("Tsuji, tension allowed, closed form", exact, 1e-8)]
+    measurements = [Measurement("Tsuji, tension allowed, closed form", exact, 1e-8)]
     for law, cut in _QUICK if quick else [(law, cut) for law in LAWS for cut in (False, True)]:
         worst = max(abs(bounce(law, s, cut) - restitution(law, s, cut)) for s in strengths)
-        found.append(Measurement(f"{law}, tension {'cut' if cut else 'allowed'}, quadrature", worst, 1e-8))
-    return [*found, *_pulls(2 if quick else 20)]
+        measurements.append(Measurement(f"{law}, tension {'cut' if cut else 'allowed'}, quadrature", worst, 1e-8))
+    return [*measurements, *_pulls(2 if quick else 20)]
 
 
 def _pulls(periods: int) -> list[Measurement]:

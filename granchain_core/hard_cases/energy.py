@@ -194,14 +194,14 @@ def jump_push() -> float:
 
 def switched_drives(quick: bool) -> list[Measurement]:
     """The push of a jump; impulse balance after a jump, of a ramp, a chirp and a stop."""
-    half, whole, limit = _SWITCHED // 2, _SWITCHED, 1e-9
+    half, full, limit = _SWITCHED // 2, _SWITCHED, 1e-9
     count = 6 if quick else 40
     return [
         Measurement("the jump's own push, against D times the jump", jump_push(), 1e-12),
-        Measurement("after a jump", switched([(340.0, 1.0, whole)], 0.25), limit),
+        Measurement("after a jump", switched([(340.0, 1.0, full)], 0.25), limit),
         Measurement("ramp", switched([(340.0, (i + 1) / count, half) for i in range(count)], 0.0), limit),
         Measurement("chirp", switched([(200.0 * 1.1**i, 1.0, half) for i in range(count)], 0.0), limit),
-        Measurement("stop", switched([(340.0, 1.0, whole), (340.0, 0.0, whole)], 0.0), limit),
+        Measurement("stop", switched([(340.0, 1.0, full), (340.0, 0.0, full)], 0.0), limit),
     ]
 
 

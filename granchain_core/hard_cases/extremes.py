@@ -34,12 +34,12 @@ def statics_error(frequency: float) -> float:
     All contacts carry the same force F, and their overlaps add up: Σ(F/K_c)^{2/3} = Σ(F0/K_c)^{2/3} + u_0.
     """
     chosen = scene("sec2").evolve(F0=10.0, N=5, D=3.0, f=frequency, accuracy=1e-7)
-    found = run(chosen, periods=1, record=1, samples=16)
+    motion = run(chosen, periods=1, record=1, samples=16)
     soft = chosen.contact_stiffness() ** (-2.0 / 3.0)
     rest = float(chosen.static_overlap().sum())
-    overlap = (rest + found.drive_displacement[:, None]) * soft / soft.sum()
-    true = found.drive_displacement[:, None] - np.cumsum(overlap - chosen.static_overlap(), axis=1)[:, :-1]
-    return float(np.abs(found.displacement - true).max()) / chosen.A0
+    overlap = (rest + motion.drive_displacement[:, None]) * soft / soft.sum()
+    true = motion.drive_displacement[:, None] - np.cumsum(overlap - chosen.static_overlap(), axis=1)[:, :-1]
+    return float(np.abs(motion.displacement - true).max()) / chosen.A0
 
 
 def lattice_error(ratio: float) -> float:
@@ -50,12 +50,12 @@ def lattice_error(ratio: float) -> float:
     base = scene("sec2").evolve(F0=10.0, N=8, A0=1e-12, D=200.0, accuracy=1e-7)
     driven = base.evolve(f=min(1e6, ratio * cut_off(base)))
     # the slowest mode decays at 400 a second; after 0.06 s e^-24 of it is left
-    found = run(driven, periods=int(0.06 * driven.f), record=1, samples=16)
+    motion = run(driven, periods=int(0.06 * driven.f), record=1, samples=16)
     omega = 2.0 * np.pi * driven.f
     slope = 1.5 * base.contact_stiffness() * np.sqrt(base.static_overlap()) + 1j * omega * base.D
     answer = np.linalg.solve(_tridiagonal(slope) - omega**2 * np.diag(base.masses()), np.eye(8)[0] * slope[0] * base.A0)
     expected = np.imag(np.outer(np.exp(2j * np.pi * np.arange(17) / 16), answer))
-    return float(np.abs(found.displacement - expected).max()) / base.A0
+    return float(np.abs(motion.displacement - expected).max()) / base.A0
 
 
 def cut_off(chosen: Scene) -> float:
@@ -68,7 +68,7 @@ def _tridiagonal(slope: np.ndarray) -> np.ndarray:
 
 
 def amplitudes(quick: bool) -> list[Measurement]:
-    """Scaling, statics and the stop band."""
+    """Scaling, statics, and the stop band of the linear lattice: the frequencies above its cut-off."""
     times = (1e-4, 1e4) if quick else tuple(10.0**p for p in range(-4, 5))
     drives = (340.0,) if quick else (10.0, 340.0, 3000.0, 1e5)
     fixed = max(scaled_difference(f, fixed_step_setting(2.0), times) for f in drives)
@@ -151,7 +151,7 @@ def unequal(masses: dict[int, float], beads: int, modulus: float = 1.0) -> Scene
 
 def sizes(quick: bool) -> list[Measurement]:
     """One bead, two, ten thousand; a mass and a stiffness a million apart."""
-    found = [
+    measurements = [
         Measurement("error of one bead", plain_error(scene("sec2").evolve(N=1, accuracy=1e-7)), 1e-6),
         Measurement("error of two beads", plain_error(scene("sec2").evolve(N=2, accuracy=1e-7)), 1e-6),
         Measurement("error with a bead of 10^6 times the mass", plain_error(unequal({2: 1e6}, 3)), 1e-6),
@@ -160,17 +160,17 @@ def sizes(quick: bool) -> list[Measurement]:
         Measurement("error with one soft bead, 10^-6 of the modulus", plain_error(unequal({}, 3, 1e-6)), 1e-6),
     ]
     beads = 1_000 if quick else 10_000
-    return [*found, Measurement(f"error of {beads} beads, two methods", long_chain_error(beads), 1e-6),
+    return [*measurements, Measurement(f"error of {beads} beads, two methods", long_chain_error(beads), 1e-6),
             Measurement(f"time per bead and step, {beads} beads over 100", cost_growth(beads, 3 if quick else 10), 2.0)]
 
 
 def sizes_picture() -> Picture:
     """A bead of a thousandth of the mass between two others: ours, and plain RK4 with one step for all of them."""
-    chosen, samples, every, light = unequal({2: 1e-3}, 3), 200, 10, 1
+    chosen, samples, stride, light = unequal({2: 1e-3}, 3), 200, 10, 1
     ours = run(chosen, periods=0, record=1, samples=samples).displacement / chosen.A0
     chain = PlainChain.of(chosen)
-    steps = samples * every
-    naive = rk4(plain_slope(chain), np.zeros(2 * chosen.N), 0.0, chain.period / steps, steps)[::every, light]
+    steps = samples * stride
+    naive = rk4(plain_slope(chain), np.zeros(2 * chosen.N), 0.0, chain.period / steps, steps)[::stride, light]
     naive[np.logical_or.accumulate(~(np.abs(naive) < 4.0))] = np.nan
     return Picture(np.arange(samples + 1) / samples, "drive periods", "bead of 1/1000 of the mass, in amplitudes", (
         Trace("granchain", ours[:, light]),
@@ -211,8 +211,8 @@ def mode_errors(preload: float, number: int, beads: int = 11) -> tuple[float, fl
     frequency, shape = mode(chosen, number)
     static = float(chosen.static_overlap()[0])
     linear = np.outer(np.cos(2.0 * np.pi * 3.0 * np.arange(49) / 48.0), shape)
-    there, back = (swing(chosen, frequency, sign * shape, 1e-5 * static) for sign in (1.0, -1.0))
-    odd = 0.5 * (there - back)
+    forth, back = (swing(chosen, frequency, sign * shape, 1e-5 * static) for sign in (1.0, -1.0))
+    odd = 0.5 * (forth - back)
     deviations = [float(np.abs(swing(chosen, frequency, shape, a * static) - linear).max()) for a in (1e-4, 1e-3)]
     return float(np.abs(odd - linear).max()), abs(deviations[1] / deviations[0] / 10.0 - 1.0)
 
@@ -230,9 +230,9 @@ def cut_off_error(beads: int) -> float:
     ends = [swing(chosen, frequency, sign * shape, 1e-5 * static, periods)[-2:] for sign in (1.0, -1.0)]
     odd = 0.5 * (ends[0] - ends[1])
     # 5/12 of the mode's period before the end: there cos is steep, and its argument is the phase
-    found = float(odd[0] @ shape / (shape @ shape))
+    projection = float(odd[0] @ shape / (shape @ shape))
     angle = 2.0 * np.pi * periods * 47.0 / 48.0
-    return abs(found - np.cos(angle)) / abs(np.sin(angle)) / angle
+    return abs(projection - np.cos(angle)) / abs(np.sin(angle)) / angle
 
 
 def preloads(quick: bool) -> list[Measurement]:
@@ -263,7 +263,8 @@ def preloads_picture() -> Picture:
         bodies = np.concatenate([[0.0], u, [-static.sum()]])
         return stiffness * np.maximum(bodies[:-1] - bodies[1:], 0.0) ** 1.5
 
-    found = root(lambda u: force(u)[:-1] - force(u)[1:], np.zeros(chosen.N), method="lm")
+    equilibrium = root(lambda u: force(u)[:-1] - force(u)[1:], np.zeros(chosen.N), method="lm")
     return Picture(np.arange(1, chosen.N + 2), "contact", "force over the preload", (
         Trace("granchain, in closed form", stiffness * static**1.5 / chosen.F0),
-        Trace(f"SciPy root, method lm, from touching beads: success = {found.success}", force(found.x) / chosen.F0)))
+        Trace(f"SciPy root, method lm, from touching beads: success = {equilibrium.success}",
+              force(equilibrium.x) / chosen.F0)))

@@ -24,12 +24,12 @@ def cut_and_gone_on(method: str, periods: int, cuts: int, seed: int = 1) -> floa
     unit = _SAMPLES if METHODS[method].error_control else 1
     rng = np.random.default_rng(seed)
     where = unit * np.sort(rng.choice(np.arange(1, total // unit), min(cuts, total // unit - 1), replace=False))
-    whole, pieces = Engine(chosen, setting, _SAMPLES), Engine(chosen, setting, _SAMPLES)
+    uncut, pieces = Engine(chosen, setting, _SAMPLES), Engine(chosen, setting, _SAMPLES)
     differs, done = 0, 0
     for end in [*where, total]:
         count = int(end - done)
-        one, other = whole_part(whole, count), whole_part(pieces, count)
-        differs += int((one != other).sum()) + int((whole.y != pieces.y).sum())
+        one, other = whole_part(uncut, count), whole_part(pieces, count)
+        differs += int((one != other).sum()) + int((uncut.y != pieces.y).sum())
         pieces = resumed(chosen, Checkpoint.from_bytes(checkpoint(pieces).to_bytes()))
         done = int(end)
     return float(differs)
@@ -44,13 +44,13 @@ def uninterrupted(method: str, periods: int, cuts: int) -> float:
     """How many numbers of the final state differ between one call over all periods and many cut ones."""
     chosen = scene("sec2").evolve(f=1130.0, N=5)
     setting = MethodSetting(method, 1.0, 1e-9 if METHODS[method].error_control else 0.0)
-    whole, pieces = Engine(chosen, setting, 1), Engine(chosen, setting, 1)
-    whole.periods(periods, watch=False)
+    uncut, pieces = Engine(chosen, setting, 1), Engine(chosen, setting, 1)
+    uncut.periods(periods, watch=False)
     where = np.sort(np.random.default_rng(2).choice(np.arange(1, periods), min(cuts, periods - 1), replace=False))
     for count in np.diff([0, *where, periods]):
         pieces.periods(int(count), watch=False)
         pieces = resumed(chosen, Checkpoint.from_bytes(checkpoint(pieces).to_bytes()))
-    return float((whole.y != pieces.y).sum())
+    return float((uncut.y != pieces.y).sum())
 
 
 def phase_error(periods: int) -> tuple[float, float]:
@@ -71,15 +71,15 @@ def long_runs(quick: bool) -> list[Measurement]:
     """Drive phase and bitwise restarts."""
     periods = 20_000 if quick else 100_000
     phase, counted = phase_error(periods)
-    found = [Measurement(f"drive phase after {periods} periods, in amplitudes", phase, 1e-15),
+    measurements = [Measurement(f"drive phase after {periods} periods, in amplitudes", phase, 1e-15),
              Measurement("periods counted wrongly", counted, 0.0)]
     cuts = 40 if quick else 1_000
     for method in METHODS:
         run = 2 * cuts if quick else periods // (10 if METHODS[method].error_control else 1)
         differs = cut_and_gone_on(method, 2 * cuts, cuts) + uninterrupted(method, run, cuts)
-        found.append(Measurement(f"numbers that {cuts} random cuts change, {method}", differs, 0.0,
+        measurements.append(Measurement(f"numbers that {cuts} random cuts change, {method}", differs, 0.0,
                                  f"{run} periods in one call, and {2 * cuts} sample by sample"))
-    return found
+    return measurements
 
 
 def long_runs_picture() -> Picture:

@@ -86,11 +86,11 @@ def observed_apart(chain: PlainChain, start: np.ndarray, periods: int, rtol: flo
 
     n, looks = len(chain.masses), 1000
     times = chain.period / looks * np.arange(looks * periods + 1)
-    asked: dict[str, Any] = {"rtol": rtol, "atol": 1e-3 * rtol}
-    driven: Any = solve_ivp(plain_slope(chain), times[[0, -1]], start, t_eval=times, **asked)
+    tolerances: dict[str, Any] = {"rtol": rtol, "atol": 1e-3 * rtol}
+    driven: Any = solve_ivp(plain_slope(chain), times[[0, -1]], start, t_eval=times, **tolerances)
     overlap = np.sin(chain.beta * times) - driven.y[0]
     rate = chain.beta * np.cos(chain.beta * times) - driven.y[n]
     push = np.where(overlap > 0.0, chain.springs[0] * np.abs(overlap) ** 1.5 + chain.damping * rate, 0.0)
     pushed = plain_slope(chain, (times, push))
-    observer: Any = solve_ivp(pushed, times[[0, -1]], start, t_eval=times[::looks], **asked)
+    observer: Any = solve_ivp(pushed, times[[0, -1]], start, t_eval=times[::looks], **tolerances)
     return np.asarray(np.abs(observer.y[:n] - driven.y[:n, ::looks]).max(axis=0))

@@ -44,21 +44,21 @@ class Injector:
         """Whether a bad displacement or w of a bead is reported at once, with bead, time and step."""
         row, bead = self.engine.scaled.bodies, int(rng.integers(1, self.beads + 1))
         self.engine.y[bead + row * int(rng.integers(2))] = _VALUES[rng.integers(3)]
-        found = self.outcome()
+        failure = self.outcome()
         step = None if METHODS[self.method].error_control else self._kept[2]
-        return found is not None and (found.bead, found.step) == (bead, step)
+        return failure is not None and (failure.bead, failure.step) == (bead, step)
 
     def into_contact(self, rng: np.random.Generator) -> bool:
         """Whether a contact whose stiffness is NaN is reported in the first step, at one of its two beads."""
         springs, contact = self.engine.scaled.slots.chain.stiffness, int(rng.integers(self.beads + 1))
         before, springs[contact] = springs[contact], np.nan
         self.renew()
-        found = self.outcome()
+        failure = self.outcome()
         springs[contact] = before
         self.renew()
         beads = {min(max(b, 1), self.beads) for b in (contact, contact + 1)}
         step = None if METHODS[self.method].error_control else self._kept[2]
-        return found is not None and found.bead in beads and found.step == step
+        return failure is not None and failure.bead in beads and failure.step == step
 
     def into_drive(self, rng: np.random.Generator) -> bool:
         """Whether a driver that is NaN in one step is reported in that step, at bead 1."""
@@ -67,9 +67,9 @@ class Injector:
         row = 2 * step + 2  # the step's end; the middle of a split step is not read from this table
         before = self.engine.stepper.drive[row].copy()
         self.engine.stepper.drive[row] = np.nan
-        found = self.outcome()
+        failure = self.outcome()
         self.engine.stepper.drive[row] = before
-        return found is not None and (found.bead, found.step) == (1, step)
+        return failure is not None and (failure.bead, failure.step) == (1, step)
 
     def outcome(self) -> ComputationError | None:
         """The typed failure of the next sample, None if it went unnoticed."""
@@ -88,14 +88,14 @@ def injections(count: int) -> tuple[int, int]:
     injectors = [Injector(m, n) for m in ("rk4", RK4_SPLIT, DOP853) for n in (1, 11)]
     wrong = 0
     for i in range(count):
-        one = injectors[i % len(injectors)]
+        injector = injectors[i % len(injectors)]
         where = rng.random()
-        if where < 0.6 or (where >= 0.9 and METHODS[one.method].error_control):
-            wrong += not one.into_state(rng)
+        if where < 0.6 or (where >= 0.9 and METHODS[injector.method].error_control):
+            wrong += not injector.into_state(rng)
         elif where < 0.9:
-            wrong += not one.into_contact(rng)
+            wrong += not injector.into_contact(rng)
         else:
-            wrong += not one.into_drive(rng)
+            wrong += not injector.into_drive(rng)
     return count, wrong
 
 
@@ -122,12 +122,13 @@ def converging(method: str, beads: int, rounds: int) -> float:
 def bad_numbers(quick: bool) -> list[Measurement]:
     """Injections, and the cost of subnormal numbers."""
     count, wrong = injections(2_000 if quick else 100_000)
-    found = [Measurement(f"of {count} injections of NaN or infinity not caught in their step", float(wrong), 0.0)]
+    measurements = [
+        Measurement(f"of {count} injections of NaN or infinity not caught in their step", float(wrong), 0.0)]
     for method, beads in ((RK4_SPLIT, 30), (RK4_SPLIT, 200), (DOP853, 200)):
-        found.append(Measurement("time of an evaluation with a subnormal tail over that without, "
+        measurements.append(Measurement("time of an evaluation with a subnormal tail over that without, "
                                  f"{method}, {beads} beads",
                                  converging(method, beads, 20 if quick else 60), 1.2))
-    return found
+    return measurements
 
 
 def bad_numbers_picture() -> Picture:

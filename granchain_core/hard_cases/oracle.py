@@ -86,23 +86,23 @@ def solved(chain: PlainChain, start: np.ndarray, times: np.ndarray, method: str 
     gaps = chain.overlaps(t, state)
     closed = (gaps > 0.0) | ((gaps == 0.0) & (chain.rates(t, state) > 0.0))
     for _ in range(_MOST_EVENTS):
-        found: Any = solve_ivp(lambda s, y, c=closed: chain.slope(s, y, c), (t, times[-1]), state, method=method,
+        solution: Any = solve_ivp(lambda s, y, c=closed: chain.slope(s, y, c), (t, times[-1]), state, method=method,
                                rtol=max(rtol, 3e-14), atol=1e-2 * rtol, dense_output=True,
                                max_step=chain.period / _LEAST_STEPS,
                                events=[_event(chain, c, bool(closed[c])) for c in range(n + 1)])
-        if found.status < 0:
-            raise ComputationError(f"SciPy's {method} gave up at scaled time {t:.6g}: {found.message}",
+        if solution.status < 0:
+            raise ComputationError(f"SciPy's {method} gave up at scaled time {t:.6g}: {solution.message}",
                                    "solver-gave-up")
-        end = float(found.t[-1])
+        end = float(solution.t[-1])
         while row < len(times) and times[row] <= end:
-            out[row] = found.sol(times[row])
+            out[row] = solution.sol(times[row])
             row += 1
-        if found.status == 0:
+        if solution.status == 0:
             return out
-        changed = next(c for c in range(n + 1) if len(found.t_events[c]))
+        changed = next(c for c in range(n + 1) if len(solution.t_events[c]))
         closed = closed.copy()
         closed[changed] = not closed[changed]
-        t, state = end, found.y[:, -1]
+        t, state = end, solution.y[:, -1]
     raise ComputationError(f"SciPy's {method} met more than {_MOST_EVENTS} contact events.", "chatter")
 
 
@@ -140,6 +140,6 @@ def restitution(law: str, strength: float, cut: bool) -> float:
         return float(d ** (1.5 - power) + strength * state[1]) if cut and state[1] < 0.0 else float(state[0])
 
     over.terminal, over.direction = True, -1.0  # type: ignore[attr-defined]
-    found: Any = solve_ivp(slope, (0.0, 10.0), [0.0, 1.0], method="DOP853", rtol=3e-14, atol=1e-16, events=over,
+    solution: Any = solve_ivp(slope, (0.0, 10.0), [0.0, 1.0], method="DOP853", rtol=3e-14, atol=1e-16, events=over,
                            max_step=0.02)
-    return -float(found.y[1, -1])
+    return -float(solution.y[1, -1])

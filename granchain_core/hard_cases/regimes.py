@@ -76,15 +76,15 @@ def claims(count: int, seed: int) -> tuple[int, int, int]:
         kind = str(rng.choice(["fold", "period_doubling", "doubled", "neimark_sacker"]))
         closeness = 10.0 ** rng.uniform(-5.0, -0.5)
         strobes, orbit, period = normal_form(rng, kind, closeness, _STROBES)
-        found = find_period(strobes)
-        if found.name != "periodic":
+        regime = find_period(strobes)
+        if regime.name != "periodic":
             continue
         made += 1
-        assert found.distance is not None
+        assert regime.distance is not None
         scale = np.abs(strobes).max(axis=(0, 2))
         # the strobes themselves are rounded to 1e-15, and the orbit's place is known to no more than that
-        far = distance(strobes[-1], orbit, scale) > found.distance + 1e-13
-        wrong += far or found.period != period
+        far = distance(strobes[-1], orbit, scale) > regime.distance + 1e-13
+        wrong += far or regime.period != period
         slow += closeness < 1e-3 and far
     return made, wrong, slow
 
@@ -108,15 +108,15 @@ def chain_claims(count: int) -> tuple[int, int]:
     checked, outside = 0, 0
     for frequency in np.linspace(560.0, 640.0, count):
         chosen = scene("sec2").evolve(f=float(frequency))
-        found = settle(chosen)
-        if found.regime.name != "periodic":
+        settled = settle(chosen)
+        if settled.regime.name != "periodic":
             continue
-        orbit = periodic_orbit(chosen, found.regime.period, found.state)
-        largest = float(np.abs(found.run.displacement).max())
-        apart = float(np.abs(orbit.state.displacement - found.state.displacement).max()) / largest
+        orbit = periodic_orbit(chosen, settled.regime.period, settled.state)
+        largest = float(np.abs(settled.run.displacement).max())
+        apart = float(np.abs(orbit.state.displacement - settled.state.displacement).max()) / largest
         checked += 1
-        assert found.regime.distance is not None and found.run.displacement_error is not None
-        outside += apart > found.run.displacement_error
+        assert settled.regime.distance is not None and settled.run.displacement_error is not None
+        outside += apart > settled.run.displacement_error
     return checked, outside
 
 
@@ -147,27 +147,28 @@ _ABOVE = 1000.0
 
 def arrivals() -> dict[str, CurvePoint]:
     """The steady state at one frequency, by the start it came from."""
-    chosen, found = scene("sec2"), {}
+    chosen, arrived = scene("sec2"), {}
     for start, far in (("up", _BELOW), ("down", _ABOVE)):
         points = list(iter_curve(chosen, np.linspace(far, _SHARED, 12), start))
-        found[start] = points[-1]
-    return found
+        arrived[start] = points[-1]
+    return arrived
 
 
 def two_attractors(quick: bool) -> list[Measurement]:
     """Both orbits found, both stable by their multipliers, and every result says which start it is from."""
-    found, chosen = arrivals(), scene("sec2").evolve(f=_SHARED)
-    orbits = {start: periodic_orbit(chosen, p.regime.period, p.state) for start, p in found.items()}
-    forces = [p.max_output_force for p in found.values()]
-    again = {start: settle(chosen, p.state) for start, p in found.items()}
-    same = max(abs(again[s].run.max_output_force / found[s].max_output_force - 1.0) for s in found)
+    arrived, chosen = arrivals(), scene("sec2").evolve(f=_SHARED)
+    orbits = {start: periodic_orbit(chosen, p.regime.period, p.state) for start, p in arrived.items()}
+    forces = [p.max_output_force for p in arrived.values()]
+    again = {start: settle(chosen, p.state) for start, p in arrived.items()}
+    same = max(abs(again[s].run.max_output_force / arrived[s].max_output_force - 1.0) for s in arrived)
     leading = max(float(np.abs(o.multipliers).max()) for o in orbits.values())
     named = [settle(chosen).start == "rest", *(one.start == "previous state" for one in again.values()),
              run(chosen, periods=0, record=1, samples=4).start == "rest",
-             run(chosen, periods=0, record=1, samples=4, start=found["up"].state).start == "given state"]
+             run(chosen, periods=0, record=1, samples=4, start=arrived["up"].state).start == "given state"]
     return [
-        Measurement("orbits missing, of two", 2.0 - len({p.regime.period for p in found.values()}), 0.0,
-                    ", ".join(f"{s}: period {p.regime.period}, {p.max_output_force:.4f} N" for s, p in found.items())),
+        Measurement("orbits missing, of two", 2.0 - len({p.regime.period for p in arrived.values()}), 0.0,
+                    ", ".join(f"{start}: period {p.regime.period}, {p.max_output_force:.4f} N"
+                              for start, p in arrived.items())),
         Measurement("largest multiplier of either orbit", leading, 1.0),
         Measurement("smaller force over the larger", min(forces) / max(forces), 0.9),
         Measurement("change of either when gone on from", float(same), 1e-3),
@@ -223,11 +224,11 @@ def _apart(base: str, count: int) -> tuple[np.ndarray, float]:
     stroboscopic_map = StroboscopicMap(orbit.scene, orbit.period)
     start = stroboscopic_map.inner(stroboscopic_map.engine.scaled.from_si(orbit.state))
     derivative, beads = stroboscopic_map(start, observer=True).derivative, orbit.scene.N
-    difference, found = np.concatenate([np.full(beads, 1e-6), np.zeros(beads)]), np.empty(count)
+    difference, distances = np.concatenate([np.full(beads, 1e-6), np.zeros(beads)]), np.empty(count)
     for i in range(count):
-        found[i] = np.abs(difference[:beads]).max()
+        distances[i] = np.abs(difference[:beads]).max()
         difference = derivative @ difference
-    return np.where(found < 1.0, found, np.nan), float(np.abs(np.linalg.eigvals(derivative)).max())
+    return np.where(distances < 1.0, distances, np.nan), float(np.abs(np.linalg.eigvals(derivative)).max())
 
 
 def _two_runs(tolerance: float, count: int) -> np.ndarray:

@@ -44,7 +44,7 @@ def draw(count: int, seed: int, driven: bool) -> np.ndarray:
 
 
 @kernel
-def touch(cases, driven, work, y, counts, static, chain, found):  # type: ignore[no-untyped-def]
+def touch(cases, driven, work, y, counts, static, chain, results):  # type: ignore[no-untyped-def]
     """Run every case from its phase until the driver, or the bead, is back at middle position.
 
     The gap is 1 − depth. A bead that rests is where it was until the touch, so the analytic closing is asin(gap); the
@@ -72,26 +72,26 @@ def touch(cases, driven, work, y, counts, static, chain, found):  # type: ignore
             before = y[contact] - y[contact + 1] + static[contact] > 0.0
             status, h, changed = located_step(method, trajectory, t, end, counts)
             if status != 0:
-                found[n, CLOSINGS] = -1.0
+                results[n, CLOSINGS] = -1.0
                 break
             t += h
             after = work.end[contact] - work.end[contact + 1] + static[contact] > 0.0
             if after and not before:
-                found[n, CLOSING_ERROR] = abs(t - asin(gap) / rate) / period if changed == contact else 1.0
-                found[n, CLOSINGS] += 1.0
+                results[n, CLOSING_ERROR] = abs(t - asin(gap) / rate) / period if changed == contact else 1.0
+                results[n, CLOSINGS] += 1.0
             if before and not after:
-                found[n, OPENING_ERROR] = abs(t - (pi - asin(gap)) / rate) / period if changed == contact else 1.0
+                results[n, OPENING_ERROR] = abs(t - (pi - asin(gap)) / rate) / period if changed == contact else 1.0
             copy(work.end, y)
             copy(work.k[STAGES], work.k[0])
 
 
 def run(cases: np.ndarray, driven: bool) -> np.ndarray:
     """Results for each case (count, 3)."""
-    row, found = 3, np.zeros((len(cases), 3))
+    row, results = 3, np.zeros((len(cases), 3))
     chain = Chain(np.array([0.0, 1.0, 0.0]), np.ones(2))
     touch(cases, driven, workspace(row), np.zeros(2 * row), np.zeros(4, dtype=np.int64), np.zeros(2), chain,
-          found)
-    return found
+          results)
+    return results
 
 
 def workspace(row: int) -> Dop853Workspace:
@@ -102,9 +102,9 @@ def workspace(row: int) -> Dop853Workspace:
         forces=Forces(np.zeros(row - 1), None))
 
 
-def missed(cases: np.ndarray, found: np.ndarray) -> np.ndarray:
+def missed(cases: np.ndarray, results: np.ndarray) -> np.ndarray:
     """Numbers of the cases whose touch was missed, or invented."""
-    return np.flatnonzero((found[:, CLOSINGS] == 1) != (cases[:, DEPTH] > 0.0))
+    return np.flatnonzero((results[:, CLOSINGS] == 1) != (cases[:, DEPTH] > 0.0))
 
 
 def moved(cases: np.ndarray) -> np.ndarray:

@@ -61,13 +61,13 @@ class File:
         stored = self._stored(path)
         if stored.shape != shape:
             raise Refused(f"/{path} has shape {stored.shape}, expected {shape}")
-        held = {"f": "f", "i": "iu"}.get(kind, "fiu")
-        if stored.type == "text" or np.dtype(stored.type).kind not in held or (kind == "f" and stored.type[-1] != "8"):
+        kinds = {"f": "f", "i": "iu"}.get(kind, "fiu")
+        if stored.type == "text" or np.dtype(stored.type).kind not in kinds or (kind == "f" and stored.type[-1] != "8"):
             raise Refused(f"/{path} holds {stored.type}, expected {'whole numbers' if kind == 'i' else 'numbers'}")
         if stored.units is not None and stored.units != self._units.get(path, stored.units):
             raise Refused(f"/{path} is in {stored.units[:40]!r}, expected {self._units[path]!r}")
-        found = self._source.numbers(path, rows)
-        return found.astype({"i": np.int64}.get(kind, np.float64), copy=False)
+        values = self._source.numbers(path, rows)
+        return values.astype({"i": np.int64}.get(kind, np.float64), copy=False)
 
     def words(self, path: str, count: int, known: tuple[str, ...]) -> list[str]:
         """One row of words, each one of `known`."""
@@ -106,9 +106,9 @@ class File:
 
     def schema(self) -> None:
         """Refuse a layout that is not this version's."""
-        found = self.whole("granchain_schema", 0)
-        if found != SCHEMA:
-            raise Refused(f"its schema is {found}, and this version reads {SCHEMA}")
+        number = self.whole("granchain_schema", 0)
+        if number != SCHEMA:
+            raise Refused(f"its schema is {number}, and this version reads {SCHEMA}")
 
     def scene(self) -> Scene:
         """The scene, its values checked like those of the command line and against the knobs that the file repeats."""

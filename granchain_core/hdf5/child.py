@@ -58,8 +58,8 @@ class Child:
 
     def stored(self, path: str) -> Stored | None:
         """Type, shape and unit of a dataset; None where there is none. As `Plain.stored`."""
-        found = self._ask("stored", path)
-        return found and Stored(str(found["type"]), tuple(found["shape"]), found["units"])
+        answer = self._ask("stored", path)
+        return answer and Stored(str(answer["type"]), tuple(answer["shape"]), answer["units"])
 
     def names(self) -> list[str]:
         """The paths of all datasets in the file. As `Plain.names`."""
@@ -71,8 +71,8 @@ class Child:
 
     def numbers(self, path: str, rows: int | None = None) -> np.ndarray:
         """The numbers of a dataset, of which only the first `rows` where that is given. As `Plain.numbers`."""
-        found = self._ask("numbers", path, rows)
-        kind, shape = np.dtype(found["type"]), tuple(found["shape"])
+        answer = self._ask("numbers", path, rows)
+        kind, shape = np.dtype(answer["type"]), tuple(answer["shape"])
         size = math.prod(shape) * kind.itemsize
         content = self._process.stdout.read(size)  # type: ignore[union-attr]
         if len(content) != size:

@@ -68,18 +68,18 @@ class Plain:
 
     def attribute(self, path: str, name: str) -> float | int | str | None:
         """An attribute of the root or of a dataset, which must be one number or one text; None where it is absent."""
-        found = self._find(path)
-        if found is None or not h5a.exists(found, name.encode()):
+        item = self._find(path)
+        if item is None or not h5a.exists(item, name.encode()):
             return None
-        attribute, called = h5a.open(found, name.encode()), f"attribute {name} of /{path}"
+        attribute, called = h5a.open(item, name.encode()), f"attribute {name} of /{path}"
         if attribute.get_space().get_simple_extent_type() != h5s.SCALAR:
             raise Refused(f"{called} is not one value")
         if attribute.get_type().get_class() not in (*_NUMBERS, h5t.STRING):
             raise Refused(f"{called} is neither a number nor a text")
         if attribute.get_storage_size() > min(_MOST_ATTRIBUTE, self._size):
             raise Refused(f"{called} has {attribute.get_storage_size()} bytes, more than are read")
-        return _value(h5py.AttributeManager(h5py.Group(found) if isinstance(found, h5g.GroupID) else
-                                            h5py.Dataset(found))[name], called)
+        return _value(h5py.AttributeManager(h5py.Group(item) if isinstance(item, h5g.GroupID) else
+                                            h5py.Dataset(item))[name], called)
 
     def stored(self, path: str) -> Stored | None:
         """What a dataset is, without reading it; None where there is none. Raises `Refused` where it is not plain."""
@@ -88,29 +88,29 @@ class Plain:
         return self._stored[path]
 
     def _look(self, path: str) -> Stored | None:
-        found = self._find(path)
-        if found is None:
+        item = self._find(path)
+        if item is None:
             return None
-        if not isinstance(found, h5d.DatasetID):
+        if not isinstance(item, h5d.DatasetID):
             raise Refused(f"/{path} is not a dataset")
-        kind = found.get_type().get_class()
+        kind = item.get_type().get_class()
         if kind == h5t.STRING:
             name = "text"
-        elif kind in _NUMBERS and found.dtype.kind in "fiu" and found.dtype.itemsize <= 8:
-            name = found.dtype.str
+        elif kind in _NUMBERS and item.dtype.kind in "fiu" and item.dtype.itemsize <= 8:
+            name = item.dtype.str
         else:
             raise Refused(f"/{path} holds neither numbers nor words")
-        shape = self._shape(found, path)
+        shape = self._shape(item, path)
         units = self.attribute(path, "units")
         return Stored(name, shape, None if units is None else str(units))
 
     def names(self) -> list[str]:
         """The paths of all datasets, reached by hard links only, in the order of their names."""
-        found: list[str] = []
-        self._list(h5g.open(self._file.id, b"/"), "", found, [0], 0)
-        return found
+        listed: list[str] = []
+        self._list(h5g.open(self._file.id, b"/"), "", listed, [0], 0)
+        return listed
 
-    def _list(self, group: h5g.GroupID, path: str, found: list[str], seen: list[int], depth: int) -> None:
+    def _list(self, group: h5g.GroupID, path: str, listed: list[str], seen: list[int], depth: int) -> None:
         for name in group:
             seen[0] += 1
             if seen[0] > _MOST_OBJECTS or depth > _DEEPEST:
@@ -119,9 +119,9 @@ class Plain:
                 continue
             here, called = h5o.open(group, name), f"{path}/{name.decode('utf-8')}".lstrip("/")
             if isinstance(here, h5g.GroupID):
-                self._list(here, called, found, seen, depth + 1)
+                self._list(here, called, listed, seen, depth + 1)
             elif isinstance(here, h5d.DatasetID):
-                found.append(called)
+                listed.append(called)
 
     def numbers(self, path: str, rows: int | None = None) -> np.ndarray:
         """The numbers of a dataset or only its first `rows`, as they are stored."""
@@ -133,16 +133,16 @@ class Plain:
 
     def words(self, path: str) -> list[str]:
         """The words of a one-dimensional dataset. They are read one by one, because many may point to the same text."""
-        stored, total, found = self._described(path), 0, []
+        stored, total, listed = self._described(path), 0, []
         if stored.type != "text" or len(stored.shape) != 1 or stored.shape[0] > _MOST_WORDS:
             raise Refused(f"/{path} is not one row of at most {_MOST_WORDS} words")
         data = h5py.Dataset(self._find(path))
         for place in range(stored.shape[0]):
-            found.append(str(_value(data[place], f"/{path}")))
-            total += len(found[-1])
+            listed.append(str(_value(data[place], f"/{path}")))
+            total += len(listed[-1])
             if total > self._size:
                 raise Refused(f"/{path} holds more text than the file has bytes")
-        return found
+        return listed
 
     def _described(self, path: str) -> Stored:
         stored = self.stored(path)
@@ -164,9 +164,9 @@ class Plain:
             here = h5o.open(here, part.encode())
         return here
 
-    def _shape(self, found: h5d.DatasetID, path: str) -> tuple[int, ...]:
+    def _shape(self, dataset: h5d.DatasetID, path: str) -> tuple[int, ...]:
         """The shape of a dataset that is one block within this file."""
-        properties, type_ = found.get_create_plist(), found.get_type()
+        properties, type_ = dataset.get_create_plist(), dataset.get_type()
         variable = type_.get_class() == h5t.STRING and type_.is_variable_str()
         size = _REFERENCE if variable else type_.get_size()
         if properties.get_external_count():
@@ -174,17 +174,17 @@ class Plain:
         if properties.get_layout() not in (h5d.CONTIGUOUS, h5d.COMPACT):
             raise Refused(f"/{path} is virtual, compressed or in pieces, and only what is stored in the file itself as "
                           "one block is read")
-        if found.get_space().get_simple_extent_type() != h5s.SIMPLE or len(found.shape) > _MOST_DIMENSIONS:
+        if dataset.get_space().get_simple_extent_type() != h5s.SIMPLE or len(dataset.shape) > _MOST_DIMENSIONS:
             raise Refused(f"/{path} is not a row or a table")
-        needed = math.prod(found.shape) * size  # of Python's integers, which do not overflow
+        needed = math.prod(dataset.shape) * size  # of Python's integers, which do not overflow
         if needed > self._size:
-            raise Refused(f"/{path} has shape {found.shape}, {needed} bytes in a file of {self._size}")
-        if needed and found.get_storage_size() != needed:
-            raise Refused(f"/{path} has shape {found.shape}, of which not everything is stored")
-        offset = found.get_offset() if properties.get_layout() == h5d.CONTIGUOUS else 0
+            raise Refused(f"/{path} has shape {dataset.shape}, {needed} bytes in a file of {self._size}")
+        if needed and dataset.get_storage_size() != needed:
+            raise Refused(f"/{path} has shape {dataset.shape}, of which not everything is stored")
+        offset = dataset.get_offset() if properties.get_layout() == h5d.CONTIGUOUS else 0
         if needed and (offset is None or offset + needed > self._size):
             raise Refused(f"/{path} ends beyond the file")
-        return tuple(int(n) for n in found.shape)
+        return tuple(int(n) for n in dataset.shape)
 
 
 def _value(value: Any, called: str) -> float | int | str:
@@ -210,13 +210,13 @@ def answer_requests(file: Plain, requests: Iterable[bytes], out: BinaryIO) -> No
         name, *args = json.loads(line)
         content: bytes | memoryview = b""
         try:
-            found = getattr(file, name)(*args)
-            if isinstance(found, np.ndarray):
-                content = found.data.cast("B") if found.size else b""
-                found = {"type": found.dtype.str, "shape": found.shape}
-            elif isinstance(found, Stored):
-                found = asdict(found)
-            answer = {"found": found}
+            value = getattr(file, name)(*args)
+            if isinstance(value, np.ndarray):
+                content = value.data.cast("B") if value.size else b""
+                value = {"type": value.dtype.str, "shape": value.shape}
+            elif isinstance(value, Stored):
+                value = asdict(value)
+            answer = {"found": value}
         except Exception as problem:  # whatever HDF5 raises for damaged bytes: the parent says it
             answer = {"refused": str(problem) if isinstance(problem, Refused) else described(problem)}
         out.write(json.dumps(answer).encode() + b"\n")

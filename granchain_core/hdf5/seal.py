@@ -51,13 +51,13 @@ def is_sealed(path: Path, required: bool = True) -> bool:
             raise Refused("it is not an HDF5 file, or its beginning is damaged")
         size = file.seek(0, os.SEEK_END) - _LENGTH
         file.seek(max(size, 0))
-        found = _PATTERN.fullmatch(file.read(_LENGTH))
-        if found is None:
+        seal = _PATTERN.fullmatch(file.read(_LENGTH))
+        if seal is None:
             if head[-1] == 0 or not required:
                 return False
             raise Refused("the line with its checksum is missing: the file is damaged, cut short, or was changed by "
                           "another program")
-        if int(found[1]) != size or found[2].decode() != _digest(file, size):
+        if int(seal[1]) != size or seal[2].decode() != _digest(file, size):
             raise Refused("its checksum does not fit: the file is damaged or was changed by another program")
     return True
 

@@ -64,9 +64,9 @@ class Gaps:
         if not count:
             return ""
         if gap == "refuse" or (gap == "zero" and not quantity):
-            more = f" (and {count - 1} more)" if count > 1 else ""
+            others = f" (and {count - 1} more)" if count > 1 else ""
             zero = f"zero (no {quantity} in it) or " if quantity else ""
-            raise BadInput(f"{self.where}: a gap{more}; choose {zero}interpolate ({across}).")
+            raise BadInput(f"{self.where}: a gap{others}; choose {zero}interpolate ({across}).")
         what = f"taken as zero {quantity}" if gap == "zero" else "interpolated"
         return f"{count} gap{'s' if count > 1 else ''} {what}, the first at {self.since:.6g} s"
 

@@ -1,6 +1,6 @@
 """A scaled chain with a given force or a given motion of its driver in pieces, one polynomial between two samples.
 
-A measured force pushes it (observers/pushed_chain.py), or its driver moves as a signal says
+A measured force acts on it (observers/force_driven_chain.py), or its driver moves as a signal says
 (prescribed_drive/moved_chain.py).
 """
 
@@ -61,7 +61,7 @@ class ChainInPieces:
 
     @property
     def jumps(self) -> np.ndarray:
-        """The largest jumps of input and output force (2,) in the same time, in scaled units."""
+        """The largest jumps of input and output force (2,) in the last run, in scaled units."""
         return largest_jumps(self._log.peaks).copy()
 
     def steps(self, halvings: int) -> int:
@@ -69,7 +69,7 @@ class ChainInPieces:
         return int(self._substeps.sum()) * 2**halvings
 
     def longest_step(self, halvings: int) -> float:
-        """The longest of them, in scaled units."""
+        """The longest of these steps, in scaled units."""
         return float((self._spans / self._substeps).max()) / 2**halvings
 
     def run(self, start: State, halvings: int) -> Samples:
@@ -103,7 +103,7 @@ class ChainInPieces:
 
 
 class Refined(NamedTuple):
-    """The finest of several runs: its samples and largest forces, how often its steps were halved, how errors grew.
+    """The run with the finest steps: samples, largest forces, how often its steps were halved, how errors grew.
 
     `errors` (4,) are the stated relative errors by the steps: of displacements, then of the largest forces.
     """
@@ -115,24 +115,24 @@ class Refined(NamedTuple):
     growth: float
 
 
-def refined(chain: ChainInPieces, start: State, told: Callable[[int], None]) -> Refined:
+def refined(chain: ChainInPieces, start: State, tell: Callable[[int], None]) -> Refined:
     """Runs with steps halved until the error is as small as the scene asks for, or finer steps would not help.
 
-    `told` is called with the number of halvings after each.
+    `tell` is called with the number of halvings after each run.
     """
     scene, computations = chain.scaled.scene, Computations(chain.scaled.scene.cuts_tension)
     computations.begin(fixed_step_setting())
-    before, first = chain.run(start, 0), chain.maxima
+    before, maxima_before = chain.run(start, 0), chain.maxima
     for halvings in range(1, MOST_HALVINGS + 1):
         setting = fixed_step_setting(2**halvings)
         now, maxima = chain.run(start, halvings), chain.maxima
         differences = [relative_difference(now.displacement, before.displacement),
-                       *force_differences(maxima, first, scene.forces_jump)]
-        least = least_errors(setting, chain.scaled, chain.longest_step(halvings), chain.jumps, maxima)
-        computations.add(setting, chain.steps(halvings), np.array(differences), least)
-        told(halvings)
+                       *force_differences(maxima, maxima_before, scene.forces_jump)]
+        typical = least_errors(setting, chain.scaled, chain.longest_step(halvings), chain.jumps, maxima)
+        computations.add(setting, chain.steps(halvings), np.array(differences), typical)
+        tell(halvings)
         done = bool(computations.stated[0] <= scene.accuracy)
         if done or computations.rounded:
             break
-        before, first = now, maxima
+        before, maxima_before = now, maxima
     return Refined(now, maxima, halvings, computations.final(done), computations.growth)

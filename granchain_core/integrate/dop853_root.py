@@ -46,10 +46,10 @@ class Dop853RootStepper(ErrorControlledStepper):
         self._vectors = _workspace(scaled)
         super().use(scaled)
 
-    def run_range(self, y: np.ndarray, first: int, points: int, every: int, samples: Samples,
+    def run_range(self, y: np.ndarray, first: int, points: int, stride: int, samples: Samples,
                 out: KernelIO) -> tuple[int, int]:
         """One call of the kernel over `points` points of the grid from `first` on; returns status and rows filled."""
-        wanted = SampleRange(first, points, self.grid, every)
+        wanted = SampleRange(first, points, self.grid, stride)
         status, rows = _RUN_DOP853_ROOT(self.type_key, self.method, self._vectors, self.trajectory(y), wanted,
                                         samples, out)
         return status, rows

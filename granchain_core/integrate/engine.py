@@ -56,8 +56,8 @@ class Engine:
     @property
     def scaled(self) -> ScaledChain:
         """The scene in scaled arrays."""
-        found: ScaledChain = self.stepper.scaled
-        return found
+        chain: ScaledChain = self.stepper.scaled
+        return chain
 
     def use(self, scaled: ScaledChain) -> None:
         """Go on with other values or effects of the same chain; the step stays what it is."""
@@ -93,11 +93,11 @@ class Engine:
         self.grid_index = 0
         self._begin(x[:n], x[n:], from_velocity=False)
 
-    def _begin(self, displacement: np.ndarray, other: np.ndarray, from_velocity: bool) -> None:
+    def _begin(self, displacement: np.ndarray, rates: np.ndarray, from_velocity: bool) -> None:
         """Start from scaled displacements and velocities, or w."""
         self.y[:] = 0.0
         first, second = self.scaled.rows(self.y)
-        first[:], second[:] = displacement, other
+        first[:], second[:] = displacement, rates
         self.elapsed = 0.0
         self.evaluate(from_velocity)
         self.stepper.prepare(self.y)
@@ -232,10 +232,10 @@ class Engine:
         """
         if status == DONE:
             return
-        found = (0, None)
+        place = (0, None)
         if status == NOT_FINITE:
-            found = self.stepper.locate_failure(self.y, before, done, self.stop)
-        raise self._failure(status, done, *found).error
+            place = self.stepper.locate_failure(self.y, before, done, self.stop)
+        raise self._failure(status, done, *place).error
 
     def _remember(self) -> None:
         """Keep where a call begins; a number that is not finite there already is reported at once."""

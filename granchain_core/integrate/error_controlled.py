@@ -58,13 +58,13 @@ class ErrorControlledStepper(ABC):
     def new_workspace(self) -> Any:
         """The workspace of the method's kernel, a named tuple."""
 
-    def run_range(self, y: np.ndarray, first: int, points: int, every: int, samples: Samples,
+    def run_range(self, y: np.ndarray, first: int, points: int, stride: int, samples: Samples,
                   out: KernelIO) -> tuple[int, int]:
         """One call of the kernel over `points` points of the grid from `first` on; returns status and rows filled.
 
-        Every `every`-th point is kept as a sample, and largest forces are searched; neither where `every` is 0.
+        Every `stride`-th point is kept as a sample, and largest forces are searched; neither where `stride` is 0.
         """
-        wanted = SampleRange(first, points, self.grid, every)
+        wanted = SampleRange(first, points, self.grid, stride)
         status, rows = RUN_ERROR_CONTROLLED(self.type_key, self.method, self.trajectory(y), wanted, samples, out)
         return status, rows
 

@@ -175,11 +175,11 @@ class FixedStep:
         high = min((low // steps + 1) * steps, low + self._every)
         while high - low > 1:
             middle = (low + high) // 2
-            there, slopes = self._again(here, slope, low, middle, stop, vectors=True)
-            if first_not_finite(there, bodies):
+            state_there, slopes = self._again(here, slope, low, middle, stop, vectors=True)
+            if first_not_finite(state_there, bodies):
                 high = middle
             else:
-                low, here, slope = middle, there, slopes[0]
+                low, here, slope = middle, state_there, slopes[0]
         # each stage spreads to the next beads only: the earliest stage names the bead
         stages = self._rk4_slopes(here, slope, low % steps)
         if not any(first_not_finite(k, bodies) for k in stages):  # what failed is not in the equations, as in a table
@@ -194,13 +194,13 @@ class FixedStep:
         They stand for the stages of any method: each spreads to the next beads only. A method's own stages are not
         all kept: one that splits its step at events writes those of each part over those of the part before.
         """
-        found, before = [], slope
+        stages, before = [], slope
         for part in (0.5, 0.5, 1.0):
             stage, now = y + part * self.h * before, np.zeros_like(slope)
             self._evaluate_slope(2.0 * np.pi * (step + part) / self.grid, stage, now, False)
-            found.append(now)
+            stages.append(now)
             before = now
-        return found
+        return stages
 
     def _again(self, y: np.ndarray, slope: np.ndarray, first: int, last: int, stop: Stop,
                vectors: bool = False) -> tuple[np.ndarray, np.ndarray]:

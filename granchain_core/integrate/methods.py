@@ -293,14 +293,14 @@ def jump_errors(setting: MethodSetting, scaled: ScaledChain, step: float, jumps:
     K v^{3/2} h^{5/2} (contact_events.py), hence its rate v, relatively, by a part of K √v h^{5/2}/m. The sign changes
     with the step size, so the difference of two computations does not bound it.
     """
-    least = np.zeros(3)
+    errors = np.zeros(3)
     if setting.method == RK4_SPLIT and scaled.slots.dissipation is not None:
         chain = scaled.slots.chain
         root_speeds = np.sqrt(jumps / scaled.slots.dissipation.coefficient)
         at_jump = jumps > AT_A_JUMP * maxima[:2]
         hardest = chain.stiffness.max() * chain.inverse_mass.max()
-        least[:2] = at_jump * _JUMP_ERROR * step ** (EXPONENT + 1.0) * root_speeds * hardest
-    return least
+        errors[:2] = at_jump * _JUMP_ERROR * step ** (EXPONENT + 1.0) * root_speeds * hardest
+    return errors
 
 
 def setting_of(name: str, accuracy: float) -> MethodSetting:

@@ -296,5 +296,5 @@ _TITLES = ALWAYS | {effect.slot: effect.title for effect in (*EFFECTS, ACCOUNT)}
 def slots_of(scene: Scene, account: bool) -> list[tuple[str, str, str | None]]:
     """Every slot of the scene's kernel: name, title, and the type compiled into it or None where it is absent."""
     slots = scale_chain(scene, account=account).slots
-    found = zip(slots._fields, slots, strict=True)
-    return [(name, _TITLES[name], None if slot is None else type(slot).__name__) for name, slot in found]
+    named = zip(slots._fields, slots, strict=True)
+    return [(name, _TITLES[name], None if slot is None else type(slot).__name__) for name, slot in named]

@@ -25,10 +25,10 @@ _WHOLE_MOTION = 2.0
 _ORDER_WITH_CUT = 1.0
 
 
-def relative_difference(one: np.ndarray, other: np.ndarray) -> float:
-    """Largest |one − other| over the largest |one|, of two arrays of one shape; 0 where `one` is zero everywhere."""
-    largest = float(np.abs(one).max())
-    return float(np.abs(one - other).max()) / largest if largest > 0.0 else 0.0
+def relative_difference(first: np.ndarray, second: np.ndarray) -> float:
+    """Largest |one − other| over the largest |one|, of two arrays of one shape; 0 where `first` is zero everywhere."""
+    largest = float(np.abs(first).max())
+    return float(np.abs(first - second).max()) / largest if largest > 0.0 else 0.0
 
 
 def least_errors(setting: MethodSetting, scaled: ScaledChain, step: float, jumps: np.ndarray,
@@ -90,7 +90,7 @@ class Computations:
         """The first computation."""
         self.settings.append(setting)
 
-    def add(self, setting: MethodSetting, steps: int, differences: np.ndarray, least: np.ndarray) -> None:
+    def add(self, setting: MethodSetting, steps: int, differences: np.ndarray, least_errors: np.ndarray) -> None:
         """Add a finer computation of `steps` steps: its relative differences from the last one, and least errors."""
         coarser = self.settings[-1]
         self._see_growth(coarser, float(differences[0]))
@@ -99,7 +99,7 @@ class Computations:
         if self._before is not None:
             seen = np.maximum(seen, self._before / self._falls(coarser, setting))
         regular = METHODS[setting.method].converges_regularly and not self.cuts_tension
-        self.stated = np.maximum((REGULAR if regular else IRREGULAR) * seen, np.maximum(least, self.rounding))
+        self.stated = np.maximum((REGULAR if regular else IRREGULAR) * seen, np.maximum(least_errors, self.rounding))
         self._before = differences
         self.settings.append(setting)
 

@@ -1,6 +1,7 @@
-"""Observers, models (3) and (4) of the paper: chains pushed by a measured force, and twins."""
+"""Observers, models (3) and (4) of the paper: chains driven by a measured force; a chain with its observer (twin)."""
 
-from .observation import Observation, Residual, observe
+from .observation import Observation, Residual
+from .observe import observe
 from .read import first_state, read_force, read_force_csv
 from .record import ForceRecord, force_record
 from .stability import ObserverPoint, ObserverStability, Threshold, observer_stability

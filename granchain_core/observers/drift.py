@@ -52,15 +52,16 @@ def departure_words(drifts: bool, multiplier: complex | None) -> str:
 
 def observer_drift(orbit: Orbit) -> str | None:
     """A sentence if the observer of `orbit` drifts, else None; the orbit must have its observer's multipliers."""
-    found = orbit.observer_multipliers
+    multipliers = orbit.observer_multipliers
     # a multiplier that is not known to be inside the unit circle counts as on it
-    if found is None or abs(found[0]) < 1.0 - MULTIPLIER_ERROR:
+    if multipliers is None or abs(multipliers[0]) < 1.0 - MULTIPLIER_ERROR:
         return None
     stroboscopic_map = StroboscopicMap(orbit.scene, orbit.period)
     x = stroboscopic_map.inner(stroboscopic_map.engine.scaled.from_si(orbit.state))
     value, vector = eigenpair(stroboscopic_map, x, 0, observer=True)
     if not is_drift(orbit.scene, share_of_translation(vector[: orbit.scene.N].real), value):
         return None
-    way = "" if value.real > 0.0 else ", alternating between the sides"
-    return (f"The observer drifts: its leading multiplier {value.real:.4g} is real and moves all beads together{way}, "
-            f"because nothing holds them in place (k = {orbit.scene.k:g} N/m); give it a foundation.")
+    addition = "" if value.real > 0.0 else ", alternating between the sides"
+    return (f"The observer drifts: its leading multiplier {value.real:.4g} is real and moves all beads "
+            f"together{addition}, because nothing holds them in place (k = {orbit.scene.k:g} N/m); give it a "
+            "foundation.")

@@ -29,15 +29,15 @@ def scale_pair(scene: Scene) -> ScaledChain:
 
     The contact that carries F_in has no overlap of its own: its bodies are BODY_FAR_AWAY apart, and its stiffness is 0.
     """
-    one = scale_chain(scene)
-    mass, stiffness = one.slots.chain
-    static = np.zeros(scene.N + 1) if one.slots.preload is None else one.slots.preload.static
-    slots = one.slots._replace(
+    chain = scale_chain(scene)
+    mass, stiffness = chain.slots.chain
+    static = np.zeros(scene.N + 1) if chain.slots.preload is None else chain.slots.preload.static
+    slots = chain.slots._replace(
         chain=Chain(np.concatenate([mass, mass[1:]]), np.concatenate([stiffness, [0.0], stiffness[1:]])),
         preload=Preload(np.concatenate([static, [-BODY_FAR_AWAY], static[1:]])),
-        driver=ObserverCoupling(1.0, one.beta, scene.N + 1),
+        driver=ObserverCoupling(1.0, chain.beta, scene.N + 1),
     )
-    return replace(one, slots=slots)
+    return replace(chain, slots=slots)
 
 
 class Pair:

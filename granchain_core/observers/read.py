@@ -71,13 +71,13 @@ def read_force_csv(text: str | bytes, time_unit: str | None = None, force_unit: 
     return replace(checked(record), understood=understood)
 
 
-def _unit(dimension: str, asked: str | None) -> str:
+def _unit(dimension: str, unit: str | None) -> str:
     """The unit that is asked for, or the SI unit."""
     known = UNITS[dimension]
-    found = next(iter(known)) if asked is None else unit_named(asked)
-    if found not in known:
-        raise unknown_name(f"{dimension} unit", str(asked), known)
-    return str(found)
+    symbol = next(iter(known)) if unit is None else unit_named(unit)
+    if symbol not in known:
+        raise unknown_name(f"{dimension} unit", str(unit), known)
+    return str(symbol)
 
 
 def _described(record: ForceRecord, units: str) -> ForceRecord:

@@ -87,25 +87,25 @@ def observer_stability(scene: Scene, knob: str, values: Sequence[float], period:
     orbits: list[Orbit | None] = []
     continued: list[bool] = []
     points = []
-    for value, one in zip(values, scenes, strict=True):
+    for value, chain in zip(values, scenes, strict=True):
         before = orbit
-        orbit = _continued(one, before, stop)
+        orbit = _continued(chain, before, stop)
         continued.append(orbit is not None)
         failure = ""
         if orbit is None:  # the orbit before has ended or is too far away, or there was none
-            orbit, failure = _from_rest(one, period, stop)
+            orbit, failure = _from_rest(chain, period, stop)
         orbits.append(orbit)
         points.append(_point(float(value), orbit, failure))
-    found, jumps = [], []
+    thresholds, jumps = [], []
     for (a, left), (b, right), on_branch in zip(zip(points, orbits, strict=True),
                                                 zip(points[1:], orbits[1:], strict=True), continued[1:], strict=False):
         if left is None or right is None or (a.observer_largest < 1.0) == (b.observer_largest < 1.0):
             continue
         if on_branch:
-            found.append(_locate(scene, knob, a, b, left, stop))
+            thresholds.append(_locate(scene, knob, a, b, left, stop))
         else:
             jumps.append(_between(a, b, a.value, b.value))
-    return ObserverStability(scene, knob, tuple(points), tuple(found), tuple(jumps))
+    return ObserverStability(scene, knob, tuple(points), tuple(thresholds), tuple(jumps))
 
 
 def _continued(scene: Scene, before: Orbit | None, stop: Stop | None) -> Orbit | None:

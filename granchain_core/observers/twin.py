@@ -154,14 +154,14 @@ class Twin:
     @property
     def sentence(self) -> str:
         """The outcome in words."""
-        every = "period" if self.period == 1 else f"{self.period} periods"
+        interval = "period" if self.period == 1 else f"{self.period} periods"
         if self.rate is None and self.verdict == "synchronises":
             passed = round(self.time[-1] / self.scene.period)
             return (f"The observer synchronises: after {passed} periods it is in step within rounding, too soon for a "
                     "rate.")
         if self.rate is None:
             return "The distance between observer and chain shows no clear rate; give more periods."
-        factor = f"the distance is multiplied by {self.rate:.4g} every {every}"
+        factor = f"the distance is multiplied by {self.rate:.4g} every {interval}"
         if self._contradicted and self.leading is not None:
             size = abs(self.leading)
             side = "inside" if size < 1.0 else "outside"

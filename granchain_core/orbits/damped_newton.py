@@ -52,9 +52,9 @@ def iterate(evaluate: Callable[[np.ndarray], tuple[Flow, float]], step: Callable
     flow, residual = evaluate(z)
     residuals = [residual]
     while residuals[-1] > RESIDUAL_GOAL and len(residuals) <= MOST_STEPS:
-        whole = step(z, flow)
+        full_step = step(z, flow)
         for halving in range(_MOST_SIZES):
-            trial = z + whole / 2**halving
+            trial = z + full_step / 2**halving
             try:
                 after, residual = evaluate(trial)
             except ComputationError:  # a state too far away to be followed: a shorter step is nearer

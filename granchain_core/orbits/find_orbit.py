@@ -77,8 +77,8 @@ def periodic_orbit(scene: Scene, period: int | None = None, start: State | None 
     refuse_cut(scene)
     n, start, note = _begin(scene, n, start, stop)
     stroboscopic_map = StroboscopicMap(scene, n, stop)
-    found = _iterate(stroboscopic_map, stroboscopic_map.inner(stroboscopic_map.engine.scaled.from_si(start)))
-    return replace(_orbit(scene, n, stroboscopic_map, found, observer), period_note=note)
+    newton = _iterate(stroboscopic_map, stroboscopic_map.inner(stroboscopic_map.engine.scaled.from_si(start)))
+    return replace(_orbit(scene, n, stroboscopic_map, newton, observer), period_note=note)
 
 
 def _begin(scene: Scene, n: int | None, start: State | None, stop: Stop | None) -> tuple[int, State, str]:
@@ -111,12 +111,12 @@ def _iterate(stroboscopic_map: StroboscopicMap, x: np.ndarray) -> Iterated:
         flow = _flow(stroboscopic_map, state)
         return flow, stroboscopic_map.residual(flow.end, state)
 
-    found = iterate(evaluate, lambda state, flow: _newton_step(stroboscopic_map, state, flow), x)
-    if not found.converged:
+    newton = iterate(evaluate, lambda state, flow: _newton_step(stroboscopic_map, state, flow), x)
+    if not newton.converged:
         raise ComputationError(f"Newton's method found no orbit of {stroboscopic_map.periods} drive periods near this "
-                               f"start: its residuals were {formatted(found.residuals)}; give another period or start.",
-                               "no-convergence")
-    return found
+                               f"start: its residuals were {formatted(newton.residuals)}; give another period or "
+                               "start.", "no-convergence")
+    return newton
 
 
 def _dense(x: np.ndarray) -> bool:
@@ -140,9 +140,9 @@ def _newton_step(stroboscopic_map: StroboscopicMap, x: np.ndarray, flow: Flow) -
                                "no-convergence") from None
 
 
-def _orbit(scene: Scene, n: int, stroboscopic_map: StroboscopicMap, found: Iterated, observer: bool) -> Orbit:
+def _orbit(scene: Scene, n: int, stroboscopic_map: StroboscopicMap, newton: Iterated, observer: bool) -> Orbit:
     """The orbit at the fixed point that was found, with its multipliers."""
-    x, flow = found.z, found.flow
+    x, flow = newton.z, newton.flow
     liouville = monodromy = observer_monodromy = None
     if _dense(x):
         monodromy, multipliers = flow.derivative, sorted_multipliers(flow.derivative)
@@ -155,5 +155,5 @@ def _orbit(scene: Scene, n: int, stroboscopic_map: StroboscopicMap, found: Itera
         multipliers = leading_multipliers(stroboscopic_map, x)
         observer_multipliers = leading_multipliers(stroboscopic_map, x, observer=True) if observer else None
     scaled = stroboscopic_map.engine.scaled
-    return Orbit(scene, n, scaled.to_si(scaled.embed(x)), found.residuals[-1], tuple(found.residuals), multipliers,
+    return Orbit(scene, n, scaled.to_si(scaled.embed(x)), newton.residuals[-1], tuple(newton.residuals), multipliers,
                  liouville, flow.contact_events, observer_multipliers, monodromy, observer_monodromy)

@@ -63,8 +63,8 @@ def leading_multipliers(stroboscopic_map: StroboscopicMap, x: np.ndarray, observ
 
     Raises `ComputationError` where they do not converge.
     """
-    found = arnoldi(stroboscopic_map, x, count, observer)
-    return found[np.argsort(-np.abs(found), kind="stable")]
+    multipliers = arnoldi(stroboscopic_map, x, count, observer)
+    return multipliers[np.argsort(-np.abs(multipliers), kind="stable")]
 
 
 def arnoldi(stroboscopic_map: StroboscopicMap, x: np.ndarray, count: int, observer: bool = False,

@@ -38,10 +38,11 @@ def derivative_change(scene: Scene, period: int, state: State, derivative: np.nd
     coarse = StroboscopicMap(scene, period, stop, _COARSER_FACTOR * tolerance)
     x = coarse.inner(coarse.engine.scaled.from_si(state))
     try:
-        there = x + np.linalg.solve(np.eye(len(x)) - derivative, coarse.end(x) - x)
+        fixed_point = x + np.linalg.solve(np.eye(len(x)) - derivative, coarse.end(x) - x)
     except np.linalg.LinAlgError:
         return np.full(derivative.shape, np.inf)
-    return (derivative if observed is None else observed) - coarse(there, observer=observed is not None).derivative
+    of_coarse = coarse(fixed_point, observer=observed is not None).derivative
+    return (derivative if observed is None else observed) - of_coarse
 
 
 def errors_of(multipliers: np.ndarray, derivative: np.ndarray, change: np.ndarray) -> np.ndarray:

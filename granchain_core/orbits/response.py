@@ -1,4 +1,4 @@
-"""The pulse ratio of a periodic orbit, from the orbit alone: strong pushes per drive period, in step or not.
+"""The pulse ratio of a periodic orbit, from the orbit alone: strong pushes per drive period; of 1:1, in step or not.
 
 *Resonance* is a word of the curve (steady/curve/resonance.py), whose rule may disagree with this one; docs/orbits.md
 has both rules and their thresholds. Source: Zhang et al. 2016, sections 2 and 3: in a 1:n resonance the driver gives
@@ -21,10 +21,10 @@ from ..results.run import GIVEN_STATE, Cost, Run, run_from
 from ..steady.curve.resonance import END_FRACTION, STOP_BAND_FRACTION, pushes
 from .orbit import Orbit
 
-#: [response] The reflected pulse is in step if bead 1, just before the strongest push, approaches the driver with this
-#: part of the drive's largest speed 2πf A0. No orbit of `rig` (20 to 160 Hz in steps of 1) changes its name from 0.2 to
-#: 1/3, three of 102 do at 0.4; of 261 of `sec2` (60 to 3000 Hz in steps of 10) one does at 0.3, three at 0.4, four at
-#: 0.25.
+#: [response] The reflected pulse of a 1:1 orbit is in step if bead 1, just before the strongest push, approaches the
+#: driver with this part of the drive's largest speed 2πf A0. No orbit of `rig` (20 to 160 Hz in steps of 1) changes its
+#: name from 0.2 to 1/3, three of 102 do at 0.4; of 261 of `sec2` (60 to 3000 Hz in steps of 10) one does at 0.3, three
+#: at 0.4, four at 0.25.
 RETURNS_IN_STEP = 1.0 / 3.0
 #: [no threshold] Samples a period: events are placed to about a degree of the drive.
 _SAMPLES = 480
@@ -35,13 +35,13 @@ _TOLERANCE = 1e-9
 @with_former_names
 @dataclass(frozen=True)
 class Response:
-    """The pulse ratio: strong pushes of the driver per number of periods, whether they are in step, and the evidence.
+    """The pulse ratio: strong pushes of the driver per number of periods; of 1:1, whether it is in step; the evidence.
 
-    `in_step` is whether the reflected pulse is in step with one strong push in `periods`; None in a stop band, or with
-    several strong pushes per orbit. It is measured for 1:1 only: one strong push in several periods counts as in step.
-    `contact_phase` and `peak_phase` are the drive's phases [degrees] at which the strongest push begins and is
-    strongest; the phase is 0 where the driver moves forward through its middle, and None where driver and bead 1 never
-    part. `returning` is relative to 2πf A0, `transmission` is largest output over largest input force.
+    `in_step` is whether the reflected pulse is in step with the driver. It is measured for 1:1 only: it is None for
+    every other ratio, and where little is transmitted. `contact_phase` and `peak_phase` are the drive's phases
+    [degrees] at which the strongest push begins and is strongest; the phase is 0 where the driver moves forward through
+    its middle, and `contact_phase` is None where driver and bead 1 never part. `returning` is relative to 2πf A0,
+    `transmission` is largest output over largest input force.
     """
 
     strong: int
@@ -53,12 +53,27 @@ class Response:
     transmission: float
 
     @property
+    def kind(self) -> str:
+        """The older name of `in_step`, in words: "resonance", also for 1:n with n ≥ 2, "anti-resonance" or ""."""
+        if self.in_step is None:
+            return "resonance" if self.strong == 1 < self.periods and not self.little_transmitted else ""
+        return "resonance" if self.in_step else "anti-resonance"
+
+    @property
+    def little_transmitted(self) -> bool:
+        """Whether a smaller part of the input force arrives at the wall than `STOP_BAND_FRACTION`.
+
+        It is not called a stop band, which lies beyond the last peak of a curve: an orbit alone has no peaks.
+        """
+        return self.transmission < STOP_BAND_FRACTION
+
+    @property
     def sentence(self) -> str:
         """The response in words."""
         ratio = f"pulse ratio {self.strong}:{self.periods}"
         if self.in_step is not None:
             return f"{ratio}, {'in step' if self.in_step else 'not in step'}"
-        return f"{ratio}, stop band" if self.transmission < STOP_BAND_FRACTION else ratio
+        return f"{ratio}, little transmitted ({100.0 * self.transmission:.0f} %)" if self.little_transmitted else ratio
 
 
 def response(orbit: Orbit) -> Response:
@@ -71,9 +86,8 @@ def response(orbit: Orbit) -> Response:
     begin = _begin(force, peak)
     returning = 0.0 if begin is None else max(0.0, -float(speed[begin - 1]))
     transmission = run.max_output_force / run.max_input_force if run.max_input_force > 0.0 else 0.0
-    in_step = None
-    if strong == 1 and transmission >= STOP_BAND_FRACTION:
-        in_step = periods > 1 or returning >= RETURNS_IN_STEP
+    measured = (strong, periods) == (1, 1) and transmission >= STOP_BAND_FRACTION
+    in_step = returning >= RETURNS_IN_STEP if measured else None
     return Response(strong, periods, in_step, None if begin is None else _phase(begin), _phase(peak), returning,
                     transmission)
 

@@ -1,11 +1,13 @@
-"""The search for an unstable orbit near a motion that does not settle on it.
+"""The search for unstable periodic orbits near a motion.
 
-A chaotic or quasi-periodic motion passes near unstable periodic orbits. States that nearly come back after n periods
-are near one of period n (Auerbach et al. 1987); and the orbit that a period doubling or a Neimark–Sacker bifurcation
-made unstable lies inside the new attractor. Newton's method on the stroboscopic map is started from the
-present state, from the mean of the section's states and from the closest returns. It may end far from where it began:
-no orbit is refused for that, but its distance from the motion is stated. The search of steady/settling/nearby_orbit.py
-decides whether a motion settles on an orbit, and takes only orbits within a tenth of the motion.
+A chaotic or quasi-periodic motion passes near unstable periodic orbits. States that nearly return after n periods are
+near an orbit of period n (Auerbach et al. 1987). An orbit that lost its stability at a period doubling or a
+Neimark–Sacker bifurcation lies inside the attractor that was born there. Newton's method on the stroboscopic map starts
+from the present state, from the mean of the section's states and from the closest returns. It may end on an orbit far
+from its start: the distance of the orbit from the motion is stated, and not limited.
+
+The search of steady/settling/nearby_orbit.py has another purpose: it decides whether a motion settles on an orbit, and
+takes only orbits within a tenth of the motion.
 """
 
 from __future__ import annotations
@@ -33,23 +35,23 @@ from .stroboscopic_map import SAME_ORBIT_DISTANCE, StroboscopicMap, refuse_cut
 
 #: Closest returns from which Newton's method is started.
 _STARTS = 4
-#: Fewest periods between two of them, so that the four are of different passages: a motion that comes back after n
-#: periods does so from several states one after another.
+#: Fewest periods between two starts, so that each belongs to another passage near an orbit: in one passage several
+#: successive states return closely.
 _PERIODS_BETWEEN_STARTS = 5
 #: Periods of a settled motion near which an orbit is sought.
 _RECORDED_PERIODS = 400
-#: An orbit within this distance of a settled motion is that of the motion; one farther away is another.
+#: Distance between an orbit and a settled motion below which the motion follows the orbit.
 OWN_ORBIT_DISTANCE = 1e-3
 #: States of the section whose mean is taken: a multiple of all short periods.
 _STATES_OF_MEAN = 120
 
 
 def orbit_near_motion(scene: Scene, period: int | None = None, stop: Stop | None = None) -> Orbit:
-    """A periodic orbit sought near the settled motion from rest, of `period` drive periods (1 by default).
+    """An unstable periodic orbit of `period` drive periods (1 by default) near the settled motion from rest.
 
-    The motion itself does not follow the orbit. The motion is recorded for 400 periods after it has settled, and
-    `search_orbit` starts from it. `Orbit.distance_of_motion` is how near the motion comes to the orbit. Raises what
-    that raises, and `ComputationError` where the search ends on the orbit that the motion follows.
+    After it has settled, the motion is recorded for 400 periods, and `search_orbit` starts from this record.
+    `Orbit.distance_of_motion` is the least distance between motion and orbit. Raises as `search_orbit` does, and
+    `ComputationError` where the search ends on the orbit that the motion follows.
     """
     require_scene(scene)
     n = whole_number("period", 1 if period is None else period, 1, LONGEST_LOCKED_PERIOD)
@@ -57,23 +59,24 @@ def orbit_near_motion(scene: Scene, period: int | None = None, stop: Stop | None
     settling = run_until_settled(scene, None, stop)
     start = settling.engine.state
     *_, section = iter_section(scene, start, _RECORDED_PERIODS, samples=1, stop=stop)
-    found = search_orbit(scene, n, start, section.strobes(), stop)
+    orbit = search_orbit(scene, n, start, section.strobes(), stop)
     if settling.regime.period is not None:
-        refuse_own_orbit(found, [State(*one) for one in section.strobes()[: settling.regime.period].astype(float)])
-    return replace(found, period_note=NO_PERIOD_OF_SEARCH if period is None else "")
+        strobes = section.strobes()[: settling.regime.period].astype(float)
+        refuse_own_orbit(orbit, [State(*strobe) for strobe in strobes])
+    return replace(orbit, period_note=NO_PERIOD_OF_SEARCH if period is None else "")
 
 
-def refuse_own_orbit(found: Orbit, states: Iterable[State]) -> None:
+def refuse_own_orbit(orbit: Orbit, states: Iterable[State]) -> None:
     """Raise `ComputationError` if an orbit goes through one of the `states` of a settled motion at phase 0."""
-    if min(distance_of_states(found.state, one) for one in states) < OWN_ORBIT_DISTANCE:
-        raise ComputationError(f"Newton's method ended on the orbit that the chain follows, of {found.period} drive "
-                               f"period{'s' if found.period > 1 else ''}; try another period.", "same-orbit")
+    if min(distance_of_states(orbit.state, state) for state in states) < OWN_ORBIT_DISTANCE:
+        raise ComputationError(f"Newton's method ended on the orbit that the chain follows, of {orbit.period} drive "
+                               f"period{'s' if orbit.period > 1 else ''}; try another period.", "same-orbit")
 
 
-def distance_of_states(one: State, other: State) -> float:
+def distance_of_states(state: State, reference: State) -> float:
     """Largest difference of two states over the largest displacement and velocity of the second."""
     return max(float(np.abs(a - b).max() / max(1e-300, np.abs(b).max()))
-               for a, b in ((one.displacement, other.displacement), (one.velocity, other.velocity)))
+               for a, b in ((state.displacement, reference.displacement), (state.velocity, reference.velocity)))
 
 
 def search_orbit(scene: Scene, period: int, start: State, strobes: np.ndarray,
@@ -83,33 +86,33 @@ def search_orbit(scene: Scene, period: int, start: State, strobes: np.ndarray,
     The starts are the state `start`, the mean of the section's states and its closest returns. The distance of the
     orbit from the motion is stated as `Orbit.distance_of_motion`; it is not limited.
 
-    `strobes` (P, 2, N) are states at phase 0 in SI, the transient left out; P may be 0. Of an orbit that repeats sooner
-    the least period is returned. Raises `BadInput` for a period out of range, `ComputationError` where no start leads
-    to an orbit, and `Cancelled`.
+    `strobes` (P, 2, N) are states of the motion at phase 0 in SI without the transient; P may be 0. If the orbit
+    repeats sooner than after `period` periods, it is returned with its least period. Raises `BadInput` for a period
+    out of range, `ComputationError` where no start leads to an orbit, and `Cancelled`.
     """
     tried = 0
     for begin in (start, *_mean(strobes, period), *_close_returns(strobes, period)):
         tried += 1
         try:
-            found = periodic_orbit(scene, period, begin, stop=stop)
+            orbit = periodic_orbit(scene, period, begin, stop=stop)
         except ComputationError as failure:
             if failure.status != "no-convergence":
                 raise
             continue
-        least = least_period_of(found, stop)
-        if least != period:
-            found = periodic_orbit(scene, least, found.state, stop=stop)
-        return replace(found, distance_of_motion=_distance_of_motion(found.state, start, strobes))
+        shortest = least_period_of(orbit, stop)
+        if shortest != period:
+            orbit = periodic_orbit(scene, shortest, orbit.state, stop=stop)
+        return replace(orbit, distance_of_motion=_distance_of_motion(orbit.state, start, strobes))
     raise ComputationError(f"Newton's method found no orbit of {period} drive periods from the present state or from "
                            f"{tried - 1} places of the section; try another period.", "no-convergence")
 
 
 def _distance_of_motion(state: State, start: State, strobes: np.ndarray) -> float:
-    """Least distance of a state from those of a motion, relative to the largest displacement and velocity of these."""
+    """Least distance of a state from a motion, relative to the largest displacement and velocity of the motion."""
     motion = np.concatenate([np.array([[start.displacement, start.velocity]]), strobes.astype(float)])
     size = np.maximum(1e-300, np.abs(motion).max(axis=(0, 2)))[:, None]
-    away = np.abs(motion - np.array([state.displacement, state.velocity])) / size
-    return float(away.max(axis=(1, 2)).min())
+    distances = np.abs(motion - np.array([state.displacement, state.velocity])) / size
+    return float(distances.max(axis=(1, 2)).min())
 
 
 def _mean(strobes: np.ndarray, period: int) -> Iterator[State]:
@@ -124,13 +127,13 @@ def _close_returns(strobes: np.ndarray, period: int) -> Iterator[State]:
     if len(strobes) <= period:
         return
     size = np.maximum(1e-300, np.abs(strobes).max(axis=(0, 2)))[:, None]
-    missed = (np.abs(strobes[period:] - strobes[:-period]) / size).max(axis=(1, 2))
-    taken: list[int] = []
-    for place in np.argsort(missed):
-        if all(abs(int(place) - other) >= _PERIODS_BETWEEN_STARTS for other in taken):
-            taken.append(int(place))
-            yield State(*np.asarray(strobes[place], dtype=float))
-        if len(taken) == _STARTS:
+    distances = (np.abs(strobes[period:] - strobes[:-period]) / size).max(axis=(1, 2))
+    chosen: list[int] = []
+    for number in np.argsort(distances):
+        if all(abs(int(number) - earlier) >= _PERIODS_BETWEEN_STARTS for earlier in chosen):
+            chosen.append(int(number))
+            yield State(*np.asarray(strobes[number], dtype=float))
+        if len(chosen) == _STARTS:
             return
 
 

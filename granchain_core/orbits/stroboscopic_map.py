@@ -86,8 +86,8 @@ class StroboscopicMap:
         events = np.zeros((EVENTS_PER_CONTACT * (row - 1) * self.periods, 2))
         self._contacts = ContactStatus(np.zeros(2 * row), np.zeros(row - 1, dtype=np.int64), events,
                                        np.zeros(1, dtype=np.int64))
-        held = self.engine.stepper.work.forces._replace(frozen=FrozenContacts(self._contacts.closed))
-        self._work = self.engine.stepper.work._replace(forces=held)
+        frozen = self.engine.stepper.work.forces._replace(frozen=FrozenContacts(self._contacts.closed))
+        self._work = self.engine.stepper.work._replace(forces=frozen)
 
     def inner(self, y: np.ndarray) -> np.ndarray:
         """The beads' part of a whole state array."""
@@ -135,9 +135,9 @@ class StroboscopicMap:
     @property
     def contact_events(self) -> np.ndarray:
         """The contact events of the last run, as in `Flow`."""
-        found = self._contacts.log[: self._contacts.logged[0]].copy()
-        found[:, 1] /= self.engine.scaled.period
-        return found
+        events = self._contacts.log[: self._contacts.logged[0]].copy()
+        events[:, 1] /= self.engine.scaled.period
+        return events
 
     def _run(self, x: np.ndarray, tangent: Tangent | VelocityTangent) -> float:
         engine = self.engine

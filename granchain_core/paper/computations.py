@@ -123,13 +123,13 @@ def observers(stop: Stop | None, frequencies: Sequence[float] = (COUPLED_FREQUEN
 
 def column(named: float, series: Series | None, observed: bool, stop: Stop | None) -> Column:
     """The trains of one of the paper's frequencies [Hz], with model (3) if `observed`."""
-    found = _state(STATES[named], stop)
-    run, chain = found.run, found.run.scene
+    settled = _state(STATES[named], stop)
+    run, chain = settled.run, settled.run.scene
     index, time = repeated(run, SHOWN * chain.f)
     velocity = 2.0 * math.pi * chain.f * chain.A0 * np.cos(2.0 * math.pi * chain.f * time)
     delay = 0.0 if series is None else delay_of(series, chain.f, time, velocity, run.input_force[index])
     when, force, words = _observer(chain, series, delay, stop) if observed else (None, None, "")
-    return Column(named, found, time, velocity, run.input_force[index], run.output_force[index],
+    return Column(named, settled, time, velocity, run.input_force[index], run.output_force[index],
                   (run.overlap[index, 0] > 0.0).astype(int), when, force, words,
                   None if series is None else moved_back(series, delay))
 
@@ -143,10 +143,11 @@ def _observer(chain: Scene, series: Series | None, delay: float,
         return pair.time[:rows], pair.observer_output_force[-rows:], "fed with model (5)'s input force, from rest"
     if series.input_force is None:
         raise BadInput("Model (3) is pushed by the measured input force; the series has no column input_force_N.")
-    found = observe(chain.evolve(accuracy=_OBSERVER_ACCURACY), force_record(series.time, series.input_force), stop=stop)
+    observed = observe(chain.evolve(accuracy=_OBSERVER_ACCURACY), force_record(series.time, series.input_force),
+                       stop=stop)
     time = series.time - delay
     kept = (time >= 0.0) & (time <= SHOWN)
-    return time[kept], found.output_force[kept], "fed with the measured input force, from rest"
+    return time[kept], observed.output_force[kept], "fed with the measured input force, from rest"
 
 
 def _state(name: str, stop: Stop | None) -> Settled:
@@ -165,7 +166,7 @@ def _curve(chain: Scene, frequencies: np.ndarray, stop: Stop | None, progress: P
         done[0] += 1
         progress(done[0] / len(frequencies))
 
-    found = resonance_curve(chain, frequencies, stop=stop, on_point=count)
+    curve = resonance_curve(chain, frequencies, stop=stop, on_point=count)
     if stop is not None:
         stop.check()
-    return found
+    return curve

@@ -153,6 +153,6 @@ def compute(number: str, given: Given | None = None, stop: Stop | None = None,
     Cancelled
         `stop` was set.
     """
-    found = figure_of(number).compute(given or Given(), stop, progress)
+    result = figure_of(number).compute(given or Given(), stop, progress)
     progress(1.0)
-    return found
+    return result

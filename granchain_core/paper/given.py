@@ -24,8 +24,8 @@ class Given:
     @property
     def sentences(self) -> list[str]:
         """How every file was understood."""
-        found = [one.understood for one in (self.curve, self.shaker) if one is not None]
-        return found + [f"at {f:g} Hz {one.understood}" for f, one in sorted(self.series.items())]
+        parts = [measurement.understood for measurement in (self.curve, self.shaker) if measurement is not None]
+        return parts + [f"at {f:g} Hz {measurement.understood}" for f, measurement in sorted(self.series.items())]
 
 
 #: A component smaller than this fraction of the signal's range has no phase to align by.
@@ -49,22 +49,22 @@ def read_given(number: str, takes: Sequence[str], frequencies: Sequence[float], 
         if not takes:
             raise BadInput(f"Figure {number} shows nothing that was measured, so it takes no --data.")
         hertz, path = _split(name)
-        found = read_experiment(path, answers)
-        kind = _KINDS[type(found)]
+        measurement = read_experiment(path, answers)
+        kind = _KINDS[type(measurement)]
         if kind not in takes:
             raise BadInput(f"Figure {number} takes {' and '.join(_WORDS[one] for one in takes)}; "
                            f"{path} is {_WORDS[kind]}.")
-        if isinstance(found, Series):
+        if isinstance(measurement, Series):
             at = _frequency(hertz, frequencies, path, number)
             if at in given.series:
                 raise BadInput(f"Two series are given for {at:g} Hz; give one.")
-            given = replace(given, series={**given.series, at: found})
+            given = replace(given, series={**given.series, at: measurement})
         elif getattr(given, kind) is not None:
             raise BadInput(f"Two files hold {_WORDS[kind]}; give one.")
-        elif isinstance(found, Shaker):
-            given = replace(given, shaker=found)
+        elif isinstance(measurement, Shaker):
+            given = replace(given, shaker=measurement)
         else:
-            given = replace(given, curve=found)
+            given = replace(given, curve=measurement)
     return given
 
 
@@ -118,8 +118,8 @@ def moved_back(series: Series, delay: float) -> Series:
 
 def _component(time: np.ndarray, values: np.ndarray, f: float) -> tuple[float, float]:
     """Phase 2πfs and amplitude of the part a·cos(2πf(t − s)) of `values`, over whole periods where there is one."""
-    whole = np.floor((time[-1] - time[0]) * f + 1e-9) / f
-    inside = time - time[0] <= whole if whole > 0.0 else np.ones(len(time), dtype=bool)
+    duration = np.floor((time[-1] - time[0]) * f + 1e-9) / f
+    inside = time - time[0] <= duration if duration > 0.0 else np.ones(len(time), dtype=bool)
     t, v = time[inside], values[inside]
     component = 2.0 * np.trapezoid((v - v.mean()) * np.exp(2j * np.pi * f * t), t) / (t[-1] - t[0])
     return float(np.angle(component)), float(abs(component))

@@ -55,16 +55,16 @@ def _scales() -> Numbers:
 
 
 def _peaks() -> Numbers:
-    found = peaks(_section_2())
-    places = [value for p in found for value in (p.frequency, p.max_output_force_elastic)]
-    return [*places, *(float(p.regime.period or 0) for p in found)]
+    points = peaks(_section_2())
+    places = [value for p in points for value in (p.frequency, p.max_output_force_elastic)]
+    return [*places, *(float(p.regime.period or 0) for p in points)]
 
 
 def _dips() -> Numbers:
-    found = dips(_section_2())
-    same = {_words(p.regime) for p in found[:-1]}
-    return [*(p.frequency for p in found[:-1]), " or ".join(sorted(same)), found[-1].frequency,
-            _words(found[-1].regime)]
+    points = dips(_section_2())
+    same = {_words(p.regime) for p in points[:-1]}
+    return [*(p.frequency for p in points[:-1]), " or ".join(sorted(same)), points[-1].frequency,
+            _words(points[-1].regime)]
 
 
 def _stop_band() -> Numbers:
@@ -73,10 +73,10 @@ def _stop_band() -> Numbers:
 
 
 def _energy() -> Numbers:
-    found = [settle(scene(name), samples=_FINE) for name in ("fig3a", "fig3b")]
-    ratios = [pushes(one.run) or (0, 0) for one in found]
+    states = [settle(scene(name), samples=_FINE) for name in ("fig3a", "fig3b")]
+    ratios = [pushes(one.run) or (0, 0) for one in states]
     return [*(f"{strong}:{periods}" for strong, periods in ratios),
-            *(1e6 * float(one.run.kinetic_energy.max()) for one in found)]
+            *(1e6 * float(one.run.kinetic_energy.max()) for one in states)]
 
 
 def _mass() -> Numbers:
@@ -94,9 +94,9 @@ def _shaker() -> Numbers:
 
 
 def _one_amplitude() -> Numbers:
-    found = [_settle("rig", f=f, A0=RIG_AMPLITUDE, kappa=KAPPA) for f in (60.0, 90.0, 100.0)]
-    forces = [one.run.max_output_force_elastic for one in found]
-    return [forces[0], _words(found[0].regime), *forces[1:]]
+    states = [_settle("rig", f=f, A0=RIG_AMPLITUDE, kappa=KAPPA) for f in (60.0, 90.0, 100.0)]
+    forces = [one.run.max_output_force_elastic for one in states]
+    return [forces[0], _words(states[0].regime), *forces[1:]]
 
 
 def _four_amplitudes() -> Numbers:
@@ -125,17 +125,17 @@ def _model_3() -> Numbers:
 
 
 def _model_4() -> Numbers:
-    found = observers(None, (100.0, 200.0), periods=2).parts
-    outside = [float(len(one.outside)) for one in found]
-    orbits = [one.twin.orbit for one in found[:2]]
-    return [*outside, float(np.abs(found[0].outside).max()),
+    parts = observers(None, (100.0, 200.0), periods=2).parts
+    outside = [float(len(one.outside)) for one in parts]
+    orbits = [one.twin.orbit for one in parts[:2]]
+    return [*outside, float(np.abs(parts[0].outside).max()),
             *(float(np.abs(orbit.multipliers).max()) for orbit in orbits if orbit is not None)]
 
 
 def _states() -> Numbers:
-    found = [_settle(name) for name in STATES.values()]
-    same = {_words(one.regime) for one in found}
-    return [*(one.run.max_output_force_elastic for one in found), " or ".join(sorted(same))]
+    states = [_settle(name) for name in STATES.values()]
+    same = {_words(one.regime) for one in states}
+    return [*(one.run.max_output_force_elastic for one in states), " or ".join(sorted(same))]
 
 
 def _trains() -> Numbers:
@@ -152,11 +152,11 @@ def _two_solutions() -> Numbers:
     preset = scene("fig12-100")
     twice = preset.evolve(f=100.0)
     gentle = [attractors(twice.evolve(A0=a, kappa=KAPPA), 32) for a in (RIG_AMPLITUDE, 10e-6)]
-    counts = {float(len(found)) for found in gentle}
+    counts = {float(len(states)) for states in gentle}
     hard = settle(twice, rest(twice))
     shown = attractors(preset, 32)
     return [counts.pop() if len(counts) == 1 else math.nan,
-            " or ".join(sorted({_words(one.regime) for found in gentle for one in found})), _words(hard.regime),
+            " or ".join(sorted({_words(one.regime) for states in gentle for one in states})), _words(hard.regime),
             float(len(shown)), " or ".join(sorted({_words(one.regime) for one in shown}))]
 
 

@@ -22,8 +22,8 @@ def peaks(curve: Curve) -> list[CurvePoint]:
 def dips(curve: Curve) -> list[CurvePoint]:
     """The first dip after each resonance but the last."""
     tops = [p.frequency for p in peaks(curve)]
-    found = []
+    lowest = []
     for low, high in pairwise(tops):
         between = [p for p in turning_points(curve)[1] if low < p.frequency < high]
-        found.append(between[0])
-    return found
+        lowest.append(between[0])
+    return lowest

@@ -65,14 +65,14 @@ class EnergyMaps:
 
     def rows(self) -> Iterator[Row]:
         """One line an instant: drive, force, and the kinetic energy of every bead."""
-        for found, periods in self.parts:
-            index, time = repeated(found.run, periods)
+        for settled, periods in self.parts:
+            index, time = repeated(settled.run, periods)
             for i, t in zip(index, time, strict=True):
-                yield {"scene": found.run.scene.name, "time_s": t,
-                       "drive_displacement_m": found.run.drive_displacement[i],
-                       "input_force_N": found.run.input_force[i],
+                yield {"scene": settled.run.scene.name, "time_s": t,
+                       "drive_displacement_m": settled.run.drive_displacement[i],
+                       "input_force_N": settled.run.input_force[i],
                        **{f"kinetic_energy_{bead}_J": energy
-                          for bead, energy in enumerate(found.run.kinetic_energy[i], 1)}}
+                          for bead, energy in enumerate(settled.run.kinetic_energy[i], 1)}}
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,14 +110,14 @@ class RigCurves:
 
     def rows(self) -> Iterator[Row]:
         """Lines of every curve, then the states, then measured points."""
-        for one in self.curves:
-            for row in _curve_rows(one):
+        for curve in self.curves:
+            for row in _curve_rows(curve):
                 yield {"panel": "a", **row}
-        for named, found in self.states:
-            yield {"panel": "a", "source": f"state shown at {named:g} Hz", "A0_m": found.run.scene.A0,
-                   "frequency_Hz": found.run.scene.f,
-                   "max_output_force_elastic_N": found.run.max_output_force_elastic,
-                   "regime": found.regime.name, "period": found.regime.period}
+        for named, settled in self.states:
+            yield {"panel": "a", "source": f"state shown at {named:g} Hz", "A0_m": settled.run.scene.A0,
+                   "frequency_Hz": settled.run.scene.f,
+                   "max_output_force_elastic_N": settled.run.max_output_force_elastic,
+                   "regime": settled.regime.name, "period": settled.regime.period}
         for row in _measured_rows(self.measured):
             yield {"panel": "a", **row}
 
@@ -199,9 +199,9 @@ class CoupledRow:
     @property
     def multipliers(self) -> np.ndarray:
         """Panel (a) or (d): the chain's and the observer's multipliers."""
-        found = self.twin.multipliers
-        assert found is not None  # the figure's orbits are periodic
-        return found
+        multipliers = self.twin.multipliers
+        assert multipliers is not None  # the figure's orbits are periodic
+        return multipliers
 
     @property
     def outside(self) -> np.ndarray:
@@ -225,8 +225,8 @@ class Observers:
         for part in self.parts:
             orbit = part.twin.orbit
             assert orbit is not None and orbit.observer_multipliers is not None
-            for whose, found in (("chain", orbit.multipliers), ("observer", orbit.observer_multipliers)):
-                for mu in found:
+            for whose, multipliers in (("chain", orbit.multipliers), ("observer", orbit.observer_multipliers)):
+                for mu in multipliers:
                     yield {"kappa": part.kappa, "f_Hz": part.frequency, "multiplier_of": whose, "real": mu.real,
                            "imaginary": mu.imag, "modulus": abs(mu)}
         for part in self.parts:

@@ -27,11 +27,11 @@ class Statement:
         """What is bold, in order."""
         return re.findall(r"\*\*(.+?)\*\*", self.ours)
 
-    def wrong(self, found: Sequence[float | str]) -> list[str]:
+    def wrong(self, numbers: Sequence[float | str]) -> list[str]:
         """Where the row does not say what was found: another word, or a number off by more than its last digit."""
-        if len(found) != len(self.computed):
-            return [f"{self.key}: {len(found)} values for {len(self.computed)} in bold"]
-        return [f"{self.key}: {shown} is {value}" for shown, value in zip(self.computed, found, strict=True)
+        if len(numbers) != len(self.computed):
+            return [f"{self.key}: {len(numbers)} values for {len(self.computed)} in bold"]
+        return [f"{self.key}: {shown} is {value}" for shown, value in zip(self.computed, numbers, strict=True)
                 if not (shown == value if isinstance(value, str) else abs(float(shown) - value) <= unit_of(shown))]
 
 

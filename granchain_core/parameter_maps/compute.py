@@ -87,15 +87,15 @@ def parameter_map(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, It
     """
     began = time.perf_counter()
     grid = Grid(scene, Axis.of(*axis_in("x", x)), Axis.of(*axis_in("y", y)), amplitude)
-    found = ParameterMap(grid, empty_cells(grid))
+    computed = ParameterMap(grid, empty_cells(grid))
     done = 0
     for rows in _finished(grid, stop, workers, scheduler):
-        found.cells[rows["number"]] = rows
-        found.wall_s = time.perf_counter() - began
+        computed.cells[rows["number"]] = rows
+        computed.wall_s = time.perf_counter() - began
         done += len(rows)
         if progress is not None:
-            progress(found, done / grid.size)
-    return found
+            progress(computed, done / grid.size)
+    return computed
 
 
 def _finished(grid: Grid, stop: Stop | None, workers: int | None, scheduler: Any) -> Iterator[np.ndarray]:

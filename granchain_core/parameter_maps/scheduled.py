@@ -22,9 +22,9 @@ CELLS_IN_TASK = 256
 def block_cells(grid: Grid, numbers: Sequence[int], stop: Stop | None = None) -> np.ndarray:
     """The cells with these numbers, computed in this thread: the work that is handed to a scheduler as one block."""
     stop = Stop() if stop is None else stop
-    found = [cell_of(result) for group in by_kernel(grid, numbers)
+    cells = [cell_of(result) for group in by_kernel(grid, numbers)
              for result in settle_starts(starts_of(grid, group), stop)]
-    return np.array(found)
+    return np.array(cells)
 
 
 def work_on(described: dict[str, Any], numbers: Sequence[int]) -> np.ndarray:

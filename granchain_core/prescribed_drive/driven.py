@@ -17,7 +17,7 @@ import numpy as np
 from ..errors import BadInput
 from ..execution.stop import Stop
 from ..execution.stopwatch import Stopwatch
-from ..integrate.chain_in_pieces import MOST_HALVINGS, refined
+from ..integrate.chain_in_pieces import MOST_HALVINGS, Refined, refined
 from ..integrate.methods import RK4_SPLIT
 from ..integrate.safety_factors import SAMPLED_DRIVE
 from ..integrate.stated import or_whole_motion, relative_changes, relative_difference
@@ -33,9 +33,9 @@ from ..tables.provenance import Attribute
 from .moved_chain import MovedChain
 from .signal import Signal
 
-#: Errors of the beads' displacements over the driver's, which swings from knot to knot. Random chains showed 0.003 to
-#: 0.03 where the motion does not magnify errors.
-_FOLLOWED = 0.03
+#: Error of the beads' displacements over that of the driver's, which swings from knot to knot. Random chains showed
+#: 0.003 to 0.03 where the motion does not magnify errors.
+_TRANSMITTED_ERROR = 0.03
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -174,28 +174,41 @@ def drive(scene: Scene, signal: Signal, start: State | None = None, stop: Stop |
         raise BadInput(f"{len(signal.time)} knots for {scene.N} beads are more than {MOST_RECORDED:.0e} values; give a "
                        "shorter signal or fewer beads.")
     spent, begin = Stopwatch(), rest(scene) if start is None else checked_start(scene, start)
-    stop = Stop() if stop is None else stop
-    chain = MovedChain(scene, signal, stop)
-    now, maxima, halvings, stated, growth = refined(
-        chain, begin, lambda done: None if progress is None else progress(done / MOST_HALVINGS))
-    scales = chain.scaled.scales
-    largest = float(np.abs(now.displacement).max()) * scales.length
-    between = np.zeros(4)
+    chain = MovedChain(scene, signal, Stop() if stop is None else stop)
+    tell = progress or (lambda done: None)
+    finest = refined(chain, begin, lambda halvings: tell(halvings / MOST_HALVINGS))
+    between = _sampling_errors(chain, signal, begin, finest)
+    return _driven(chain, signal, finest, between, spent)
+
+
+def _sampling_errors(chain: MovedChain, signal: Signal, begin: State, finest: Refined) -> np.ndarray:
+    """Relative errors (4,) of displacements and largest forces by the interpolation between the signal's samples.
+
+    They follow from the differences between the `finest` motion and those by half of the samples; 0 for a formula.
+    """
+    differences = np.zeros(4)
     for coarser in signal.coarser:
-        coarse = MovedChain(scene, coarser, stop, chain.counts)
-        half = coarse.run(begin, halvings)
-        between = np.maximum(between, sampling_differences((signal.time, now.displacement, maxima),
-                                                           (coarser.time, half.displacement, coarse.maxima)))
-    between = or_whole_motion(SAMPLED_DRIVE / (2.0**signal.order - 1.0) * between)
-    error, *errors = stated + between + formula_errors(scene, signal, growth, largest, maxima * scales.force)
-    done = error <= scene.accuracy
-    balance = residual(now.energy, chain.scaled.static_energy)
+        moved = chain.moved_by(coarser)
+        half = moved.run(begin, finest.halvings)
+        differences = np.maximum(differences, sampling_differences(
+            (signal.time, finest.samples.displacement, finest.maxima),
+            (coarser.time, half.displacement, moved.maxima)))
+    return or_whole_motion(SAMPLED_DRIVE / (2.0**signal.order - 1.0) * differences)
+
+
+def _driven(chain: MovedChain, signal: Signal, finest: Refined, between: np.ndarray, spent: Stopwatch) -> Driven:
+    """The result in SI; `between` are the relative errors (4,) by the interpolation between samples."""
+    scene, scales, motion = chain.scaled.scene, chain.scaled.scales, finest.samples
+    largest = float(np.abs(motion.displacement).max()) * scales.length
+    maxima = finest.maxima * scales.force
+    error, *errors = finest.errors + between + formula_errors(scene, signal, finest.growth, largest, maxima)
+    balance = residual(motion.energy, chain.scaled.static_energy)
     assert balance is not None, "the chain has an account"
-    inward, outward, elastic = (float(one) for one in maxima * scales.force)
-    return Driven(scene, signal, now.displacement * scales.length, now.velocity * scales.velocity,
-                  now.force * scales.force, inward, outward, elastic,
+    inward, outward, elastic = (float(force) for force in maxima)
+    return Driven(scene, signal, motion.displacement * scales.length, motion.velocity * scales.velocity,
+                  motion.force * scales.force, inward, outward, elastic,
                   force_errors=ForceErrors.of(np.array(errors)), displacement_error=float(error),
-                  energy_residual=balance, status="done" if done else "accuracy-not-reached",
+                  energy_residual=balance, status="done" if error <= scene.accuracy else "accuracy-not-reached",
                   cost=Cost.of(spent.seconds, chain.counts, RK4_SPLIT),
                   interpolation_error=float(between[0]))
 
@@ -210,7 +223,7 @@ def formula_errors(scene: Scene, signal: Signal, growth: float, displacement: fl
     that is off by e changes its force by up to (3/2) K √[δ] e, a velocity that is off by e by up to g([δ]) e. Both
     errors swing from knot to knot, and little of them is left behind contact 0.
     """
-    behind = max(1.0, growth) * _FOLLOWED * signal.displacement_error
+    behind = max(1.0, growth) * _TRANSMITTED_ERROR * signal.displacement_error
     stiffness = scene.contact_stiffness()[[0, -1, -1]]
     overlap = (np.maximum(maxima, 0.0) / stiffness) ** OVERLAP_POWER
     slope = EXPONENT * stiffness * overlap ** (EXPONENT - 1.0)
@@ -230,7 +243,7 @@ def sampling_differences(full: tuple[np.ndarray, np.ndarray, np.ndarray],
     input, output and elastic output force (3,), in any unit. Largest forces may agree by chance, so their difference
     counts as that of the displacements at least.
     """
-    (times, moved, maxima), (half_times, half_moved, half_maxima) = full, half
-    _, mine, others = np.intersect1d(times, half_times, assume_unique=True, return_indices=True)
-    difference = relative_difference(moved[mine], half_moved[others])
+    (times, displacement, maxima), (half_times, half_displacement, half_maxima) = full, half
+    _, of_full, of_half = np.intersect1d(times, half_times, assume_unique=True, return_indices=True)
+    difference = relative_difference(displacement[of_full], half_displacement[of_half])
     return np.array([difference, *np.maximum(difference, relative_changes(maxima, half_maxima))])

@@ -24,3 +24,7 @@ class MovedChain(ChainInPieces):
         pieces = signal.quadratics() / driven.scales.length / driven.scales.phi ** np.arange(3)
         overlap = float(np.ptp(signal.displacement)) / driven.scales.length
         super().__init__(scaled, signal.time, pieces, overlap, stop, counts)
+
+    def moved_by(self, signal: Signal) -> MovedChain:
+        """The chain with another signal; both count their steps together."""
+        return MovedChain(self.scaled.scene, signal, self._stop, self.counts)

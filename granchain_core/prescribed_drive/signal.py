@@ -20,13 +20,12 @@ import numpy as np
 
 from ..errors import BadInput
 from ..inputs.gaps import Gaps, sample_number, with_zeros
+from . import waveforms
 
 #: Knots in a period of the highest frequency of a formula.
 KNOTS = 400
 #: Most knots of a signal.
 MOST_KNOTS = 2_000_000
-#: Sines of which noise is made.
-_SINES = 200
 #: Corrections of the velocities at the knots: each reduces the displacement's error there by h² (d²/dt²)/4.
 _CORRECTIONS = 3
 #: Pieces into which the interval between two samples of a measured displacement is divided.
@@ -108,7 +107,7 @@ class Signal:
         >>> ramp.displacement.tolist()
         [0.0, 5e-07, 4.5e-06]
         """
-        t, v = (np.asarray(one, dtype=float) for one in (time, velocity))
+        t, v = (np.asarray(values, dtype=float) for values in (time, velocity))
         if t.ndim != 1 or t.shape != v.shape or len(t) < 2:
             raise BadInput("A motion of the driver needs times and as many velocities, two at least.")
         if len(t) > MOST_KNOTS:
@@ -152,7 +151,7 @@ class Signal:
         BadInput
             The arrays do not fit together, are not finite or are too long, times do not ascend, or there is a gap.
         """
-        t, u = (np.asarray(one, dtype=float) for one in (time, displacement))
+        t, u = (np.asarray(values, dtype=float) for values in (time, displacement))
         if t.ndim != 1 or t.shape != u.shape or len(t) < 4 or not (np.isfinite(t).all() and np.isfinite(u).all()) \
                 or (np.diff(t) <= 0.0).any():
             raise BadInput("A motion of the driver needs at least four finite displacements at ascending times.")
@@ -186,59 +185,36 @@ class Signal:
                            f"is {MOST_KNOTS / KNOTS / highest:.4g} s.")
         time = np.linspace(0.0, duration, max(count, 8) + 1)
         exact, at_knots = velocity(time), displacement(time)
-        found = exact
+        corrected = exact
         for _ in range(_CORRECTIONS):
-            moved = cls._with_lines(time, found, words, float(at_knots[0]))
-            found = found - np.gradient(moved.displacement - at_knots, time[1])
-        signal = cls._with_lines(time, found, words, float(at_knots[0]))
+            signal = cls._with_lines(time, corrected, words, float(at_knots[0]))
+            corrected = corrected - np.gradient(signal.displacement - at_knots, time[1])
+        signal = cls._with_lines(time, corrected, words, float(at_knots[0]))
         # the error of a smooth velocity is largest at the knots or midway, and its integral between them: within a
         # tenth of an interval times it, as h² v'' (1/12 − s (1 − s)/2) h ds adds up to 0.0080 h³ v'' at most
         midway = velocity(time[:-1] + 0.5 * time[1])
-        wrong = max(np.abs(found - exact).max(), np.abs(0.5 * (found[1:] + found[:-1]) - midway).max())
-        left = float(np.abs(signal.displacement - at_knots).max())
-        return replace(signal, velocity_error=float(wrong), displacement_error=left + 0.1 * float(time[1] * wrong))
+        velocity_error = max(np.abs(corrected - exact).max(),
+                             np.abs(0.5 * (corrected[1:] + corrected[:-1]) - midway).max())
+        error_at_knots = float(np.abs(signal.displacement - at_knots).max())
+        return replace(signal, velocity_error=float(velocity_error),
+                       displacement_error=error_at_knots + 0.1 * float(time[1] * velocity_error))
 
     @classmethod
     def chirp(cls, amplitude: float, low: float, high: float, duration: float) -> Signal:
         """A linear chirp, A sin 2π(f₀ t + (f₁ − f₀) t²/2T): the frequency goes from f₀ to f₁ [Hz] in T [s]."""
-        def phase(t: np.ndarray) -> np.ndarray:
-            return np.asarray(2.0 * np.pi * (low * t + 0.5 * (high - low) * t * t / duration))
-
-        def velocity(t: np.ndarray) -> np.ndarray:
-            rate = low + (high - low) * t / duration
-            return np.asarray(2.0 * np.pi * amplitude * rate * np.cos(phase(t)))
-
-        return cls.of(velocity, lambda t: amplitude * np.sin(phase(t)), duration, max(low, high),
+        return cls.of(*waveforms.chirp(amplitude, low, high, duration), duration, max(low, high),
                       f"chirp from {low:g} to {high:g} Hz in {duration:g} s")
 
     @classmethod
     def burst(cls, amplitude: float, frequency: float, periods: float, duration: float) -> Signal:
         """A sin 2πft · sin² πft/n for n periods of f [Hz], then at rest until `duration` [s]."""
-        end, omega = periods / frequency, 2.0 * np.pi * frequency
-
-        def velocity(t: np.ndarray) -> np.ndarray:
-            window, slope = np.sin(np.pi * t / end) ** 2, np.pi / end * np.sin(2.0 * np.pi * t / end)
-            moving = omega * np.cos(omega * t) * window + np.sin(omega * t) * slope
-            return np.where(t <= end, amplitude * moving, 0.0)
-
-        def displacement(t: np.ndarray) -> np.ndarray:
-            return np.where(t <= end, amplitude * np.sin(omega * t) * np.sin(np.pi * t / end) ** 2, 0.0)
-
-        words = f"burst of {periods:g} periods of {frequency:g} Hz"
-        return cls.of(velocity, displacement, max(duration, end), 2.0 * frequency, words)
+        return cls.of(*waveforms.burst(amplitude, frequency, periods), max(duration, periods / frequency),
+                      2.0 * frequency, f"burst of {periods:g} periods of {frequency:g} Hz")
 
     @classmethod
     def tones(cls, amplitude: float, one: float, other: float, duration: float, ratio: float = 1.0) -> Signal:
         """A (sin 2πf₁t + r sin 2πf₂t)/(1 + r), so that no displacement is above A."""
-        def velocity(t: np.ndarray) -> np.ndarray:
-            moving = one * np.cos(2.0 * np.pi * one * t) + ratio * other * np.cos(2.0 * np.pi * other * t)
-            return np.asarray(2.0 * np.pi * amplitude / (1.0 + ratio) * moving)
-
-        def displacement(t: np.ndarray) -> np.ndarray:
-            return np.asarray(amplitude / (1.0 + ratio) * (np.sin(2.0 * np.pi * one * t)
-                                                           + ratio * np.sin(2.0 * np.pi * other * t)))
-
-        return cls.of(velocity, displacement, duration, max(one, other),
+        return cls.of(*waveforms.tones(amplitude, one, other, ratio), duration, max(one, other),
                       f"tones of {one:g} and {other:g} Hz for {duration:g} s")
 
     @classmethod
@@ -248,28 +224,7 @@ class Signal:
         The sum of two hundred sines of random frequencies and phases, the same for the same seed. The noise grows from
         zero over the first two periods of f₀.
         """
-        rng = np.random.default_rng(seed)
-        omega = 2.0 * np.pi * rng.uniform(low, high, _SINES)
-        phase, size, rise = rng.uniform(0.0, 2.0 * np.pi, _SINES), amplitude / math.sqrt(_SINES), 2.0 / low
-
-        def window(t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-            place = np.clip(t / rise, 0.0, 1.0)
-            return np.sin(0.5 * np.pi * place) ** 2, 0.5 * np.pi / rise * np.sin(np.pi * place)
-
-        def velocity(t: np.ndarray) -> np.ndarray:
-            (height, slope), found, rising = window(t), np.zeros_like(t), t < rise
-            for w, p in zip(omega, phase, strict=True):
-                found += w * np.cos(w * t + p) * height
-                found[rising] += np.sin(w * t[rising] + p) * slope[rising]
-            return size * found
-
-        def displacement(t: np.ndarray) -> np.ndarray:
-            found = np.zeros_like(t)
-            for w, p in zip(omega, phase, strict=True):
-                found += np.sin(w * t + p)
-            return size * found * window(t)[0]
-
-        return cls.of(velocity, displacement, duration, high,
+        return cls.of(*waveforms.noise(amplitude, low, high, seed), duration, high,
                       f"noise from {low:g} to {high:g} Hz for {duration:g} s, seed {seed}")
 
     def quadratics(self) -> np.ndarray:
@@ -287,7 +242,7 @@ class Signal:
     def shifted(self, start: float) -> Signal:
         """The same motion, further into the chain by `start` [m] throughout."""
         return replace(self, displacement=self.displacement + start,
-                       coarser=tuple(one.shifted(start) for one in self.coarser))
+                       coarser=tuple(signal.shifted(start) for signal in self.coarser))
 
     def finer(self, spacing: float) -> Signal:
         """The same motion with knots at most `spacing` [s] apart, at which `drive` then states the forces.
@@ -317,9 +272,10 @@ def _of_samples(count: int, put_in: np.ndarray, of: Callable[[np.ndarray], Signa
 
     def by_every(nth: int) -> tuple[tuple[Signal, ...], float]:
         """Signals by every nth sample, and how far the displacement of one of them is from the full signal's."""
-        found = tuple(of(np.unique(np.concatenate([measured[first::nth], measured[[0, -1]], put_in])))
-                      for first in range(nth))
-        return found, max(float(np.abs(one.displacement_at(full.time) - full.displacement).max()) for one in found)
+        signals = tuple(of(np.unique(np.concatenate([measured[first::nth], measured[[0, -1]], put_in])))
+                        for first in range(nth))
+        return signals, max(float(np.abs(signal.displacement_at(full.time) - full.displacement).max())
+                            for signal in signals)
 
     (coarser, second), (_, fourth) = by_every(2), by_every(4)
     # differences of order p from a spacing h: C h^p (2^p − 1) and C h^p (4^p − 1), whose ratio is 2^p + 1

@@ -152,8 +152,8 @@ class Regime:
             return f"|μ| {modulus_words(self.multiplier)}" + ("" if shown == 1 else f" per {shown} periods")
         if self.observed_contraction is None or self.followed:
             return ""
-        every = "period" if shown == 1 else f"{shown} periods"
-        return f"transient shrinks to {modulus_words(self.observed_contraction)} every {every}"
+        interval = "period" if shown == 1 else f"{shown} periods"
+        return f"transient shrinks to {modulus_words(self.observed_contraction)} every {interval}"
 
     @property
     def sentence(self) -> str:

@@ -268,10 +268,10 @@ class Run(RecordedMotion):
 RUN_ERRORS = ("error_estimate_input", "error_estimate_output", "error_estimate_elastic")
 
 
-def said_forces(found: HasForces) -> list[str]:
+def said_forces(motion: HasForces) -> list[str]:
     """The largest forces in words, with their errors."""
-    errors = (found.force_errors.output, found.force_errors.elastic, found.force_errors.input)
-    forces = (found.max_output_force, found.max_output_force_elastic, found.max_input_force)
+    errors = (motion.force_errors.output, motion.force_errors.elastic, motion.force_errors.input)
+    forces = (motion.max_output_force, motion.max_output_force_elastic, motion.max_input_force)
     return [f"largest {name} force {force:.6g} N" + (", no error stated" if e is None else f", relative error {e:.1e}")
             for name, force, e in zip(("output", "elastic output", "input"), forces, errors, strict=True)]
 

@@ -58,14 +58,14 @@ def _estimate(scaled: ScaledChain, setting: MethodSetting, periods: int, samples
     beads, steps, seconds = scaled.beads, 0.0, 0.0
     finer = setting.finer_than(scaled, samples)
     twice = _relative_cost(setting) + _relative_cost(finer)
-    for one in (setting, finer):
-        cost = METHODS[one.method].cost
-        if METHODS[one.method].error_control:
+    for attempt in (setting, finer):
+        cost = METHODS[attempt.method].cost
+        if METHODS[attempt.method].error_control:
             # with contacts open most of the time, as at low frequency, steps are longer
-            steps_per_time = cost.steps_per_time * (1e-8 / max(one.tolerance, 1e-16)) ** cost.power
+            steps_per_time = cost.steps_per_time * (1e-8 / max(attempt.tolerance, 1e-16)) ** cost.power
             count = periods * max(16.0, scaled.period * steps_per_time)
         else:
-            count = float(periods * one.steps_per_period(scaled, samples))
+            count = float(periods * attempt.steps_per_period(scaled, samples))
         steps += count
         seconds += count * (cost.fixed + cost.per_contact * (beads + 1))
     repetition_factor = np.sqrt(1.0 + _relative_cost(finer.finer_than(scaled, samples)) / twice)
@@ -113,27 +113,27 @@ def check_budget(scene: Scene, setting: MethodSetting, periods: int, record: int
                  budget: float) -> Estimate:
     """The estimate of a run of `periods` discarded and `record` recorded periods; `OverBudget` if it does not fit."""
     total, scaled = periods + record, scale_chain(scene)
-    found = _estimate(scaled, setting, total, samples, record)
-    if found.seconds <= budget:
-        return found
-    fit = _what_fits(scene, total, budget / found.seconds)
+    estimate = _estimate(scaled, setting, total, samples, record)
+    if estimate.seconds <= budget:
+        return estimate
+    fit = _what_fits(scene, total, budget / estimate.seconds)
     if setting == method_for(scene.accuracy, scene.cuts_tension):  # the steps of a method asked for by name stay
         coarse = method_for(float(_COARSE_ACCURACY), scene.cuts_tension)
         fits = _estimate(scaled, coarse, total, samples, record).seconds <= budget
         fit += [f"an accuracy of {_COARSE_ACCURACY}"] if fits else []
     remedy = f"{', or '.join(fit)} would fit" if fit else "a higher frequency or fewer beads are needed"
-    raise OverBudget(f"This run would take about {_in_words(found.seconds)} ({found.steps:.1e} steps of "
-                     f"{setting.method}), the budget is {_in_words(budget)}: {remedy}.", found.seconds, budget)
+    raise OverBudget(f"This run would take about {_in_words(estimate.seconds)} ({estimate.steps:.1e} steps of "
+                     f"{setting.method}), the budget is {_in_words(budget)}: {remedy}.", estimate.seconds, budget)
 
 
 def _what_fits(scene: Scene, total: int, part: float) -> list[str]:
     """Smaller runs that would fit, given that the fraction `part` of this run does."""
-    found, periods, beads = [], int(total * part), int(scene.N * part)
+    ways, periods, beads = [], int(total * part), int(scene.N * part)
     if periods >= 1:
-        found.append(f"{periods} period{'s' if periods > 1 else ''} in all")
+        ways.append(f"{periods} period{'s' if periods > 1 else ''} in all")
     if beads >= 1 and not scene.impurities and not scene.start_velocity:
-        found.append(f"{beads} bead{'s' if beads > 1 else ''}")
-    return found
+        ways.append(f"{beads} bead{'s' if beads > 1 else ''}")
+    return ways
 
 
 def _in_words(seconds: float) -> str:

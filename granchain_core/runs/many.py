@@ -52,8 +52,8 @@ class Runs(list[Any], Labelled):
     scenes: list[Scene]
     failures: list[str]
 
-    def __init__(self, scenes: Sequence[Scene], found: Iterable[Any], failures: Sequence[str]) -> None:
-        super().__init__(found)
+    def __init__(self, scenes: Sequence[Scene], results: Iterable[Any], failures: Sequence[str]) -> None:
+        super().__init__(results)
         self.scenes, self.failures = list(scenes), list(failures)
 
     def tables(self) -> tuple[Table, ...]:
@@ -93,13 +93,13 @@ class Runs(list[Any], Labelled):
     def summary(self) -> list[str]:
         """How many of which regime, and what failed."""
         kinds: dict[str, int] = {}
-        for one in self:
-            regime = getattr(one, "regime", None)
-            name = ("failed" if one is None else "done" if regime is None else
+        for result in self:
+            regime = getattr(result, "regime", None)
+            name = ("failed" if result is None else "done" if regime is None else
                     f"period {regime.period}" if regime.period else regime.name)
             kinds[name] = kinds.get(name, 0) + 1
         return [", ".join(f"{count} {name}" for name, count in sorted(kinds.items())),
-                *sorted({one for one in self.failures if one})]
+                *sorted({failure for failure in self.failures if failure})]
 
     def __repr__(self) -> str:
         return "\n  ".join([self.heading(), *self.summary()])
@@ -161,7 +161,7 @@ def run_many(scenes: Iterable[Scene], work: Callable[..., Any] = run,
     if not 1 <= len(chains) <= MOST_SCENES:
         raise BadInput(f"A batch has 1 to {MOST_SCENES} scenes, not {len(chains)}.")
     stop, ended = Stop() if stop is None else stop, Stop()
-    found: list[Any] = [None] * len(chains)
+    listed: list[Any] = [None] * len(chains)
     failures, done = [""] * len(chains), 0
 
     def some(shared: Iterator[tuple[int, Scene]]) -> Iterator[tuple[int, Outcome]]:
@@ -171,12 +171,12 @@ def run_many(scenes: Iterable[Scene], work: Callable[..., Any] = run,
     outcomes = on_all_cores(some, enumerate(chains), ended, stop, workers) if scheduler is None else \
         results(scheduler, attempted, [(work, chain, options) for chain in chains], stop)
     for number, (result, failure) in outcomes:
-        found[number], failures[number], done = result, failure, done + 1
+        listed[number], failures[number], done = result, failure, done + 1
         if progress is not None:
             progress(done / len(chains))
     if done < len(chains):
         raise Cancelled
-    return Runs(chains, found, failures)
+    return Runs(chains, listed, failures)
 
 
 def attempted(work: Callable[..., Any], chain: Scene, options: dict[str, Any]) -> Outcome:

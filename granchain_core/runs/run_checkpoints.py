@@ -35,9 +35,9 @@ class RunCheckpoints:
     def __init__(self, scene: Scene, periods: int, record: int, samples: int, method: str | None,
                  out: str | Path) -> None:
         self._scene = scene
-        asked = {"scene": scene.digest, "periods": periods, "record": record, "samples": samples, "method": method}
+        request = {"scene": scene.digest, "periods": periods, "record": record, "samples": samples, "method": method}
         words = f"{scene.name} with {periods} + {record} periods of {samples} samples"
-        self.kept: Kept[dict[str, Any]] = Kept(out, "run", digest_of(asked), words, _packed, newest_only=True)
+        self.kept: Kept[dict[str, Any]] = Kept(out, "run", digest_of(request), words, _packed, newest_only=True)
         self._there: dict[str, Any] = {}
         #: Number of the present computation, and how many of its discarded periods are done.
         self.computation, self.done = 0, 0
@@ -46,8 +46,8 @@ class RunCheckpoints:
         """Look what is there, to go on with it. Raises `BadInput`."""
         self.kept.open(resume)
         for content in self.kept.blocks():
-            with np.load(io.BytesIO(content), allow_pickle=False) as there:
-                self._there = dict(there)
+            with np.load(io.BytesIO(content), allow_pickle=False) as kept:
+                self._there = dict(kept)
 
     def begin(self, computation: int, engine: Engine) -> Reached | None:
         """Where a computation by such an engine had come; None where it has to be begun."""
@@ -55,16 +55,16 @@ class RunCheckpoints:
         name = f"{computation} checkpoint"
         if name not in self._there:
             return None
-        there = self._there[name]
-        if not isinstance(there, Checkpoint):
-            there = Checkpoint.from_bytes(there.tobytes())
+        point = self._there[name]
+        if not isinstance(point, Checkpoint):
+            point = Checkpoint.from_bytes(point.tobytes())
         setting = engine.setting
-        if (there.method, there.refine, there.tolerance) != (setting.method, setting.refine, setting.tolerance):
+        if (point.method, point.refine, point.tolerance) != (setting.method, setting.refine, setting.tolerance):
             return None
-        found = _with_log(self._scene, there, engine.stop, self._there[f"{computation} log"])
-        found.counts.array[:] = self._there[f"{computation} counts"]
+        resumed_engine = _with_log(self._scene, point, engine.stop, self._there[f"{computation} log"])
+        resumed_engine.counts.array[:] = self._there[f"{computation} counts"]
         self.done = int(self._there[f"{computation} done"])
-        return Reached(found, self.done, self._there[f"{computation} strobes"])
+        return Reached(resumed_engine, self.done, self._there[f"{computation} strobes"])
 
     def add(self, reached: Reached) -> None:
         """Keep where the present computation has come."""
@@ -76,9 +76,9 @@ class RunCheckpoints:
         self.kept.add(self._there)
 
 
-def _with_log(scene: Scene, there: Checkpoint, stop: Stop, log: np.ndarray) -> Engine:
+def _with_log(scene: Scene, point: Checkpoint, stop: Stop, log: np.ndarray) -> Engine:
     """The engine of a checkpoint, with the forces that it had followed."""
-    engine = resumed(scene, there, stop)
+    engine = resumed(scene, point, stop)
     peaks = engine.log.peaks.size
     engine.log.peaks[:], engine.log.last[:] = log[:peaks], log[peaks:].reshape(engine.log.last.shape)
     return engine

@@ -47,21 +47,21 @@ def checked_values(scene: Description) -> dict[str, Any]:
     are not checked: a branch may leave them by a step.
     """
     values: dict[str, Any] = vars(scene)
-    other: dict[str, Any] = {}
-    for name, least in _NUMBERS:
+    converted: dict[str, Any] = {}
+    for name, lowest in _NUMBERS:
         value = values[name]
         if type(value) is not float:
             if not is_number(value):
                 raise _refused(name, value)
-            other[name] = value = float(value)
-        if not least <= value < math.inf:
+            converted[name] = value = float(value)
+        if not lowest <= value < math.inf:
             raise _refused(name, value)
     for name in _COUNTS:
         value = values[name]
         if type(value) is not int:
             if not is_number(value) or not math.isfinite(value) or int(value) != value:
                 raise _refused(name, value)
-            other[name] = value = int(value)
+            converted[name] = value = int(value)
         if value < 1:
             raise _refused(name, value)
     for name, choices in _WORDS:
@@ -70,13 +70,13 @@ def checked_values(scene: Description) -> dict[str, Any]:
     wall = values["wall"]
     if not (wall in WALL_FACTORS if isinstance(wall, str) else is_number(wall) and 0.0 < wall < math.inf):
         raise _refused("wall", wall)
-    pattern = other["pattern"] = tuple(values["pattern"])
+    pattern = converted["pattern"] = tuple(values["pattern"])
     if set(map(type, pattern)) != {Bead}:
         raise _bad("pattern", values["pattern"], "a tuple of one or more values of Bead")
     for name in ("impurities", "start_velocity"):
         if values[name]:
             _check_special(name, values[name], int(values["N"]))
-    return other
+    return converted
 
 
 def _refused(name: str, value: object) -> BadInput:
@@ -111,8 +111,7 @@ def checked_fields(data: object) -> dict[str, Any]:
     for name, field in known.items():
         if name not in data and field.default is MISSING:
             raise BadInput(f"The scene has no field {name}.")
-    found = {name: _field(name, value) for name, value in data.items()}
-    return found
+    return {name: _field(name, value) for name, value in data.items()}
 
 
 def _field(name: str, value: object) -> Any:

@@ -31,25 +31,25 @@ _BREATHERS = ("C. Chong, F. Li, J. Yang, M. O. Williams, I. G. Kevrekidis, P. G.
 
 def citations(scene: Description) -> list[tuple[str, str]]:
     """What for, and what to cite, for the model and the effects of a scene."""
-    found = [("software", _SOFTWARE), ("model", _PAPER), ("contact", _HERTZ)]
+    sources = [("software", _SOFTWARE), ("model", _PAPER), ("contact", _HERTZ)]
     if scene.has_dissipation and LAWS[scene.dissipation].source:
-        found.append((f"{scene.dissipation} damping", LAWS[scene.dissipation].source))
-    found += [(effect.title, effect.source) for effect in effects_of(scene) if effect.source]
+        sources.append((f"{scene.dissipation} damping", LAWS[scene.dissipation].source))
+    sources += [(effect.title, effect.source) for effect in effects_of(scene) if effect.source]
     if not scene.is_driven and scene.F0 == 0.0:
-        found.append(("solitary wave", _NESTERENKO))
+        sources.append(("solitary wave", _NESTERENKO))
     if scene.dimer != 1.0:
-        found.append(("dimers", _DIMERS))
+        sources.append(("dimers", _DIMERS))
     if scene.taper != 1.0:
-        found.append(("tapered chains", _TAPER))
+        sources.append(("tapered chains", _TAPER))
     if scene.F0 > 0.0:
-        found.append(("precompressed chains", _PRECOMPRESSED))
+        sources.append(("precompressed chains", _PRECOMPRESSED))
     impurity = scene.impurity != 1.0 and scene.site <= scene.N
     if not scene.is_driven and scene.striker > 1.0 and scene.end == "first":  # else the heavy bead is at the wall
-        found.append(("pulse trains", _TRAINS))
+        sources.append(("pulse trains", _TRAINS))
     if not scene.is_driven and impurity:
-        found.append(("impurities", _IMPURITY))
+        sources.append(("impurities", _IMPURITY))
     if scene.is_driven and scene.F0 > 0.0 and impurity:
-        found.append(("acoustic diode", _DIODE))
+        sources.append(("acoustic diode", _DIODE))
     if scene.name == "breather":
-        found.append(("dark breathers", _BREATHERS))
-    return found
+        sources.append(("dark breathers", _BREATHERS))
+    return sources

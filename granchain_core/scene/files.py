@@ -75,23 +75,23 @@ def built(name: str, data: dict[str, Any]) -> Scene:
         if needed not in section:
             raise BadInput(f"there is no {needed}; give it, or a parent that has it.")
     beads = [_bead(entry, "pattern") for entry in _list(chain["pattern"], "pattern")]
-    found = checked_fields({
+    fields = checked_fields({
         "k": 0.0, "F0": 0.0, "wall": "bead", "dissipation": "linear", "tension": "allowed", "accuracy": 1e-6, **knobs,
         "name": name, "title": data.get("title", name), "look_at": data.get("look_at", ""),
         "paper": data.get("paper", ""), "reference_overlap": chain["reference_overlap"], "pattern": beads,
         "impurities": [_impurity(one, beads) for one in _list(chain.get("impurities", ()), "impurities")],
         "start_velocity": [_start(one) for one in _list(chain.get("start_velocity", ()), "start_velocity")],
         "ranges": [_range(knob, ends) for knob, ends in data.get("ranges", {}).items()]})
-    ranges = tuple((knob, float(low), float(high)) for knob, low, high in found["ranges"])
-    new = Scene(**{**found, "ranges": ranges})
+    ranges = tuple((knob, float(low), float(high)) for knob, low, high in fields["ranges"])
+    new = Scene(**{**fields, "ranges": ranges})
     new = new.evolve(**{n: v for n, v in new.knobs.items() if n != "kappa"})
     if kappa is not None:
         new = new.evolve(kappa=kappa)
     return replace(new, preset=tuple((n, new.knobs[n]) for n in QUANTITIES))
 
 
-def _only(found: Iterable[str], kind: str, known: Iterable[str]) -> None:
-    for name in found:
+def _only(names: Iterable[str], kind: str, known: Iterable[str]) -> None:
+    for name in names:
         if name not in tuple(known):
             raise unknown_name(kind, name, known)
 
@@ -110,11 +110,11 @@ def _table(value: Any, name: str, known: tuple[str, ...]) -> dict[str, Any]:
 
 
 def _bead(entry: Any, name: str) -> dict[str, Any]:
-    found = _table(entry, name, _BEAD)
+    values = _table(entry, name, _BEAD)
     for needed in _BEAD:
-        if needed not in found:
+        if needed not in values:
             raise BadInput(f"a bead of {name} has no {needed}; it needs {', '.join(_BEAD)}.")
-    return found
+    return values
 
 
 def _place(entry: dict[str, Any], name: str) -> int:
@@ -126,17 +126,17 @@ def _place(entry: dict[str, Any], name: str) -> int:
 
 def _impurity(entry: Any, beads: list[dict[str, Any]]) -> list[Any]:
     """Place and bead; what the entry does not name is that of the pattern's bead there."""
-    found = _table(entry, "impurities", ("place", *_BEAD))
-    place = _place(found, "impurities")
-    own = {name: value for name, value in found.items() if name != "place"}
+    values = _table(entry, "impurities", ("place", *_BEAD))
+    place = _place(values, "impurities")
+    own = {name: value for name, value in values.items() if name != "place"}
     return [place, {**beads[(place - 1) % len(beads)], **own}] if beads else [place, own]
 
 
 def _start(entry: Any) -> list[Any]:
-    found = _table(entry, "start_velocity", ("place", "velocity"))
-    if "velocity" not in found:
+    values = _table(entry, "start_velocity", ("place", "velocity"))
+    if "velocity" not in values:
         raise BadInput("an entry of start_velocity has no velocity [m/s].")
-    return [_place(found, "start_velocity"), found["velocity"]]
+    return [_place(values, "start_velocity"), values["velocity"]]
 
 
 def _range(knob: str, ends: Any) -> list[Any]:

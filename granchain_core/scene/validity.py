@@ -46,24 +46,24 @@ def peak_pressures(scene: Description, overlaps: np.ndarray) -> np.ndarray:
 def overlap_warnings(scene: Description, largest_overlap: float | np.ndarray) -> list[str]:
     """Sentences for a chain whose contacts reached these overlaps [m], one number or one for each contact."""
     overlaps = np.broadcast_to(np.asarray(largest_overlap, dtype=float), scene.N + 1)
-    found, largest = [], float(overlaps.max())
+    warnings, largest = [], float(overlaps.max())
     fraction = largest / min(b.radius for b in scene.beads)
     if fraction > LARGEST_OVERLAP_FRACTION:
-        found.append(f"The largest overlap, {largest:.2e} m, is {100 * fraction:.1f} % of a bead's radius; "
+        warnings.append(f"The largest overlap, {largest:.2e} m, is {100 * fraction:.1f} % of a bead's radius; "
                      f"Hertz's law holds below about {100 * LARGEST_OVERLAP_FRACTION:.0f} %.")
     pressures = peak_pressures(scene, overlaps)
     worst = int(pressures.argmax())
     if pressures[worst] > ONSET_OF_YIELD * YIELD_STRESS:
-        found.append(f"The peak pressure in contact {worst}, {1e-9 * pressures[worst]:.1f} GPa, is above "
+        warnings.append(f"The peak pressure in contact {worst}, {1e-9 * pressures[worst]:.1f} GPa, is above "
                      f"{1e-9 * ONSET_OF_YIELD * YIELD_STRESS:.1f} GPa, where hardened bearing steel begins to yield; "
                      f"beyond it the contact is not elastic.")
-    return found
+    return warnings
 
 
 def warnings(scene: Description) -> list[str]:
     """Sentences known before anything is run: the drive amplitude and the preload already overlap the beads."""
-    found = overlap_warnings(scene, np.maximum(scene.drive_amplitude, scene.static_overlap()))
-    return [*found, *([missing] if (missing := missing_impurity(scene)) else [])]
+    listed = overlap_warnings(scene, np.maximum(scene.drive_amplitude, scene.static_overlap()))
+    return [*listed, *([missing] if (missing := missing_impurity(scene)) else [])]
 
 
 def missing_impurity(scene: Description) -> str:

@@ -28,24 +28,24 @@ def force_distances(distance: float, scaled: ScaledChain, maxima: np.ndarray, y:
     return EXPONENT * distance * np.array(nearer)
 
 
-def errors_of_map(change: np.ndarray, least: float, contraction: float) -> np.ndarray:
+def errors_of_map(change: np.ndarray, least_errors: float, contraction: float) -> np.ndarray:
     """Relative errors (3,) of the largest forces on an orbit whose integration was seen from one state.
 
     `change` (3,) is the relative change of the forces from one computation of the orbit to a finer one, both from the
-    same state. `least` is the typical error of the finer one, because two may agree by chance. An error ε of the
+    same state. `least_errors` is the typical error of the finer one, because two may agree by chance. An error ε of the
     n-period map moves its fixed point by ε/(1 − contraction), and the forces with it; `contraction` is the factor per
     orbit: |μ|, or else the observed contraction factor.
     """
-    return np.maximum(ORBIT_FORCES * change, least) / (1.0 - contraction)
+    return np.maximum(ORBIT_FORCES * change, least_errors) / (1.0 - contraction)
 
 
-def errors_of_two_orbits(change: np.ndarray, least: float, contraction: float) -> np.ndarray:
+def errors_of_two_orbits(change: np.ndarray, least_errors: float, contraction: float) -> np.ndarray:
     """Relative errors (3,) of the largest forces where each of two computations came to an orbit of its own.
 
-    `change` (3,) is then the difference of these orbits, and as large as the error moves them; only `least`, the
+    `change` (3,) is then the difference of these orbits, and as large as the error moves them; only `least_errors`, the
     typical error of the finer map, is enlarged by 1/(1 − contraction).
     """
-    return np.maximum(ORBIT_FORCES * change, least / (1.0 - contraction))
+    return np.maximum(ORBIT_FORCES * change, least_errors / (1.0 - contraction))
 
 
 def errors_between(finer: Engine, before: np.ndarray, contraction: float, distance: float) -> np.ndarray:

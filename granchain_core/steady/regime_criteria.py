@@ -72,8 +72,8 @@ def window_changes(strobes: np.ndarray, window: int, windows: int, longest: int)
     """
     seen, workspace = np.zeros((longest, windows)), np.zeros((_STATES_AT_ONCE, *strobes.shape[1:]))
     periodicity.window_changes(np.ascontiguousarray(strobes), window, np.zeros(2), workspace, seen)
-    found: list[list[float]] = seen.tolist()
-    return found
+    changes: list[list[float]] = seen.tolist()
+    return changes
 
 
 def find_period(strobes: np.ndarray, longest: int = LONGEST_LOCKED_PERIOD, rounding: float = ROUNDING) -> Regime:
@@ -178,17 +178,17 @@ def clearly_chaotic(exponents: np.ndarray) -> bool:
     return all(mean > max(STANDARD_ERRORS * error, CLEAR_GROWTH) for mean, error in map(mean_and_error, halves))
 
 
-def agree(one: Regime, other: Regime) -> bool:
+def agree(first: Regime, second: Regime) -> bool:
     """Whether two Lyapunov measurements agree: the same regime, and for a chaotic one the same mean.
 
     Means agree within the larger of `STANDARD_ERRORS` combined standard errors and `_EXPONENT_DIFFERENCE`. Those of a
     quasi-periodic motion are not compared: both are neutral (`is_neutral`).
     """
-    if one.name != other.name or one.name == "unsettled" or one.lyapunov is None or other.lyapunov is None:
+    if first.name != second.name or first.name == "unsettled" or first.lyapunov is None or second.lyapunov is None:
         return False
-    if one.name == "quasi-periodic":
+    if first.name == "quasi-periodic":
         return True
-    (a, error_a), (b, error_b) = one.lyapunov, other.lyapunov
+    (a, error_a), (b, error_b) = first.lyapunov, second.lyapunov
     return abs(a - b) <= max(STANDARD_ERRORS * math.hypot(error_a, error_b), _EXPONENT_DIFFERENCE)
 
 

@@ -89,10 +89,10 @@ def _read(file: File) -> Branch:
     return Branch(axis, header["period"], tuple(half_branches))
 
 
-def _header(found: Any) -> dict[str, Any]:
+def _header(attribute: Any) -> dict[str, Any]:
     """The attribute `branch`, each entry of its kind; one half-branch or two."""
-    half_branches = found.pop("arms", None) if isinstance(found, dict) else None
-    header = entries("branch", found, {"knob": "text", "start": "number", "end": "number", "period": "whole"})
+    half_branches = attribute.pop("arms", None) if isinstance(attribute, dict) else None
+    header = entries("branch", attribute, {"knob": "text", "start": "number", "end": "number", "period": "whole"})
     if not isinstance(half_branches, list) or not 1 <= len(half_branches) <= 2:
         raise Refused("its attribute branch does not have one half-branch or two")
     if not 1 <= header["period"] <= LONGEST_LOCKED_PERIOD:
@@ -153,11 +153,11 @@ def _read_special(file: File, axis: KnobAxis) -> list[SpecialPoint]:
 def _read_normal_forms(file: File, count: int) -> list[NormalForm | None]:
     if not file.has("special/criticality"):
         return [None] * count
-    found = file.words("special/criticality", count, ("", *CRITICALITIES))
+    criticalities = file.words("special/criticality", count, ("", *CRITICALITIES))
     reasons = [EARLIER_REASONS.get(reason, reason)
                for reason in file.words("special/undecided", count, ("", *REASONS, *EARLIER_REASONS))]
     numbers, errors = (file.numbers(f"special/{name}", (count,)) for name in ("coefficient", "coefficient_error"))
-    if any((word == NOT_DECIDED) != bool(reason) for word, reason in zip(found, reasons, strict=True)):
+    if any((word == NOT_DECIDED) != bool(reason) for word, reason in zip(criticalities, reasons, strict=True)):
         raise Refused("/special/undecided does not fit /special/criticality")
-    return [NormalForm(found[i], float(numbers[i]), float(errors[i]), reasons[i]) if found[i] else None
+    return [NormalForm(criticalities[i], float(numbers[i]), float(errors[i]), reasons[i]) if criticalities[i] else None
             for i in range(count)]

@@ -24,9 +24,9 @@ from ..scene.quantities import QUANTITIES
 from .writing import write_file, write_result
 
 
-def save_parameter_map(found: ParameterMap, path: str | Path) -> Path:
+def save_parameter_map(parameter_map: ParameterMap, path: str | Path) -> Path:
     """Write a parameter map to `path`; returns the path. Raises `BadInput` where it cannot be written."""
-    return write_file(path, lambda file: write_result(file, found))
+    return write_file(path, lambda file: write_result(file, parameter_map))
 
 
 def load_parameter_map(path: str | Path) -> ParameterMap:

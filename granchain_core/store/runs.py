@@ -60,22 +60,22 @@ def load(path: str | Path) -> Run:
     """
     with opened(path, "is not a run written by granchain") as file:
         file.schema()
-        other = _other_result(file)
-        if not other:
+        kind = _other_result(file)
+        if not kind:
             return _read(file)
-    raise BadInput(f"`load` reads runs, and {str(path)[:200]} holds another result: {other}.")
+    raise BadInput(f"`load` reads runs, and {str(path)[:200]} holds another result: {kind}.")
 
 
 def _other_result(file: File) -> str:
     """The tables of a file of another result than a run, and what reads them; empty for a run."""
     if file.has("run/time"):
         return ""
-    found = sorted({name.partition("/")[0] for name in file.names() if "/" in name})
-    if not found or "run" in found:
+    groups = sorted({name.partition("/")[0] for name in file.names() if "/" in name})
+    if not groups or "run" in groups:
         return ""
-    own = next((_LOADED[name] for name in found if name in _LOADED), None)
-    how = f"granchain_core.store.{own} reads it" if own else f'xarray.open_dataset(path, group="{found[0]}") reads one'
-    return f"its tables are {', '.join(found)[:80]}; {how}"
+    own = next((_LOADED[name] for name in groups if name in _LOADED), None)
+    how = f"granchain_core.store.{own} reads it" if own else f'xarray.open_dataset(path, group="{groups[0]}") reads one'
+    return f"its tables are {', '.join(groups)[:80]}; {how}"
 
 
 def _read(file: File) -> Run:
@@ -102,8 +102,8 @@ def _start(file: File) -> str:
     """Where a run began; files written before it was kept are of runs from rest."""
     if not file.stated("start"):
         return AT_REST
-    found = file.text("start")
-    return GIVEN_STATE if found == _PREVIOUS_STATE else one_of("start", found, RUN_STARTS)
+    text = file.text("start")
+    return GIVEN_STATE if text == _PREVIOUS_STATE else one_of("start", text, RUN_STARTS)
 
 
 def _rows(file: File) -> int:
@@ -120,12 +120,12 @@ def _cost(file: File) -> Cost:
 
 
 def _regime(file: File) -> Regime:
-    found = file.json("regime")
-    if isinstance(found, dict) and "decay" not in found:  # files written before decay and |μ| were told apart
-        found["decay"] = found.pop("multiplier", None)
-    lyapunov, ratios = ((found.pop(name, None) for name in ("lyapunov", "window_ratios")) if isinstance(found, dict)
+    regime = file.json("regime")
+    if isinstance(regime, dict) and "decay" not in regime:  # files written before decay and |μ| were told apart
+        regime["decay"] = regime.pop("multiplier", None)
+    lyapunov, ratios = ((regime.pop(name, None) for name in ("lyapunov", "window_ratios")) if isinstance(regime, dict)
                         else (None, None))
-    values = entries("regime", found, {
+    values = entries("regime", regime, {
         "name": "text", "period": "whole?", "decay": "number?", "distance": "number?", "periods_run": "whole",
         "multiplier": "number?", "followed": "flag?", "approaches": "whole?", "driven": "flag?",
         "lyapunov_periods": "whole?", "return_distance": "number?", "return_limit": "number?", "followed_by": "text?"})
@@ -139,11 +139,11 @@ def _regime(file: File) -> Regime:
     return Regime.from_json({**values, "followed": bool(values["followed"]), "driven": values["driven"] is not False})
 
 
-def _pair(place: str, found: object, first: str, second: str) -> tuple[float, ...]:
+def _pair(place: str, values: object, first: str, second: str) -> tuple[float, ...]:
     """Two numbers of a regime."""
-    if not isinstance(found, list) or len(found) != 2:
+    if not isinstance(values, list) or len(values) != 2:
         raise Refused(f"{place} is not a pair of numbers")
-    return tuple(entries(place, dict(zip((first, second), found, strict=True)),
+    return tuple(entries(place, dict(zip((first, second), values, strict=True)),
                          {first: "number", second: "number"}).values())
 
 

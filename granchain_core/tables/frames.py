@@ -44,12 +44,12 @@ def frame(table: Table, rows: tuple[str, ...], attributes: Mapping[str, Any]) ->
             continue
         for called, values in _pieces(table, name, column, rows):
             columns[called], units[called], meanings[called] = values, column.unit, column.meaning
-    index = [table.axes[one].values for one in rows]
+    index = [table.axes[axis_name].values for axis_name in rows]
     made: pandas.DataFrame = library.DataFrame(
         columns, index=library.Index(index[0], name=rows[0]) if len(rows) == 1 else
         library.MultiIndex.from_product(index, names=rows))
-    for one in rows:
-        units[one], meanings[one] = table.axes[one].unit, table.axes[one].meaning
+    for axis_name in rows:
+        units[axis_name], meanings[axis_name] = table.axes[axis_name].unit, table.axes[axis_name].meaning
     made.attrs.update(attributes, units=units, long_names=meanings)
     return made
 
@@ -60,11 +60,11 @@ def _pieces(table: Table, name: str, column: Column, rows: tuple[str, ...]) -> l
     One that does not depend on every axis of the rows is repeated along the others.
     """
     others = [one for one in column.axes if one not in rows]
-    there = [one for one in rows if one in column.axes]
-    values = column.words().transpose([column.axes.index(one) for one in (*others, *there)])
+    along = [one for one in rows if one in column.axes]
+    values = column.words().transpose([column.axes.index(one) for one in (*others, *along)])
     count = values.shape[:len(others)]
     sizes = [len(table.axes[one].values) for one in rows]
-    values = np.broadcast_to(values.reshape(*count, *(size if one in there else 1 for one, size in
+    values = np.broadcast_to(values.reshape(*count, *(size if one in along else 1 for one, size in
                                                       zip(rows, sizes, strict=True))), (*count, *sizes))
     flat = values.reshape(*count, -1)
     if not others:
@@ -73,9 +73,9 @@ def _pieces(table: Table, name: str, column: Column, rows: tuple[str, ...]) -> l
              flat[place]) for place in itertools.product(*map(range, count))]
 
 
-def _imported(library: str, asked: str) -> Any:
+def _imported(library: str, purpose: str) -> Any:
     try:
         return importlib.import_module(library)
     except ImportError:
-        raise BadInput(f"{asked} needs the package {library}; install it with `pip install {library}`, or with "
+        raise BadInput(f"{purpose} needs the package {library}; install it with `pip install {library}`, or with "
                        "`pip install -e '.[frames]'` in a clone of granchain.") from None

@@ -71,10 +71,10 @@ class Labelled:
         """
         from .frames import frame
 
-        found = self._table(table)
-        if rows and rows not in found.axes:
-            raise unknown_name("axis", rows, tuple(found.axes))
-        return frame(found, (rows,) if rows else found.rows, self.attributes())
+        chosen = self._table(table)
+        if rows and rows not in chosen.axes:
+            raise unknown_name("axis", rows, tuple(chosen.axes))
+        return frame(chosen, (rows,) if rows else chosen.rows, self.attributes())
 
     def _table(self, name: str) -> Table:
         tables = {one.name: one for one in self.tables()}

@@ -25,13 +25,13 @@ def provenance(scene: Scene, method: str, reached: float | None) -> dict[str, At
     of steady states; None where none is stated. `accuracy_asked` is the scene's own; batches of curves and maps do not
     use it.
     """
-    found = {
+    entries = {
         **made(), "scene_name": scene.name, "scene": json.dumps(scene.to_json()), "scene_digest": scene.digest,
         "method": method, "accuracy_asked": scene.accuracy, "accuracy_reached": or_nan(reached)}
     for name, value in scene.knobs.items():
-        found[f"knob_{name}"] = value
-        found[f"knob_{name}_unit"] = QUANTITIES[name].unit
-    return found
+        entries[f"knob_{name}"] = value
+        entries[f"knob_{name}_unit"] = QUANTITIES[name].unit
+    return entries
 
 
 def amplitude_attribute(amplitude: Amplitude | None) -> dict[str, Attribute]:

@@ -20,9 +20,9 @@ def as_text(heading: str, sentences: Sequence[str]) -> str:
 def as_html(heading: str, sentences: Sequence[str], tables: Sequence[Table]) -> str:
     """For a notebook: no more than fits a cell, in its own colours; what it holds is folded away."""
     lines = "".join(f"<div>{html.escape(one)}</div>" for one in sentences)
-    held = "".join(_held(table) for table in tables)
+    listed = "".join(_held(table) for table in tables)
     return (f"<div style='line-height:1.5'><b>{html.escape(heading)}</b>{lines}"
-            f"<details><summary>names and units</summary>{held}</details></div>")
+            f"<details><summary>names and units</summary>{listed}</details></div>")
 
 
 def scene_in_words(scene: Scene, varied: Sequence[str] = ()) -> str:

@@ -38,12 +38,12 @@ def contact_axis(beads: int) -> dict[str, Column]:
     return axis("contact", np.arange(beads + 1), "1", "contact number; c joins bodies c and c + 1")
 
 
-def multiplier_columns(found: np.ndarray, axes: tuple[str, ...], errors: np.ndarray | None = None,
+def multiplier_columns(multipliers: np.ndarray, axes: tuple[str, ...], errors: np.ndarray | None = None,
                        prefix: str = "") -> dict[str, Column]:
     """Real and imaginary parts of multipliers (netCDF has no complex numbers), and their errors where known."""
     of = "the observer's multiplier" if prefix else "multiplier"
-    columns = {f"{prefix}multiplier_real": Column(found.real, axes, "1", f"{of}, real part"),
-               f"{prefix}multiplier_imag": Column(found.imag, axes, "1", f"{of}, imaginary part")}
+    columns = {f"{prefix}multiplier_real": Column(multipliers.real, axes, "1", f"{of}, real part"),
+               f"{prefix}multiplier_imag": Column(multipliers.imag, axes, "1", f"{of}, imaginary part")}
     if errors is not None:
         columns[f"{prefix}multiplier_error"] = Column(errors, axes, "1", f"{of}, absolute error")
     return columns

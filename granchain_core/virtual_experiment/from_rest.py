@@ -35,9 +35,9 @@ def from_rest(scene: Scene, times: np.ndarray, rate: float, sensors: Sensors,
     if len(signal.time) * scene.N > MOST_RECORDED:
         raise BadInput(f"{len(signal.time)} samples of the model for {scene.N} beads are more than {MOST_RECORDED:.0e} "
                        "values; take fewer periods, a smaller rate or a smaller bandwidth.")
-    found = drive(scene, signal, stop=stop)
+    motion = drive(scene, signal, stop=stop)
     tip = sensors.tip_mass * np.gradient(signal.velocity, signal.time)
-    forces = [sensors.passed(found.time, force, times) for force in (found.input_force + tip, found.output_force)]
+    forces = [sensors.passed(motion.time, force, times) for force in (motion.input_force + tip, motion.output_force)]
     return np.interp(times, signal.time, signal.velocity), forces
 
 

@@ -171,11 +171,11 @@ def virtual_curve_csv(scene: Scene, frequencies: Sequence[float] | np.ndarray, s
     for frequency in frequencies:
         for _ in range(repeats):
             amplitude = scene.A0 * max(0.01, 1.0 + scatter * random.standard_normal())
-            one = scene.evolve(f=float(frequency), A0=amplitude)
-            samples = round(periods * sensors.rate / one.f)
-            check_range(f"samples at {one.f:g} Hz (periods · rate / f) =", samples, 8, MOST_SAMPLES)
-            _, _, (_, output) = _recorded(one, samples, sensors, random, stop)
-            rows.append(f"{one.f:.9g},{max(0.0, float(output.max())):.7g}")
+            driven = scene.evolve(f=float(frequency), A0=amplitude)
+            samples = round(periods * sensors.rate / driven.f)
+            check_range(f"samples at {driven.f:g} Hz (periods · rate / f) =", samples, 8, MOST_SAMPLES)
+            _, _, (_, output) = _recorded(driven, samples, sensors, random, stop)
+            rows.append(f"{driven.f:.9g},{max(0.0, float(output.max())):.7g}")
             if progress is not None:
                 progress(len(rows), count)
     about = f"{repeats} records of {periods} periods at each frequency"
@@ -211,8 +211,8 @@ def _recorded(scene: Scene, count: int, sensors: Sensors, random: np.random.Gene
 def _from_rest(scene: Scene, count: int, sensors: Sensors, random: np.random.Generator,
                stop: Stop | None) -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:
     """Time, velocity, and both forces of `count` samples that begin at rest."""
-    found, times = _settled(scene, stop), np.arange(count) / sensors.rate
-    largest = max(found.run.max_input_force, found.run.max_output_force)
+    settled, times = _settled(scene, stop), np.arange(count) / sensors.rate
+    largest = max(settled.run.max_input_force, settled.run.max_output_force)
     velocity, forces = from_rest(_quick(scene), times, _fastest(scene, largest, sensors), sensors, stop)
     forces = [force + sensors.noise * random.standard_normal(count) for force in forces]
     return times, velocity + sensors.velocity_noise * random.standard_normal(count), forces
@@ -239,8 +239,8 @@ def _fastest(scene: Scene, force: float, sensors: Sensors) -> float:
 
 def _motion(scene: Scene, length: float, sensors: Sensors, stop: Stop | None) -> tuple[Run, float]:
     """The steady state from phase 0 on, over `length` [s] and a little more, and its samples a second [Hz]."""
-    found = _settled(scene, stop)
-    largest = max(found.run.max_input_force, found.run.max_output_force)
+    settled = _settled(scene, stop)
+    largest = max(settled.run.max_input_force, settled.run.max_output_force)
     samples = max(_LEAST_SAMPLES, math.ceil(_fastest(scene, largest, sensors) / scene.f))
     periods = math.ceil(length * scene.f) + 1
     if periods * samples * scene.N > MOST_VALUES:
@@ -248,8 +248,8 @@ def _motion(scene: Scene, length: float, sensors: Sensors, stop: Stop | None) ->
                        f"{MOST_VALUES:.0e} values; take fewer periods, a smaller rate or a smaller bandwidth.")
     setting = following_setting(True) if scene.cuts_tension else fixed_step_setting(_STEPS_PER_DEFAULT)
     engine = Engine(scene, setting, samples, stop=stop)
-    engine.start(State(found.run.displacement[-1], found.run.velocity[-1]))
+    engine.start(State(settled.run.displacement[-1], settled.run.velocity[-1]))
     began, rows = time.perf_counter(), engine.record(periods * samples)
     cost = Cost.of(time.perf_counter() - began, engine.counts, setting.method)
-    run = run_from(engine, rows, 0, found.regime, typical_error(setting), cost, start=GIVEN_STATE)
+    run = run_from(engine, rows, 0, settled.regime, typical_error(setting), cost, start=GIVEN_STATE)
     return run, samples * scene.f

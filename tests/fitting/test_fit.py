@@ -24,9 +24,11 @@ from granchain_core.fitting import (
     virtual_curve,
     virtual_series,
 )
+from granchain_core.fitting.curve_target import SCATTER
+from granchain_core.fitting.evaluation import FAILED
+from granchain_core.fitting.feature_target import extrema
 from granchain_core.fitting.parameters import free_of, stiffened, with_values
 from granchain_core.fitting.search import Problem
-from granchain_core.fitting.targets import FAILED, SCATTER, extrema
 from granchain_core.fitting.trains import Train
 from granchain_core.runs.to_accuracy import run
 
@@ -51,7 +53,7 @@ def test_a_curve_gives_back_what_made_it(found: Fit) -> None:
     for one, value, profile in zip(FREE, TRUTH.values(), found.profiles, strict=True):
         assert profile.low < value < profile.high, one.name
         assert one.low < profile.low and profile.high < one.high and not (profile.open_low or profile.open_high)
-    assert found.verdict == "can" and found.freedom == 6 and found.probability is not None and found.probability > 0.01
+    assert found.verdict == "can" and found.degrees_of_freedom == 6 and found.probability is not None and found.probability > 0.01
     assert found.best[0] == found.scene.A0 and found.evaluation.residuals.shape == (9,)
 
 
@@ -111,7 +113,7 @@ def test_an_amplitude_for_each_frequency_leans_on_its_prior() -> None:
     free = per_frequency([Free("A0", 3e-7, 9e-7, (5e-7, 1e-7)), Free("D", 60.0, 200.0)], frequencies)
     assert [one.name for one in free] == ["A0@1200", "A0@1600", "A0@2000", "D"]
     found = fit(CHAIN, CurveTarget(given), free, intervals=False)
-    assert found.amplitude is not None and found.data == 6 and found.freedom == 2
+    assert found.amplitude is not None and found.data == 6 and found.degrees_of_freedom == found.freedom == 2
     model = resonance_curve(found.scene, frequencies, amplitude=found.amplitude).column("max_output_force")
     assert model == pytest.approx(given.force, rel=0.04)
 

@@ -17,7 +17,7 @@ def profile_of(misfit: Any, slope: float) -> Any:
     """The profile of one parameter from 0 to 1 with its least misfit at 0.5, where residuals have this slope."""
     free = SimpleNamespace(value=float)
     stub = SimpleNamespace(misfit=lambda x: misfit(float(x[0])), free=[free],
-                           slopes=lambda x: np.array([[slope]]), jacobian=lambda x, moving: np.array([[slope]]))
+                           curvature=lambda x: np.array([[slope**2]]))
     return profile(stub, np.array([0.5]), 0, 1.0, None, last=True)  # type: ignore[arg-type]
 
 

@@ -15,8 +15,8 @@ from app.plots.theme import THEMES
 from granchain_core import Amplitude, BadInput, Fit, Scene, Stop, fit, save, scene
 from granchain_core.experiment import Series
 from granchain_core.fitting import Free, RecordsTarget, SeriesTarget, per_frequency, virtual_series
+from granchain_core.fitting.evaluation import Evaluation
 from granchain_core.fitting.search import Target
-from granchain_core.fitting.targets import Evaluation
 
 CHAIN = scene("sec2").evolve(N=2, k=2e5)
 ERROR = 0.02
@@ -40,7 +40,7 @@ def target() -> RecordsTarget:
 def found(target: RecordsTarget) -> Fit:
     """One D, and an amplitude for each record."""
     free = per_frequency([Free("A0", 3e-7, 9e-7), Free("D", 60.0, 200.0)], target.frequencies)
-    return fit(CHAIN, target, free, design=32)
+    return fit(CHAIN, target, free, initial_points=32)
 
 
 def test_common_and_own_parameters_come_back(found: Fit) -> None:
@@ -54,7 +54,7 @@ def test_common_and_own_parameters_come_back(found: Fit) -> None:
 
 def test_two_records_know_more_than_one(found: Fit, target: RecordsTarget) -> None:
     alone = fit(CHAIN.evolve(A0=DRIVES[1800.0]), target.records[0], [Free("A0", 3e-7, 9e-7), Free("D", 60.0, 200.0)],
-                design=16)
+                initial_points=16)
     assert found.profiles[2].high - found.profiles[2].low < alone.profiles[1].high - alone.profiles[1].low
 
 

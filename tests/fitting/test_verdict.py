@@ -11,9 +11,9 @@ from scipy.stats import f
 
 from granchain_core import Amplitude, Fit, Scene, Stop, fit, scene
 from granchain_core.fitting import Free
+from granchain_core.fitting.evaluation import Evaluation
 from granchain_core.fitting.intervals import limit
 from granchain_core.fitting.search import Target
-from granchain_core.fitting.targets import Evaluation
 
 CHAIN = scene("sec2")
 AT = np.linspace(-1.0, 1.0, 6)
@@ -44,7 +44,7 @@ class Line:
 
 
 def fitted(line: Line) -> Fit:
-    return fit(CHAIN, cast(Target, line), FREE, design=8)
+    return fit(CHAIN, cast(Target, line), FREE, initial_points=8)
 
 
 def test_the_logarithm_of_a_variance_is_no_evidence_against_the_model() -> None:
@@ -79,7 +79,7 @@ def test_errors_that_repeats_tell_are_themselves_uncertain() -> None:
     for _ in range(100):
         told = np.sqrt(rng.chisquare(3) / 3)  # over the true one, by which the data scatter
         line = Line(AT + 0.1 / told * rng.standard_normal(len(AT)), True, error_freedom=3)
-        wrong += fit(CHAIN, cast(Target, line), FREE, design=2, intervals=False).verdict == "cannot"
+        wrong += fit(CHAIN, cast(Target, line), FREE, initial_points=2, intervals=False).verdict == "cannot"
     assert wrong <= 5
 
 

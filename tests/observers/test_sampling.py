@@ -9,7 +9,7 @@ from recorded import Recorded, error, recorded
 from granchain_core import observe, run, scene
 from granchain_core.execution.stop import Stop
 from granchain_core.observers import ForceRecord, force_record
-from granchain_core.observers.pushed_chain import PushedChain
+from granchain_core.observers.force_driven_chain import ForceDrivenChain
 from granchain_core.scene.state import rest
 
 FOUNDED = scene("fig11-founded")
@@ -71,7 +71,7 @@ def test_the_force_is_monotone_between_samples_and_zero_between_zeros() -> None:
 
 def test_steps_converge_with_their_fourth_power() -> None:
     r = recorded(SMOOTH, 500)
-    chain = PushedChain(SMOOTH, ForceRecord(r.time, r.force), Stop())
+    chain = ForceDrivenChain(SMOOTH, ForceRecord(r.time, r.force), Stop())
     found = [chain.run(r.start, halvings).displacement for halvings in range(5)]
     change = [error(a, found[-1]) for a in found[:3]]
     # RK4 split at events has 3.9 and more (granchain_core/integrate/methods.py); fitted over a factor of 4
@@ -91,7 +91,7 @@ def test_steps_of_a_chain_that_cuts_tension_are_known_to_the_error_that_is_state
     shown = scene("sec2").evolve(N=3, f=1000.0, dissipation="tsuji", tension="cut", accuracy=1e-3)
     given = run(shown, periods=0, record=15, samples=400)
     seen = observe(shown, given.time, given.input_force)
-    chain = PushedChain(shown, ForceRecord(given.time, given.input_force), Stop())
+    chain = ForceDrivenChain(shown, ForceRecord(given.time, given.input_force), Stop())
     true = chain.run(rest(shown), 9).displacement * chain.scaled.scales.length
     assert error(seen.displacement, true) <= seen.integration_error <= shown.accuracy
 

@@ -37,7 +37,7 @@ def test_cells_are_sent_as_rows_with_what_is_done_and_the_scale_of_all() -> None
 def test_an_attractor_is_told_with_share_kind_and_evidence() -> None:
     found = [described_attractor(one) for one in attractors(scene("sec2").evolve(f=1595.0), random_states=24)]
     periodic, irregular = found[0], found[-1]
-    assert periodic["words"].startswith("period 4, pulse ratio 1:4, in step, |μ| ") and "error" in periodic["force"]
+    assert periodic["words"].startswith("period 4, pulse ratio 1:4, |μ| ") and "error" in periodic["force"]
     assert irregular["words"].startswith("quasi-periodic, Lyapunov exponent") and "error" not in irregular["force"]
     assert "rest" in periodic["from"] and "down" in irregular["from"]
     assert sum(one["starts"] for one in found) == 27 and "±" in periodic["share_words"]

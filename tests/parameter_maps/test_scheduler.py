@@ -84,7 +84,7 @@ def test_a_curve_is_the_same_and_a_sweep_cannot_be_divided(client: Any) -> None:
 
 def test_a_fit_evaluates_the_same_places(client: Any) -> None:
     measured = virtual_curve(CHAIN.evolve(D=120.0), [1800.0, 2000.0, 2200.0], 0.02, np.random.default_rng(1))
-    here, there = (fit(CHAIN, CurveTarget(measured), [Free("D", 50.0, 200.0)], design=8, scheduler=one) for one in (None, client))
+    here, there = (fit(CHAIN, CurveTarget(measured), [Free("D", 50.0, 200.0)], initial_points=8, scheduler=one) for one in (None, client))
     assert there.best == here.best and there.profiles == here.profiles
     assert (there.landscape[0] == here.landscape[0]).all() and (there.landscape[1] == here.landscape[1]).all()
 

@@ -32,7 +32,7 @@ RESULTS = {
     "observation": (lambda: granchain.observe(CHAIN, TIME, np.sin(np.pi * TIME / 1e-3) ** 2), "time (ms)"),
     "accuracy": (lambda: granchain.WorkPrecision(CHAIN, "dop853", "SciPy's DOP853", 1e-12, [
         Row("rk4", "2 × the default steps", 1e-5, 0.001, 7, 2.0)]), "processor time"),
-    "fit": (lambda: granchain.fit(CHAIN, CurveTarget(read_data(DATA)), [Free("D", 50.0, 200.0)], design=2, intervals=False), "D"),
+    "fit": (lambda: granchain.fit(CHAIN, CurveTarget(read_data(DATA)), [Free("D", 50.0, 200.0)], initial_points=2, intervals=False), "D"),
     "spectrum": (lambda: granchain.spectrum(granchain.settle(CHAIN).run), "amplitude of the output force (N)"),
     "transfer": (lambda: granchain.transfer(granchain.settle(CHAIN).run), "gain |H|"),
     "lyapunov": (lambda: granchain.lyapunov_spectrum(CHAIN, periods=20), "Lyapunov exponent per drive period"),

@@ -30,7 +30,7 @@ def source(plot: figure, name: str) -> dict[str, object]:
 
 def test_a_curve_with_its_residuals_and_its_landscape() -> None:
     measured = virtual_curve(CHAIN, [1800.0, 2000.0, 2200.0], 0.02, np.random.default_rng(1))
-    found = fit(CHAIN, CurveTarget(measured), DAMPING, design=4)
+    found = fit(CHAIN, CurveTarget(measured), DAMPING, initial_points=4)
     shown = plots(drawn(found, THEMES["dark"]))
     assert set(shown) == {"data", "residuals", "landscape of D"}
     assert list(source(shown["data"], "measured")["frequency"]) == [1800.0, 2000.0, 2200.0]
@@ -43,13 +43,13 @@ def test_a_curve_with_its_residuals_and_its_landscape() -> None:
 
 def test_a_series_shows_both_forces() -> None:
     series = virtual_series(CHAIN, 4, 32, 0.05, np.random.default_rng(1))
-    found = fit(CHAIN, SeriesTarget(series, 0.05), DAMPING, design=4, intervals=False)
+    found = fit(CHAIN, SeriesTarget(series, 0.05), DAMPING, initial_points=4, intervals=False)
     shown = plots(drawn(found, THEMES["light"]))
     assert [item.label.value for item in shown["data"].legend[0].items] == ["input force", "output force"]
 
 
 def test_features_stand_upright_beside_what_the_model_has() -> None:
     found = fit(CHAIN, FeatureTarget([Feature(1500.0, "1:1 resonance", 1, "")], np.linspace(800.0, 2400.0, 9), 50.0), DAMPING,
-                design=2, intervals=False)
+                initial_points=2, intervals=False)
     shown = plots(drawn(found, THEMES["projector"]))
     assert "stated" in shown["data"].title.text and "D =" in shown["landscape of D"].title.text

@@ -24,7 +24,7 @@ FREE = [Free("D", 60.0, 200.0)]
 
 
 def _fit(target: Any, intervals: bool = False) -> Labelled:
-    return granchain_core.fit(CHAIN, target, FREE, design=2, intervals=intervals)
+    return granchain_core.fit(CHAIN, target, FREE, initial_points=2, intervals=intervals)
 
 
 def _measured() -> Any:

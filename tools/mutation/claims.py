@@ -63,10 +63,10 @@ STATED = (
            "while finer.steps_per_period(scaled, samples) == self.steps_per_period(scaled, samples):",
            "while finer.steps_per_period(scaled, samples) < self.steps_per_period(scaled, samples):",
            "two computations by the same steps are compared", k.SAME_STEPS),
-    Mutant("error-without-floor", _STATED, "np.maximum(least, self.rounding))", "self.rounding)",
+    Mutant("error-without-floor", _STATED, "np.maximum(least_errors, self.rounding))", "self.rounding)",
            "an error of exactly nothing is stated", k.SAME_STEPS),
-    Mutant("error-of-last-sample", _STATED, "np.abs(one - other).max()) / largest",
-           "np.abs(one - other)[0].max()) / largest",
+    Mutant("error-of-last-sample", _STATED, "np.abs(first - second).max()) / largest",
+           "np.abs(first - second)[0].max()) / largest",
            "the first sample's difference is stated for all", k.HONESTY),
     Mutant("done-too-early", _RUN, "if error <= scene.accuracy:\n", "if error <= 1e4 * scene.accuracy:\n",
            "a run is called done that is not as accurate as asked for",
@@ -98,7 +98,7 @@ FAILING = (
            "engine.elapsed = kept.elapsed", "a run that was cut inside a period goes on at its beginning", k.CHECKPOINTS),
     Mutant("budget-of-one-computation", "runs/budget.py", "steps, seconds = steps * repetition_factor, seconds * repetition_factor", "steps, seconds = 0.25 * steps, 0.25 * seconds",
            "the estimate of a run is a fraction of it", ("tests/hard_cases/test_outcomes.py", "-k", "within_a_factor_of_two and (knobs0 or knobs3 or knobs6)")),
-    Mutant("budget-not-kept", "runs/budget.py", "if found.seconds <= budget:", "if found.seconds <= 1e30 * budget:",
+    Mutant("budget-not-kept", "runs/budget.py", "if estimate.seconds <= budget:", "if estimate.seconds <= 1e30 * budget:",
            "a run of years is begun", ("tests/hard_cases/test_outcomes.py", "-k", "command_line_refuses or offered_number_of_periods")),
 )
 
@@ -106,9 +106,9 @@ OBSERVED = (
     Mutant("force-overshoots", "observers/record.py", "from scipy.interpolate import PchipInterpolator  #",
            "from scipy.interpolate import CubicSpline as PchipInterpolator  #",
            "between samples a measured force is above both, or below 0", k.SAMPLING),
-    Mutant("force-in-seconds", "observers/pushed_chain.py", "/ scales.phi ** np.arange(4)", "/ scales.phi ** np.zeros(4)",
+    Mutant("force-in-seconds", "observers/force_driven_chain.py", "/ scales.phi ** np.arange(4)", "/ scales.phi ** np.zeros(4)",
            "the slopes of a measured force are not scaled", k.SAMPLING),
-    Mutant("loss-between-samples", "observers/observation.py", "= IRREGULAR * np.maximum(", "= 1e-3 * IRREGULAR * np.maximum(",
+    Mutant("loss-between-samples", "observers/observe.py", "(IRREGULAR * np.maximum(", "(1e-3 * IRREGULAR * np.maximum(",
            "what is lost between samples is stated a thousand times too small", k.SAMPLING),
 )
 

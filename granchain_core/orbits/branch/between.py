@@ -29,19 +29,19 @@ class Between:
 
     def careful(self, a: BranchPoint, b: BranchPoint, fraction: float) -> BranchPoint:
         """The orbit at a fraction of the way from a to b, near the cubic through both with their tangents."""
-        guess, normal, way = self._guess(a, b, fraction)
-        solved = self.equations.solve(guess, normal, a.slope, way)
+        guess, normal, distance = self._guess(a, b, fraction)
+        solved = self.equations.solve(guess, normal, a.slope, distance)
         return self._finished(solved, a.tangent, self._arclength(a, b, fraction))
 
     def exact(self, a: BranchPoint, b: BranchPoint, fraction: float) -> BranchPoint:
         """Like `careful`, but mostly with the known derivatives at a and b."""
-        guess, normal, way = self._guess(a, b, fraction)
-        return self._solved(guess, normal, a.tangent, self._arclength(a, b, fraction), way)
+        guess, normal, distance = self._guess(a, b, fraction)
+        return self._solved(guess, normal, a.tangent, self._arclength(a, b, fraction), distance)
 
     def rough(self, a: BranchPoint, b: BranchPoint, fraction: float) -> BranchPoint:
         """Like `careful`, but by the quick map alone. Values that are alike at a and b are taken from a."""
-        guess, normal, way = self._guess(a, b, fraction)
-        arclength, newton = self._arclength(a, b, fraction), Newton(self.equations, guess, normal, way)
+        guess, normal, distance = self._guess(a, b, fraction)
+        arclength, newton = self._arclength(a, b, fraction), Newton(self.equations, guess, normal, distance)
         near = self._near(arclength)
         newton.solve_quick(near)
         slope, multipliers, tangent = near.slope, a.multipliers, a.tangent
@@ -84,10 +84,10 @@ class Between:
 
     def _finished(self, solved: Solved, towards: np.ndarray, arclength: float) -> BranchPoint:
         self._remember(arclength, solved.near)
-        found = branch_point(self.equations, solved, self.equations.tangent(solved, towards), arclength)
-        self._exact[found], self._derivatives[found] = found, solved.flow.derivative
-        self._contacts[found] = solved.flow.contact_events[:, 0]
-        return found
+        point = branch_point(self.equations, solved, self.equations.tangent(solved, towards), arclength)
+        self._exact[point], self._derivatives[point] = point, solved.flow.derivative
+        self._contacts[point] = solved.flow.contact_events[:, 0]
+        return point
 
     def _arclength(self, a: BranchPoint, b: BranchPoint, fraction: float) -> float:
         return a.arclength + fraction * (b.arclength - a.arclength)
@@ -98,19 +98,20 @@ class Between:
     def _guess(self, a: BranchPoint, b: BranchPoint, fraction: float) -> tuple[np.ndarray, np.ndarray, float]:
         """The cubic's point in the plane of the corrected orbit, the normal of that plane, and the distance of b."""
         za, zb = self.equations.point(a.x, a.knob), self.equations.point(b.x, b.knob)
-        way = float(np.linalg.norm(zb - za))
-        normal = (zb - za) / way
+        distance = float(np.linalg.norm(zb - za))
+        normal = (zb - za) / distance
         guess = za + fraction * (zb - za)
-        return guess + across(cubic(za, zb, way * a.tangent, way * b.tangent, fraction) - guess, normal), normal, way
+        offset = cubic(za, zb, distance * a.tangent, distance * b.tangent, fraction) - guess
+        return guess + across(offset, normal), normal, distance
 
     def _near(self, arclength: float) -> Near:
         """P_x and P_p at this arclength, between the two nearest orbits where they are known."""
         last = len(self._known) - 1
         after = next((i for i in range(1, last) if self._known[i][0] >= arclength), last)
-        (s0, one), (s1, other) = self._known[after - 1 : after + 1]
+        (s0, before), (s1, behind) = self._known[after - 1 : after + 1]
         part = (arclength - s0) / (s1 - s0) if s1 > s0 else 0.5
-        return Near((1.0 - part) * one.derivative + part * other.derivative,
-                    (1.0 - part) * one.slope + part * other.slope)
+        return Near((1.0 - part) * before.derivative + part * behind.derivative,
+                    (1.0 - part) * before.slope + part * behind.slope)
 
 
 def across(vector: np.ndarray, normal: np.ndarray) -> np.ndarray:

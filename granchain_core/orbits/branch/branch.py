@@ -158,10 +158,11 @@ class Continuation(Iterator[BranchPoint]):
     def run(self, most_points: int = MOST_POINTS, on_point: Callable[[HalfBranch], None] | None = None) -> Branch:
         """Follow all half-branches to their ends, each in a thread, or until one has `most_points`."""
 
-        def follow(one: HalfContinuation) -> None:
-            while self._grows(one) and len(one.half.points) < most_points and next(one, None) is not None:
+        def follow(continuation: HalfContinuation) -> None:
+            while (self._grows(continuation) and len(continuation.half.points) < most_points
+                   and next(continuation, None) is not None):
                 if on_point is not None:
-                    on_point(one.half)
+                    on_point(continuation.half)
 
         with ThreadPoolExecutor(len(self._continuations)) as pool:
             for future in [pool.submit(follow, one) for one in self._continuations]:
@@ -169,9 +170,10 @@ class Continuation(Iterator[BranchPoint]):
         self._drop_double()
         return self.branch
 
-    def _grows(self, one: HalfContinuation) -> bool:
+    def _grows(self, continuation: HalfContinuation) -> bool:
         """Whether a half-branch goes on: it has not ended, and is shorter than every half-branch that has closed."""
-        return not one.half.ended and len(one.half.points) < min(map(len, self._closed), default=math.inf)
+        half = continuation.half
+        return not half.ended and len(half.points) < min(map(len, self._closed), default=math.inf)
 
     @property
     def _closed(self) -> list[list[BranchPoint]]:
@@ -286,7 +288,7 @@ def continue_branch(scene: Scene, knob: str, start: float, end: float, period: i
 
 def _refuse_shorter(equations: BranchEquations, x: np.ndarray, value: float) -> None:
     """Raise `BadInput` where the orbit has a shorter period than the one asked for."""
-    n, least = equations.period, equations.least_period(x, value)
-    if least < n:
-        raise BadInput(f"The orbit of {n} drive periods found at {equations.axis.text(value)} repeats after {least} "
-                       f"already; give period {least}.")
+    n, least_period = equations.period, equations.least_period(x, value)
+    if least_period < n:
+        raise BadInput(f"The orbit of {n} drive periods found at {equations.axis.text(value)} repeats after "
+                       f"{least_period} already; give period {least_period}.")

@@ -55,7 +55,7 @@ def _normal_form(special: SpecialPoint, between: Between, amplitudes: Mapping[st
     return normal_form(special.kind, multiplier, sides, amplitudes)
 
 
-def same_sequence(kind: str, one: np.ndarray, other: np.ndarray) -> bool:
+def same_sequence(kind: str, before: np.ndarray, after: np.ndarray) -> bool:
     """Whether the derivatives in the normal form of this kind are continuous from one sequence to the other.
 
     A sequence has contact + 1 for each closing and its negative for each opening. The events of each contact must be
@@ -63,12 +63,12 @@ def same_sequence(kind: str, one: np.ndarray, other: np.ndarray) -> bool:
     contacts must come in the same order too, except for a fold, which needs no third derivative.
     """
     together = 1 if kind == "fold" else 2
-    last = int(max(abs(one).max(initial=0), abs(other).max(initial=0)))
+    last = int(max(abs(before).max(initial=0), abs(after).max(initial=0)))
 
     def of(events: np.ndarray, first: int) -> np.ndarray:
         return events[(abs(events) >= first) & (abs(events) < first + together)]
 
-    return all(np.array_equal(of(one, first), of(other, first)) for first in range(1, last + 1))
+    return all(np.array_equal(of(before, first), of(after, first)) for first in range(1, last + 1))
 
 
 def _map_near(kind: str, between: Between, point: BranchPoint, tolerance: float) -> MapNear:

@@ -67,8 +67,8 @@ class Ends:
         """The orbit exactly at the end of the axis that was passed on the way to `beyond`, at zb."""
         axis, za = self.equations.axis, self._z(last)
         fraction = (axis.coordinate(end) - za[-1]) / (zb[-1] - za[-1])
-        way = float(np.linalg.norm(zb - za))
-        guess = cubic(za, zb, way * last.tangent, way * beyond.tangent, fraction)
+        distance = float(np.linalg.norm(zb - za))
+        guess = cubic(za, zb, distance * last.tangent, distance * beyond.tangent, fraction)
         guess[-1] = axis.coordinate(end)
         fixed = np.zeros(len(guess))
         fixed[-1] = 1.0
@@ -84,15 +84,15 @@ class Ends:
     def _closing(self, last: Ending, beyond: Ending) -> BranchPoint | None:
         """The starting orbit again, if the step from `last` to `beyond` passed it and Newton's method leads there."""
         za, zb = self._z(last.point), self._z(beyond.point)
-        way = zb - za
-        length = float(np.linalg.norm(way))
+        step = zb - za
+        length = float(np.linalg.norm(step))
         for start in self._starts:
-            along = float((start - za) @ way) / length**2
-            if 0.0 < along <= 1.0 and np.linalg.norm(start - za - along * way) < _PASSING_DISTANCE * length:
+            along = float((start - za) @ step) / length**2
+            if 0.0 < along <= 1.0 and np.linalg.norm(start - za - along * step) < _PASSING_DISTANCE * length:
                 between = Between(self.equations, last.point, beyond.point, (last.near, beyond.near))
-                found = between.careful(last.point, beyond.point, along)
-                if np.linalg.norm(self._z(found) - start) < _CLOSING_DISTANCE:
-                    return found
+                point = between.careful(last.point, beyond.point, along)
+                if np.linalg.norm(self._z(point) - start) < _CLOSING_DISTANCE:
+                    return point
         return None
 
     def _z(self, point: BranchPoint) -> np.ndarray:

@@ -72,12 +72,12 @@ class BranchEquations:
 
     def reused_map(self, value: float, tolerance: float) -> StroboscopicMap:
         """The map at a knob value, in an object that the thread's next call changes."""
-        found: StroboscopicMap | None = getattr(self._reused, "map", None)
-        if found is None:
-            found = self._reused.map = self.stroboscopic_map(value, tolerance=tolerance)
+        kept_map: StroboscopicMap | None = getattr(self._reused, "map", None)
+        if kept_map is None:
+            kept_map = self._reused.map = self.stroboscopic_map(value, tolerance=tolerance)
         else:
-            found.move(self.axis.scene_at(value), tolerance)
-        return found
+            kept_map.move(self.axis.scene_at(value), tolerance)
+        return kept_map
 
     def drive_rate(self, z: np.ndarray) -> float:
         """The scaled drive frequency β near z."""
@@ -106,8 +106,9 @@ class BranchEquations:
 
     def least_period(self, x: np.ndarray, value: float, back: float = SAME_ORBIT_DISTANCE) -> int:
         """Number of drive periods, at most `period`, after which the orbit is within `back` of x, relatively."""
-        least = least_displacement(x, self.drive_rate(self.point(x, value)))
-        return least_period(lambda periods: self.stroboscopic_map(value, periods).end(x), x, self.period, back, least)
+        smallest = least_displacement(x, self.drive_rate(self.point(x, value)))
+        return least_period(lambda periods: self.stroboscopic_map(value, periods).end(x), x, self.period, back,
+                            smallest)
 
     def solve(self, z: np.ndarray, normal: np.ndarray, slope: np.ndarray | None = None,
               farthest: float = np.inf) -> Solved:
@@ -137,9 +138,9 @@ class BranchEquations:
 
     def tangent_by(self, matrix: np.ndarray, towards: np.ndarray) -> np.ndarray:
         """Unit tangent of the branch by the bordered matrix, on the side of `towards`."""
-        found = np.linalg.solve(matrix, np.append(np.zeros(self.size), 1.0))
-        found /= np.linalg.norm(found)
-        return found if found @ towards > 0.0 else -found
+        tangent = np.linalg.solve(matrix, np.append(np.zeros(self.size), 1.0))
+        tangent /= np.linalg.norm(tangent)
+        return tangent if tangent @ towards > 0.0 else -tangent
 
     def matrix(self, derivative: np.ndarray, slope: np.ndarray, normal: np.ndarray) -> np.ndarray:
         """The bordered matrix of Newton's method (2N + 1, 2N + 1)."""

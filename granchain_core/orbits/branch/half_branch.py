@@ -91,16 +91,16 @@ class HalfContinuation(Iterator[BranchPoint]):
                 if not self._ahead:
                     self._lose()
                     break
-                one = self._ahead.popleft()
+                ahead = self._ahead.popleft()
                 try:
-                    point, special = one.found.result()
+                    point, special = ahead.found.result()
                 except (ComputationError, np.linalg.LinAlgError) as problem:
-                    self._go_back(0.5 * one.tried, problem)
+                    self._go_back(0.5 * ahead.tried, problem)
                     continue
             except Cancelled:
                 self._go_back(half.step)
                 raise
-            self._add(one, point, special)
+            self._add(ahead, point, special)
             return half.points[-1]
         raise StopIteration
 
@@ -182,9 +182,9 @@ class HalfContinuation(Iterator[BranchPoint]):
 
     # --- the half-branch -----------------------------------------------------------------------------------
 
-    def _add(self, one: _Ahead, point: BranchPoint, special: list[SpecialPoint]) -> None:
+    def _add(self, ahead: _Ahead, point: BranchPoint, special: list[SpecialPoint]) -> None:
         """Add an orbit and the special points before it to the half-branch, which ends at a merging."""
-        half, ended, reason = self.half, one.ending.ended, one.ending.reason
+        half, ended, reason = self.half, ahead.ending.ended, ahead.ending.reason
         merging = self._ends.merging(special)
         if merging is not None:
             special, point = special[: merging + 1], special[merging].before
@@ -196,8 +196,8 @@ class HalfContinuation(Iterator[BranchPoint]):
         half.special.extend(special)
         if point is not half.points[-1]:
             half.points.append(point)
-            self._known = point, one.ending.near
-        half.step, half.ended, half.reason = one.step, ended, reason
+            self._known = point, ahead.ending.near
+        half.step, half.ended, half.reason = ahead.step, ended, reason
 
     def _lose(self) -> None:
         last, half = self.half.points[-1], self.half
@@ -213,9 +213,9 @@ class HalfContinuation(Iterator[BranchPoint]):
         """Raise `ComputationError` for an orbit of another branch, whose period is a part of this one's."""
         n = self.equations.period
         x, value = self.equations.state(solved.z), self.equations.value(solved.z)
-        least = self.equations.least_period(x, value, _SHORTER_PERIOD_DISTANCE)
-        if least < n:
-            raise ComputationError(f"the step leads to an orbit that repeats after {least} of {n} drive periods",
+        least_period = self.equations.least_period(x, value, _SHORTER_PERIOD_DISTANCE)
+        if least_period < n:
+            raise ComputationError(f"the step leads to an orbit that repeats after {least_period} of {n} drive periods",
                                    "no-convergence")
 
     def _z(self, point: BranchPoint) -> np.ndarray:

@@ -187,10 +187,10 @@ class Newton:
             if first > _LARGEST_WITH_REUSED:
                 return False
             self.matrix = self.equations.matrix(near.derivative, near.slope, self.normal)
-            found = first <= QUICK_RESIDUAL or self._steps_without_derivative(end)
-            if not found and not self.residuals[-1] < first:
+            enough = first <= QUICK_RESIDUAL or self._steps_without_derivative(end)
+            if not enough and not self.residuals[-1] < first:
                 self.z, self._quick_end_here = self.start, None
-            return found
+            return enough
         except ComputationError:
             self.z, self._quick_end_here = self.start, None
             return False

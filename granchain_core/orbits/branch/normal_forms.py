@@ -116,7 +116,7 @@ def normal_form(kind: str, multiplier: complex, sides: tuple[MapNear, MapNear],
     amplitudes : mapping of str to tuple of float
         For every kind, the amplitudes ξ of the differences, tried in this order until one decides.
     """
-    found = NormalForm(NOT_DECIDED)
+    form = NormalForm(NOT_DECIDED)
     try:
         critical = [_critical(kind, multiplier, side.derivative) for side in sides]
         if kind == "neimark_sacker" and _resonant(critical[0].multiplier):
@@ -127,13 +127,13 @@ def normal_form(kind: str, multiplier: complex, sides: tuple[MapNear, MapNear],
         critical[1] = _with_sign_of(critical[1], critical[0])
     for amplitude in amplitudes[kind]:
         try:
-            found = _judged(kind, *(_COEFFICIENTS[kind](side, one, size) for side, one, size in
+            form = _judged(kind, *(_COEFFICIENTS[kind](side, one, size) for side, one, size in
                                     zip(sides, critical, (amplitude, 0.5 * amplitude), strict=True)))
         except NotSmooth as obstacle:
-            found = NormalForm(NOT_DECIDED, reason=str(obstacle))
-        if not found.reason:
+            form = NormalForm(NOT_DECIDED, reason=str(obstacle))
+        if not form.reason:
             break
-    return found
+    return form
 
 
 def _judged(kind: str, one: float, other: float) -> NormalForm:
@@ -178,9 +178,9 @@ def _nearest(kind: str, multiplier: complex, matrix: np.ndarray) -> tuple[comple
     return complex(values[place]), vector if kind == "neimark_sacker" else vector.real
 
 
-def _with_sign_of(one: _Critical, other: _Critical) -> _Critical:
-    """`one` with the sign of q that points as the q of `other` does."""
-    return one if one.q @ other.q > 0.0 else _Critical(one.multiplier, -one.q, -one.p)
+def _with_sign_of(vectors: _Critical, reference: _Critical) -> _Critical:
+    """`vectors` with the sign of q that points as the q of `reference` does."""
+    return vectors if vectors.q @ reference.q > 0.0 else _Critical(vectors.multiplier, -vectors.q, -vectors.p)
 
 
 def _resonant(multiplier: complex) -> bool:
@@ -207,20 +207,20 @@ def _fold(near: MapNear, critical: _Critical, size: float) -> float:
 
 def _period_doubling(near: MapNear, critical: _Critical, size: float) -> float:
     """The coefficient c of ξ³."""
-    q, one = critical.q, np.eye(len(near.x))
-    second, third = _differences(near, q, size, one)
-    shift = np.linalg.solve(one - near.derivative, second @ q)
+    q, identity = critical.q, np.eye(len(near.x))
+    second, third = _differences(near, q, size, identity)
+    shift = np.linalg.solve(identity - near.derivative, second @ q)
     return float(critical.p @ (third @ q + 3.0 * second @ shift) / 6.0)
 
 
 def _neimark_sacker(near: MapNear, critical: _Critical, size: float) -> float:
     """The real part of d; with q = a + ib, C(q, q, q̄) = C(a, a, q) + C(b, b, q)."""
-    q, one = critical.q, np.eye(len(near.x))
+    q, identity = critical.q, np.eye(len(near.x))
     turn = critical.multiplier / abs(critical.multiplier)
-    (second_a, third_a), (second_b, third_b) = (_differences(near, part, size, one) for part in (q.real, q.imag))
+    (second_a, third_a), (second_b, third_b) = (_differences(near, part, size, identity) for part in (q.real, q.imag))
     second, conjugate = second_a + 1j * second_b, second_a - 1j * second_b
-    shift = np.linalg.solve(one - near.derivative, second @ q.conj())
-    double = np.linalg.solve(turn**2 * one - near.derivative, second @ q)
+    shift = np.linalg.solve(identity - near.derivative, second @ q.conj())
+    double = np.linalg.solve(turn**2 * identity - near.derivative, second @ q)
     cubic = (third_a + third_b) @ q + 2.0 * second @ shift + conjugate @ double
     return float((0.5 * np.vdot(critical.p, cubic) / turn).real)
 

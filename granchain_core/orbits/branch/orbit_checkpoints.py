@@ -106,13 +106,13 @@ def _point(record: dict[str, Any]) -> BranchPoint:
     return BranchPoint(**{**record, **arrays, "multipliers": multipliers, "residuals": tuple(record["residuals"])})
 
 
-def special_as_json(one: SpecialPoint) -> dict[str, Any]:
+def special_as_json(point: SpecialPoint) -> dict[str, Any]:
     """A special point as JSON has it; `special_from_json` gives it back to the last bit."""
-    multiplier = None if one.multiplier is None else [complex(one.multiplier).real, complex(one.multiplier).imag]
-    return {"kind": one.kind, "knob": one.knob, "interval": list(one.interval), "before": _as_json(one.before),
-            "after": _as_json(one.after), "multiplier": multiplier, "contact": one.contact,
-            "event": one.gained and EVENTS[one.gained],
-            "normal_form": None if one.normal_form is None else asdict(one.normal_form)}
+    multiplier = None if point.multiplier is None else [complex(point.multiplier).real, complex(point.multiplier).imag]
+    return {"kind": point.kind, "knob": point.knob, "interval": list(point.interval), "before": _as_json(point.before),
+            "after": _as_json(point.after), "multiplier": multiplier, "contact": point.contact,
+            "event": point.gained and EVENTS[point.gained],
+            "normal_form": None if point.normal_form is None else asdict(point.normal_form)}
 
 
 def special_from_json(record: dict[str, Any]) -> SpecialPoint:

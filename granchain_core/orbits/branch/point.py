@@ -150,12 +150,12 @@ def record_along(equations: BranchEquations, x: np.ndarray, value: float,
     while True:
         engine.start_scaled(x)
         record = OrbitRecord(np.zeros((room, 4)), np.zeros(PEAKS))
-        status, done, found = record_orbit(stepper.method, stepper.trajectory(engine.y), equations.period, record,
+        status, done, rows = record_orbit(stepper.method, stepper.trajectory(engine.y), equations.period, record,
                                            engine.counts.array, engine.stop.flag)
         if status != FULL:
             engine.raise_for(status, done)
-            return engine, record._replace(turns=record.turns[:found].copy())
-        room = found
+            return engine, record._replace(turns=record.turns[:rows].copy())
+        room = rows
 
 
 def _counted_turns(contacts: int, turns: np.ndarray) -> np.ndarray:

@@ -49,8 +49,8 @@ def quick_steps(scaled: ScaledChain) -> int:
 
     The map would jump if they changed with the knob, so those of one scene serve for all that are compared.
     """
-    least = int(_REFINEMENT * max(16.0, scaled.period / scaled.step)) + 1
-    if least > _MOST_QUICK_STEPS or unknown_slots(scaled.slots, "rk4"):
+    steps = int(_REFINEMENT * max(16.0, scaled.period / scaled.step)) + 1
+    if steps > _MOST_QUICK_STEPS or unknown_slots(scaled.slots, "rk4"):
         return 0
-    unit = 2 ** max(0, least.bit_length() - _BINARY_DIGITS)
-    return -(-least // unit) * unit
+    unit = 2 ** max(0, steps.bit_length() - _BINARY_DIGITS)
+    return -(-steps // unit) * unit

@@ -332,14 +332,14 @@ def _merged(special_points: list[SpecialPoint]) -> list[SpecialPoint]:
     A multiplier that passes 1 without a turn is `multiplier_one`.
     """
     merged: list[SpecialPoint] = []
-    for one in special_points:
+    for point in special_points:
         last = merged[-1] if merged else None
-        if last is not None and one.kind == last.kind == "fold" and one.before is last.after \
-                and (one.multiplier is None) != (last.multiplier is None):
-            turn = one if one.before.turning != one.after.turning else last
-            merged[-1] = SpecialPoint("fold", turn.knob, turn.interval, last.before, one.after,
-                                      multiplier=one.multiplier or last.multiplier)
+        if last is not None and point.kind == last.kind == "fold" and point.before is last.after \
+                and (point.multiplier is None) != (last.multiplier is None):
+            turn = point if point.before.turning != point.after.turning else last
+            merged[-1] = SpecialPoint("fold", turn.knob, turn.interval, last.before, point.after,
+                                      multiplier=point.multiplier or last.multiplier)
         else:
-            merged.append(one)
-    return [replace(one, kind="multiplier_one")
-            if one.kind == "fold" and one.before.turning == one.after.turning else one for one in merged]
+            merged.append(point)
+    return [replace(point, kind="multiplier_one")
+            if point.kind == "fold" and point.before.turning == point.after.turning else point for point in merged]

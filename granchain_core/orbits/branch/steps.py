@@ -38,8 +38,8 @@ def predicted(step: float, z: np.ndarray, tangent: np.ndarray,
     """The predicted point one step from z: along the tangent, with the curvature at z of the cubic through `before`."""
     guess = z + step * tangent
     if before is not None:
-        way = float(np.linalg.norm(z - before[0]))
-        second = (6.0 * (before[0] - z) / way + 2.0 * before[1] + 4.0 * tangent) / way
+        distance = float(np.linalg.norm(z - before[0]))
+        second = (6.0 * (before[0] - z) / distance + 2.0 * before[1] + 4.0 * tangent) / distance
         sideways = 0.5 * step**2 * across(second, tangent)
         if np.linalg.norm(sideways) < LARGEST_CORRECTION * step:
             guess += sideways

@@ -58,8 +58,8 @@ def switch_to_doubled(branch: Branch, special: SpecialPoint, stop: Stop | None =
 
 def doubling_direction(equations: BranchEquations, x: np.ndarray, value: float) -> np.ndarray:
     """Unit eigenvector of the multiplier nearest to −1."""
-    found, vectors = np.linalg.eig(equations.stroboscopic_map(value)(x).derivative)
-    vector = np.real(vectors[:, np.argmin(np.abs(found + 1.0))])
+    multipliers, vectors = np.linalg.eig(equations.stroboscopic_map(value)(x).derivative)
+    vector = np.real(vectors[:, np.argmin(np.abs(multipliers + 1.0))])
     return vector / np.linalg.norm(vector)
 
 

@@ -222,9 +222,9 @@ def outcome_of_coarse_run(job: BatchJob, batch: Batch, member: int) -> SteadySta
 
 def take_coarse_orbit(job: BatchJob, batch: Batch, member: int) -> None:
     """Store what the coarse run found; the member has since run with fine steps."""
-    found = batch.state.search.coarse_orbit[member]
-    job.periods_run += int(found[ORBIT_PERIODS])
-    regime = _periodic(found[:CHECK_COLUMNS], found[ORBIT_SLOWEST_CONTRACTION], job.periods_run)
+    row = batch.state.search.coarse_orbit[member]
+    job.periods_run += int(row[ORBIT_PERIODS])
+    regime = _periodic(row[:CHECK_COLUMNS], row[ORBIT_SLOWEST_CONTRACTION], job.periods_run)
     job.stage, job.coarse = Stage.FINE, (regime, batch.coarse_maxima(member))
 
 

@@ -48,10 +48,10 @@ def on_all_cores(work: Callable[[Iterator[Item]], Iterable[Result]], items: Iter
     is raised here, and the first one if there are several; so is `Cancelled`, unless `ended` or `stop` asked for it.
     """
     shared: _Shared[Item] = _Shared(items, pause)
-    found: queue.SimpleQueue[Any] = queue.SimpleQueue()
+    results: queue.SimpleQueue[Any] = queue.SimpleQueue()
     a_thread_ended = threading.Event()
     count = workers or usable_cores()
-    threads = [threading.Thread(target=_share, args=(work, shared, found, a_thread_ended, (ended, stop)),
+    threads = [threading.Thread(target=_share, args=(work, shared, results, a_thread_ended, (ended, stop)),
                                 daemon=True, name=f"core-{i}") for i in range(count)]
     for thread in threads:
         thread.start()
@@ -59,10 +59,10 @@ def on_all_cores(work: Callable[[Iterator[Item]], Iterable[Result]], items: Iter
         while count > 0:
             a_thread_ended.wait(_INTERVAL)
             a_thread_ended.clear()
-            while not found.empty():
+            while not results.empty():
                 if stop:
                     return
-                item = found.get()
+                item = results.get()
                 if isinstance(item, BaseException):
                     raise item
                 if item is None:
@@ -78,17 +78,17 @@ def on_all_cores(work: Callable[[Iterator[Item]], Iterable[Result]], items: Iter
 
 
 def _share(work: Callable[[Iterator[Item]], Iterable[Result]], items: Iterator[Item],
-           found: queue.SimpleQueue[Any], a_thread_ended: threading.Event, stops: tuple[Stop | None, ...]) -> None:
-    """One thread's share into `found`: its results, the exception that ended it, if any, and None.
+           results: queue.SimpleQueue[Any], a_thread_ended: threading.Event, stops: tuple[Stop | None, ...]) -> None:
+    """One thread's share into `results`: its results, the exception that ended it, if any, and None.
 
     `Cancelled` is no exception to report if one of `stops` is set.
     """
     try:
         for result in work(items):
-            found.put(result)
+            results.put(result)
     except BaseException as problem:  # raised again by the thread that reads the queue
         if not (isinstance(problem, Cancelled) and any(stops)):
-            found.put(problem)
+            results.put(problem)
     finally:
-        found.put(None)
+        results.put(None)
         a_thread_ended.set()

@@ -70,11 +70,11 @@ class CurvePoint:
     status: str = "done"
 
     @classmethod
-    def of(cls, found: SteadyState) -> CurvePoint:
+    def of(cls, state: SteadyState) -> CurvePoint:
         """The point of a steady state."""
-        input_force, output_force, elastic = map(float, found.maxima)
-        return cls(found.scene.f, output_force, elastic, input_force, found.regime, found.force_errors, found.state,
-                   found.failure, found.status)
+        input_force, output_force, elastic = map(float, state.maxima)
+        return cls(state.scene.f, output_force, elastic, input_force, state.regime, state.force_errors, state.state,
+                   state.failure, state.status)
 
     @property
     def error_estimate(self) -> float | None:

@@ -42,15 +42,15 @@ def used_and_missing(known: Sequence[float], frequencies: Sequence[float], start
         raise unknown_name("start", start, CURVE_STARTS)
     ascending = sorted(range(len(frequencies)), key=lambda i: frequencies[i], reverse=start == "down")
     order = [ascending[i] for i in coarse_first(len(frequencies))] if start == "rest" else ascending
-    there: dict[float, list[int]] = {}
+    places: dict[float, list[int]] = {}
     for place, frequency in enumerate(known):
-        there.setdefault(frequency, []).append(place)
+        places.setdefault(frequency, []).append(place)
     used: list[int] = []
     missing: list[int] = []
     for i in order:
-        found = there.get(frequencies[i])
-        if found and (start == "rest" or not missing):
-            used.append(found.pop())
+        same = places.get(frequencies[i])
+        if same and (start == "rest" or not missing):
+            used.append(same.pop())
         else:
             missing.append(i)
     return used, missing

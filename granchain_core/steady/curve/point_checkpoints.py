@@ -19,11 +19,12 @@ from .request import CurveRequest
 _NUMBERS = ("frequency", "max_output_force", "max_output_force_elastic", "max_input_force")
 
 
-def point_checkpoints(asked: CurveRequest, out: str | Path) -> Kept[CurvePoint]:
+def point_checkpoints(request: CurveRequest, out: str | Path) -> Kept[CurvePoint]:
     """The folder for the points of the curve that will be in `out`."""
-    frequencies = asked.frequencies
-    words = f"{asked.scene.name} from {frequencies[0]:g} to {frequencies[-1]:g} Hz ({len(frequencies)}, {asked.start})"
-    return Kept(out, "curve", asked.digest, words, _packed)
+    frequencies = request.frequencies
+    words = (f"{request.scene.name} from {frequencies[0]:g} to {frequencies[-1]:g} Hz ({len(frequencies)}, "
+             f"{request.start})")
+    return Kept(out, "curve", request.digest, words, _packed)
 
 
 def points_in(kept: Kept[CurvePoint]) -> list[CurvePoint]:

@@ -26,8 +26,8 @@ class CurveRequest:
     @classmethod
     def answered_by(cls, curve: Curve) -> CurveRequest:
         """The request that a curve answers."""
-        asked = {field.name: getattr(curve, field.name) for field in fields(cls) if field.name != "frequencies"}
-        return cls(frequencies=tuple(curve.column("frequency").tolist()), **asked)
+        settings = {field.name: getattr(curve, field.name) for field in fields(cls) if field.name != "frequencies"}
+        return cls(frequencies=tuple(curve.column("frequency").tolist()), **settings)
 
     @property
     def digest(self) -> str:

@@ -41,8 +41,9 @@ _VALLEY_FRACTION = 0.1
 #: from rest are on it for any value from 0.001 on. Of 590 states of `sec2` in sweeps up and down 544 are within 0.001,
 #: 570 within 0.03; from 0.08 to 0.15 only three change sides.
 _CURVE_DIFFERENCE = 0.1
-#: [response] A stop band: less than this fraction of the input force arrives at the wall, beyond the last peak. That of
-#: `sec2` begins at 1960 Hz for 0.14 to 0.25, at 2020 Hz for 0.12 and at 2750 Hz for 0.1; `rig` has none in its range.
+#: [response] Little is transmitted: less than this fraction of the largest input force arrives at the wall. Beyond the
+#: last peak of a curve that is its stop band. The stop band of `sec2` begins at 1960 Hz for 0.14 to 0.25, at 2020 Hz
+#: for 0.12 and at 2750 Hz for 0.1; `rig` has none in its range.
 STOP_BAND_FRACTION = 0.15
 
 
@@ -99,10 +100,10 @@ def place_of(frequency: Sequence[float] | np.ndarray, force: Sequence[float] | n
     if not before or not after or F[before[-1]] == F[after[0]]:
         return Place("")
     low, high = sorted((before[-1], after[0]), key=lambda i: F[i])
-    way = (output - F[low]) / (F[high] - F[low])
-    if high in peaks and way > 1.0 - _PEAK_FRACTION:
+    part = (output - F[low]) / (F[high] - F[low])
+    if high in peaks and part > 1.0 - _PEAK_FRACTION:
         return Place("peak", float(f[high]), periods[high])
-    if low in valleys and way < _VALLEY_FRACTION:
+    if low in valleys and part < _VALLEY_FRACTION:
         return Place("valley")
     return Place("flank", float(f[high]), periods[high]) if high in peaks else Place("")
 
@@ -128,10 +129,10 @@ def extrema(force: np.ndarray) -> list[int]:
 
 def peaks_and_valleys(force: np.ndarray) -> tuple[list[int], list[int]]:
     """Indices of the peaks and of the valleys of a curve: extrema that stand out from both sides."""
-    found: tuple[list[int], list[int]] = [], []
+    both: tuple[list[int], list[int]] = [], []
     for before, here in pairwise(extrema(force)[:-1]):
-        found[0 if force[here] > force[before] else 1].append(here)
-    return found
+        both[0 if force[here] > force[before] else 1].append(here)
+    return both
 
 
 def push_words(pushed: tuple[int, int]) -> str:

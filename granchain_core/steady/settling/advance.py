@@ -117,16 +117,16 @@ class SettlingRun:
         if self._steps_left() <= 0 and self.regime.name != "periodic":
             self.decided = True
             return
-        found = self.decisions.next(self.engine, self.strobes[-REMEMBERED:], self.regime)
-        if found.state is not None:
-            self.engine.start_scaled(found.state)
-        if found.regime is not None:
-            self.regime, self.decided = found.regime, True
-        elif found.state is not None:
+        decision = self.decisions.next(self.engine, self.strobes[-REMEMBERED:], self.regime)
+        if decision.state is not None:
+            self.engine.start_scaled(decision.state)
+        if decision.regime is not None:
+            self.regime, self.decided = decision.regime, True
+        elif decision.state is not None:
             self._begin(self._run_before + self._here)
         else:
-            if found.strobes is not None:
-                self._note(found.strobes)
+            if decision.strobes is not None:
+                self._note(decision.strobes)
             self._stop_at = self._here + EXAMINED_AFTER
 
 

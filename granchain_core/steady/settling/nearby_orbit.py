@@ -157,8 +157,8 @@ def orbit_of(scene: Scene, period: int, x: np.ndarray, stop: Stop) -> NearbyOrbi
     if point is None:
         return None
     parts = {n: FiniteDifferenceMap(scene, n, stop) for n in range(1, period) if period % n == 0}
-    least = least_displacement(point.x, stroboscopic_map.engine.scaled.beta)
-    for shorter in shorter_periods(lambda n: parts[n](point.x), point.x, period, _SAME_ORBIT_DISTANCE, least):
+    smallest = least_displacement(point.x, stroboscopic_map.engine.scaled.beta)
+    for shorter in shorter_periods(lambda n: parts[n](point.x), point.x, period, _SAME_ORBIT_DISTANCE, smallest):
         again = fixed_point(parts[shorter], point.x)
         if again is not None:
             return NearbyOrbit(parts[shorter], again, x, again.modulus)

@@ -22,8 +22,8 @@ def reduced_rank(states: np.ndarray) -> np.ndarray:
     return limit
 
 
-def within_reach(here: np.ndarray, there: np.ndarray, change: float, contraction: float) -> bool:
-    """Whether `there` is at most `FARTHEST_EXTRAPOLATION` times as far from `here` as the contraction predicts."""
-    if not np.isfinite(there).all() or not 0.0 < contraction < 1.0:
+def within_reach(state: np.ndarray, limit: np.ndarray, change: float, contraction: float) -> bool:
+    """Whether `limit` is at most `FARTHEST_EXTRAPOLATION` times as far from `state` as the contraction predicts."""
+    if not np.isfinite(limit).all() or not 0.0 < contraction < 1.0:
         return False
-    return float(np.abs(there - here).max()) <= FARTHEST_EXTRAPOLATION * change / (1.0 - contraction)
+    return float(np.abs(limit - state).max()) <= FARTHEST_EXTRAPOLATION * change / (1.0 - contraction)

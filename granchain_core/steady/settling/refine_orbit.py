@@ -82,10 +82,10 @@ def refined_orbit(settling: SettlingRun, accuracy: float, samples: int = 1) -> t
 
 def move_to_limit(engine: Engine, states: np.ndarray, change: float, contraction: float) -> bool:
     """Put the engine at the limit of successive states (k, 2, N), if that is within reach; True if it was."""
-    there = reduced_rank(states)
+    limit = reduced_rank(states)
     largest = np.abs(states).max(axis=(0, 2))[:, None]
-    if not within_reach(states[-1] / largest, there / largest, change, contraction):
+    if not within_reach(states[-1] / largest, limit / largest, change, contraction):
         return False
     scales = engine.scaled.scales
-    engine.start(State(there[0] * scales.length, there[1] * scales.velocity))
+    engine.start(State(limit[0] * scales.length, limit[1] * scales.velocity))
     return True

@@ -69,9 +69,9 @@ class Decisions:
         if regime.name == "periodic":
             return self._confirmed(engine, strobes, regime)
         for orbit in _orbits_beside(engine, strobes):
-            found = self._beside(orbit, regime)
-            if found is not None:
-                return found
+            decision = self._beside(orbit, regime)
+            if decision is not None:
+                return decision
         leaves = self._leaves and self._measurements.approach_rate == 0.0
         if regime.periods_run >= MOST_SETTLING_PERIODS * (_DEPARTURE_FACTOR if leaves else 1):
             return Decision(regime)

@@ -67,5 +67,5 @@ def settle_or_failure(scene: Scene, start: State | None, stop: Stop, periods_run
 def settled_alone(undecided: SteadyState, stop: Stop) -> SteadyState:
     """The steady state of a chain that a batch left undecided or that failed in it, settled alone from its last state.
     """
-    found = settle_or_failure(undecided.scene, undecided.state, stop, undecided.regime.periods_run)
-    return replace(found, number=undecided.number)
+    settled = settle_or_failure(undecided.scene, undecided.state, stop, undecided.regime.periods_run)
+    return replace(settled, number=undecided.number)

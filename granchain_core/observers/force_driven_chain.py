@@ -1,4 +1,4 @@
-"""A chain without its driver, pushed by a measured force: model (3) of Zhang et al. 2016."""
+"""A force-driven chain: no driver, a measured force on bead 1. Model (3) of Zhang et al. 2016."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from ..scene.hertz import OVERLAP_POWER
 from .record import ForceRecord
 
 
-class PushedChain(ChainInPieces):
-    """A scene's chain without its driver, pushed by a record's force."""
+class ForceDrivenChain(ChainInPieces):
+    """The chain of a scene without its driver; the force of a record acts on bead 1."""
 
     def __init__(self, scene: Scene, record: ForceRecord, stop: Stop, counts: Counts | None = None) -> None:
         driven = scale_chain(scene)
@@ -26,3 +26,7 @@ class PushedChain(ChainInPieces):
         pieces = record.cubics() / scales.force / scales.phi ** np.arange(4)
         overlap = (float(np.abs(record.force).max()) / scales.force) ** OVERLAP_POWER
         super().__init__(scaled, record.time, pieces, overlap, stop, counts)
+
+    def driven_by(self, record: ForceRecord) -> ForceDrivenChain:
+        """The chain under another record; both count their steps together."""
+        return ForceDrivenChain(self.scaled.scene, record, self._stop, self.counts)

@@ -1,0 +1,138 @@
+"""`observe`: model (3) of Zhang et al. 2016, a chain without driver, with a measured force on its first bead.
+
+    m ü_1 = F_in(t) − F_1 − k u_1,   wall and foundation as the scene has them
+
+The motion is computed with steps that are halved until the stated integration error is small enough, by the rules of
+`run` (integrate/stated.py), and once more from every second sample. `IRREGULAR` times the difference from that is
+stated as the interpolation error. Where a contact's dashpot makes the force jump, it is of the order of the spacing and
+depends on the place of the jump in it, so that one halving may gain little.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from ..errors import BadInput
+from ..execution.stop import Stop
+from ..execution.stopwatch import Stopwatch
+from ..experiment import Sensors
+from ..integrate.chain_in_pieces import MOST_HALVINGS, Refined, refined
+from ..integrate.methods import RK4_SPLIT
+from ..integrate.safety_factors import IRREGULAR
+from ..integrate.stated import relative_changes, relative_difference
+from ..results.recorded_motion import MOST_RECORDED, elastic_output
+from ..results.run import Cost, ForceErrors
+from ..scene import Scene
+from ..scene.state import State, checked_start, rest
+from .force_driven_chain import ForceDrivenChain
+from .observation import Observation, residual
+from .record import ForceRecord, force_record, prepared
+
+
+def observe(scene: Scene, time: object, force: object = None, output: object = None, start: State | None = None,
+            offset: float | str = 0.0, gap: str = "refuse", stop: Stop | None = None,
+            progress: Callable[[float], None] | None = None, bandwidth: float = math.inf) -> Observation:
+    """The observer of model (3), Zhang et al. 2016: the chain without driver, a given force on its first bead.
+
+    Steps are halved until the error by the steps is at most the accuracy asked for. A further computation from every
+    second sample gives the interpolation error (docs/observers.md).
+
+    Parameters
+    ----------
+    scene : Scene
+        The chain; its driver is left out.
+    time : array_like, shape (T,), or ForceRecord
+        Times of the samples [s], ascending; or a record that was read from a file.
+    force : array_like, shape (T,)
+        Force on bead 1 [N].
+    output : array_like, shape (T,), optional
+        Measured output force at the same times [N], to compare with.
+    start : State, optional
+        Where the chain begins; at rest if not given.
+    offset : float or "median"
+        Subtracted from the force [N].
+    gap : str
+        Treatment of a gap in the record: "refuse", "zero" or "interpolate".
+    stop : Stop, optional
+        Ends the computation when another thread sets it.
+    progress : callable, optional
+        Called with the fraction that is done, 0 to 1.
+    bandwidth : float
+        Bandwidth of the force sensors [Hz]. The computed output force passes their low-pass before it is compared, and
+        a record may be sampled as slowly as their shortest pulse allows. The given force is applied as it is.
+
+    Returns
+    -------
+    Observation
+        The motion at every sample. Its `status` is "done", or "accuracy-not-reached" where samples are too far apart
+        for the accuracy asked for, or where the observer magnifies every error.
+
+    Raises
+    ------
+    BadInput
+        The arrays do not fit together, times do not ascend, or there is a gap.
+    ComputationError
+        The motion is no longer finite.
+    Cancelled
+        `stop` was set.
+
+    Examples
+    --------
+    >>> from granchain_core import observe, run, scene
+    >>> chain = scene("sec2").evolve(N=2, f=2000.0)
+    >>> true = run(chain, periods=0, record=4, samples=256)
+    >>> observed = observe(chain, true.time, true.input_force, true.output_force)
+    >>> observed.displacement.shape, observed.residual.relative < 0.05
+    ((1025, 2), True)
+    """
+    record = time if isinstance(time, ForceRecord) else force_record(time, force, output)
+    sensors = Sensors(bandwidth=bandwidth)
+    record = prepared(record, scene, offset, gap, sensors)
+    if len(record.time) * scene.N > MOST_RECORDED:
+        raise BadInput(f"{len(record.time)} samples for {scene.N} beads are more than {MOST_RECORDED:.0e} values; "
+                       f"give at most {MOST_RECORDED // scene.N} samples.")
+    spent = Stopwatch()
+    begin = rest(scene) if start is None else checked_start(scene, start)
+    chain = ForceDrivenChain(scene, record, Stop() if stop is None else stop)
+    tell = progress or (lambda done: None)
+    finest = refined(chain, begin, lambda halvings: tell(halvings / (MOST_HALVINGS + 1)))
+    interpolation = _interpolation_errors(chain, record, begin, finest)
+    tell(1.0)
+    return _observation(chain, record, sensors, finest, interpolation, spent)
+
+
+def _interpolation_errors(chain: ForceDrivenChain, record: ForceRecord, begin: State, finest: Refined) -> np.ndarray:
+    """Relative errors (4,) of displacements and largest forces by the interpolation between the record's samples.
+
+    They follow from the difference between the `finest` motion and one from every second sample.
+    """
+    thin, kept, of_thin = record.thinned()
+    thinned = chain.driven_by(thin)
+    coarse = thinned.run(begin, finest.halvings)
+    changes = [relative_difference(finest.samples.displacement[kept], coarse.displacement[of_thin]),
+               *relative_changes(finest.maxima, thinned.maxima)]
+    return np.asarray(IRREGULAR * np.maximum(changes, changes[0]))  # two largest forces may agree by chance
+
+
+def _observation(chain: ForceDrivenChain, record: ForceRecord, sensors: Sensors, finest: Refined,
+                 interpolation: np.ndarray, spent: Stopwatch) -> Observation:
+    """The result in SI; `interpolation` are the relative errors (4,) by the interpolation."""
+    scene, scales, motion = chain.scaled.scene, chain.scaled.scales, finest.samples
+    displacement, forces = motion.displacement * scales.length, motion.force * scales.force
+    forces[:, 0] = record.force
+    elastic = elastic_output(scene, displacement[:, -1])
+    errors = finest.errors + interpolation
+    _, output, output_elastic = (float(largest) * scales.force for largest in finest.maxima)
+    return Observation(
+        scene=scene, record=record, displacement=displacement, velocity=motion.velocity * scales.velocity, force=forces,
+        max_output_force=output, max_output_force_elastic=output_elastic,
+        integration_error=float(finest.errors[0]), interpolation_error=float(interpolation[0]),
+        status="done" if errors[0] <= scene.accuracy else "accuracy-not-reached",
+        force_errors=ForceErrors.of(np.array([np.nan, *errors[2:]])),
+        cost=Cost.of(spent.seconds, chain.counts, RK4_SPLIT),
+        residual=residual(sensors.passed(record.time, forces[:, -1], record.time), record.output),
+        residual_elastic=residual(sensors.passed(record.time, elastic, record.time), record.output),
+    )
