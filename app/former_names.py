@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from granchain_core.former_names import FormerName
 
@@ -62,11 +62,6 @@ def present_tab(name: str) -> str:
 def names_of_option(name: str) -> tuple[str, ...]:
     """An option's name and its former names."""
     return (name, *(row.former for row in OPTIONS if row.name == name))
-
-
-def with_former_keys(command: str, said: dict[str, Any]) -> dict[str, Any]:
-    """A command's JSON object with the former names of its keys."""
-    return said | {row.last: said[row.name.rpartition(".")[2]] for row in KEYS if row.former.startswith(f"{command}.")}
 
 
 def former_metric(name: str) -> FormerMetric | None:

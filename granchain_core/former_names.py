@@ -58,10 +58,11 @@ ATTRIBUTES = (
     FormerName("Branch.arms", "Branch.half_branches"),
     FormerName("BranchPoint.unstable", "BranchPoint.unstable_multipliers"),
     FormerName("SpecialPoint.event", "SpecialPoint.gained", values=EVENTS),
-    FormerName("Response.kind", "Response.in_step"),  # orbits/response.py has its own values
+    FormerName("Response.kind", "Response.in_step", values={True: "resonance", False: "anti-resonance", None: ""}),
     FormerName("Orbit.changes", "Orbit.contact_events"),
     FormerName("Regime.contraction", "Regime.assumed_contraction"),
     FormerName("Regime.decay", "Regime.observed_contraction"),
+    FormerName("Fit.freedom", "Fit.degrees_of_freedom"),
     FormerName("Pulse.speed", "Pulse.speed_beads_s"),
     FormerName("Pulse.speed_in_metres", "Pulse.speed_m_s"),
 )
@@ -70,12 +71,16 @@ COLUMNS = (
     FormerName("pulse.speed", "pulse.speed_beads_s", "stays"),
     FormerName("pulse.speed_in_metres", "pulse.speed_m_s", "stays"),
 )
+#: Keys of JSON and attributes of files, after the result that has them.
+KEYS = (FormerName("fit.freedom", "fit.degrees_of_freedom", "stays"),)
+#: Parameters of functions, which these take by their former names themselves.
+PARAMETERS = (FormerName("fit(design)", "fit(initial_points)"),)
 #: Environment variables.
 VARIABLES = (FormerName("GRANCHAIN_LANES", "GRANCHAIN_BATCH_SIZE", "stays"),)
 #: Extras of the package, which pyproject.toml has.
 EXTRAS = (FormerName("granchain[files]", "granchain[frames]"),)
 
-ALL = (*NAMES, *ATTRIBUTES, *COLUMNS, *VARIABLES, *EXTRAS)
+ALL = (*NAMES, *ATTRIBUTES, *COLUMNS, *KEYS, *PARAMETERS, *VARIABLES, *EXTRAS)
 
 _PRESENT = {row.former: row.name for row in NAMES}
 
@@ -98,11 +103,16 @@ def of_module(module: str) -> Callable[[str], Any]:
 
 
 def with_former_names(one: _Class) -> _Class:
-    """Class decorator: the attributes under their former names too, but for those that the class itself defines."""
+    """Class decorator: the attributes under their former names too."""
     for row in ATTRIBUTES:
-        if row.former.startswith(f"{one.__name__}.") and not hasattr(one, row.last):
+        if row.former.startswith(f"{one.__name__}."):
             setattr(one, row.last, property(row.of, doc=f"The former name of `{row.name.rpartition('.')[2]}`."))
     return one
+
+
+def with_former_keys(owner: str, said: dict[str, Any], rows: tuple[FormerName, ...] = KEYS) -> dict[str, Any]:
+    """The keys of a result's or command's JSON object, or the attributes of its file, under their former names too."""
+    return said | {row.last: said[row.name.rpartition(".")[2]] for row in rows if row.former.startswith(f"{owner}.")}
 
 
 def former_columns(table: str) -> dict[str, str]:

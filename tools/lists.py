@@ -131,7 +131,7 @@ def _also(former: FormerMetric) -> str:
 
 def table_of_former_names() -> str:
     """The table of docs/python.md: every former name that still works, with the present one."""
-    kinds = (("", core.NAMES), ("", core.ATTRIBUTES), ("", core.EXTRAS), ("", core.VARIABLES),
-             ("column ", core.COLUMNS), ("command ", own.COMMANDS), ("tab ", own.TABS), ("option ", own.OPTIONS), ("JSON key ", own.KEYS))
+    kinds = (("", core.NAMES), ("", core.ATTRIBUTES), ("", core.PARAMETERS), ("", core.EXTRAS), ("", core.VARIABLES),
+             ("column ", core.COLUMNS), ("command ", own.COMMANDS), ("tab ", own.TABS), ("option ", own.OPTIONS), ("JSON key ", (*own.KEYS, *core.KEYS)))
     rows = [f"| {kind}`{row.name}` | `{row.former}` | {row.removed_in} |" for kind, table in kinds for row in table]
     return "\n".join(["| name | former name | removed in |", "|---|---|---|", *rows])

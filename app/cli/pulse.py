@@ -6,7 +6,7 @@ import argparse
 import math
 from typing import TYPE_CHECKING, Any
 
-from ..former_names import with_former_keys
+from ..former_names import KEYS
 from .common import chosen_scene, finite_or_null, in_background, show_json
 from .forces import energy_in_words, warn
 from .options import add_json, add_out, add_scene, whole
@@ -30,6 +30,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 def do(arguments: argparse.Namespace) -> None:
     """Record the motion from the start over the time 1/f and follow its first pulse."""
     from granchain_core import pulse, run
+    from granchain_core.former_names import with_former_keys
     from granchain_core.runs.budget import BUDGET
 
     chosen = chosen_scene(arguments)
@@ -39,7 +40,7 @@ def do(arguments: argparse.Namespace) -> None:
     warn(motion, BUDGET)
     write_files(arguments, f"A pulse along {chosen.name}", result)
     if arguments.json:
-        show_json(with_former_keys("pulse", _json(result)))
+        show_json(with_former_keys("pulse", _json(result), KEYS))
     else:
         _show(result)
 

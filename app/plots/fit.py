@@ -162,7 +162,7 @@ def _axis(parameter: Free) -> Scale:
 
 def _verdict(result: Fit) -> str:
     words = {"can": "the model can describe it", "cannot": "the model cannot describe it", "not known": "no verdict"}
-    return f"χ² = {result.chi_squared:.4g}, {result.freedom} degrees of freedom: {words[result.verdict]}"
+    return f"χ² = {result.chi_squared:.4g}, {result.degrees_of_freedom} degrees of freedom: {words[result.verdict]}"
 
 
 def _best(result: Fit, i: int) -> str:

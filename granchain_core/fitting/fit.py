@@ -49,7 +49,7 @@ def fit(scene: Scene, target: Target, free: Sequence[Free], initial_points: int 
     scheduler : distributed.Client, optional
         Its workers evaluate the initial points and the derivatives, a set of parameters at a time.
     design : int, optional
-        The older name of `initial_points`.
+        `initial_points` under its former name.
 
     Returns
     -------

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..former_names import with_former_keys, with_former_names
 from ..scene import Amplitude, Scene
 from ..tables import Labelled, Table, or_nan, provenance
 from ..tables.provenance import Attribute
@@ -20,6 +21,7 @@ from .tables import data_table, landscape_table, parameter_table, profile_table
 from .verdict import scale_degrees_of_freedom
 
 
+@with_former_names
 @dataclass(frozen=True, eq=False, repr=False)
 class Fit(Labelled):
     """The result of a fit.
@@ -94,11 +96,6 @@ class Fit(Labelled):
     correlation: np.ndarray | None = None
 
     @property
-    def freedom(self) -> int:
-        """The older name of `degrees_of_freedom`."""
-        return self.degrees_of_freedom
-
-    @property
     def varied(self) -> tuple[str, ...]:
         """The frequency, unless a series at the scene's own was fitted, and the drive amplitude where it follows."""
         own = isinstance(self.target, SeriesTarget) and self.target.frequency is None
@@ -116,11 +113,11 @@ class Fit(Labelled):
             "amplitude": json.dumps(self.amplitude.to_json())}
         if self.correlation is not None:
             extra["correlation"] = json.dumps(self._correlation_rows())
-        return {**provenance(self.scene, "least squares, profile likelihood", None), "misfit": self.misfit,
-                "data": self.data, "freedom": self.degrees_of_freedom,
-                "degrees_of_freedom": self.degrees_of_freedom, "probability": or_nan(self.probability),
-                "verdict": self.verdict, "sentence": self.sentence, "scale": self.scale, "level": LEVEL,
-                "wall_s": self.wall_s, **extra}
+        return with_former_keys("fit", {
+            **provenance(self.scene, "least squares, profile likelihood", None), "misfit": self.misfit,
+            "data": self.data, "degrees_of_freedom": self.degrees_of_freedom, "probability": or_nan(self.probability),
+            "verdict": self.verdict, "sentence": self.sentence, "scale": self.scale, "level": LEVEL,
+            "wall_s": self.wall_s, **extra})
 
     @property
     def chi_squared(self) -> float:
@@ -154,16 +151,17 @@ class Fit(Labelled):
                 entry |= {"low": profile.low, "high": profile.high, "open_low": profile.open_low,
                           "open_high": profile.open_high, "profile": [list(profile.values), list(profile.rises)]}
             parameters.append(entry)
-        return {"scene": self.scene.name, "knobs": self.scene.knobs, "parameters": parameters, "level": LEVEL,
-                "misfit": self.misfit, "chi_squared": self.chi_squared, "data": self.data,
-                "freedom": self.degrees_of_freedom, "degrees_of_freedom": self.degrees_of_freedom,
-                "probability": self.probability, "verdict": self.verdict, "sentence": self.sentence,
-                "evaluations": len(self.landscape[1]),
-                "residuals": [float(r) for r in self.evaluation.residuals],
-                "model": [float(m) if np.isfinite(m) else None for m in self.evaluation.model],
-                "frequency": [float(f) for f in self.target.frequencies],
-                "regimes": list(self.evaluation.regimes), "wall_s": self.wall_s,
-                "correlation": self._correlation_rows()}
+        return with_former_keys("fit", {
+            "scene": self.scene.name, "knobs": self.scene.knobs, "parameters": parameters, "level": LEVEL,
+            "misfit": self.misfit, "chi_squared": self.chi_squared, "data": self.data,
+            "degrees_of_freedom": self.degrees_of_freedom,
+            "probability": self.probability, "verdict": self.verdict, "sentence": self.sentence,
+            "evaluations": len(self.landscape[1]),
+            "residuals": [float(r) for r in self.evaluation.residuals],
+            "model": [float(m) if np.isfinite(m) else None for m in self.evaluation.model],
+            "frequency": [float(f) for f in self.target.frequencies],
+            "regimes": list(self.evaluation.regimes), "wall_s": self.wall_s,
+            "correlation": self._correlation_rows()})
 
     def _correlation_rows(self) -> list[list[float | None]] | None:
         """The correlation as plain data; None in place of NaN."""

@@ -53,13 +53,6 @@ class Response:
     transmission: float
 
     @property
-    def kind(self) -> str:
-        """The older name of `in_step`, in words: "resonance", also for 1:n with n ≥ 2, "anti-resonance" or ""."""
-        if self.in_step is None:
-            return "resonance" if self.strong == 1 < self.periods and not self.little_transmitted else ""
-        return "resonance" if self.in_step else "anti-resonance"
-
-    @property
     def little_transmitted(self) -> bool:
         """Whether a smaller part of the input force arrives at the wall than `STOP_BAND_FRACTION`.
 

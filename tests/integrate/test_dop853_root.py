@@ -10,6 +10,7 @@ from thrown_bead import thrown_by_a_touch
 
 from granchain_core import BadInput, State, run, scene
 from granchain_core.integrate import Engine, MethodSetting
+from granchain_core.integrate.scaling import scale_chain
 
 #: Linear law from rest, every contact opens and closes; Tsuji's law, whose q is a fourth root; never an event; a
 #: foundation; unequal beads before a soft wall.
@@ -94,3 +95,20 @@ def test_a_contact_that_opens_slowly_and_closes_again_in_one_step_does_not_chatt
     """Of 2268 motions of twenty periods 24 were refused for chatter: the overlap just after an opening is rounding."""
     for tolerance in 10.0 ** np.linspace(-5.0, -9.0, 25):
         Engine(scene(name).evolve(**knobs), MethodSetting("dop853-root", tolerance=tolerance), 16).record(20 * 16)
+
+
+@pytest.mark.parametrize("method", ["dop853", "dop853-root"])
+def test_an_opening_is_followed_by_its_closing(method):
+    """A pressed bead moves away slowly from a contact that has just opened, by rounding, and comes back in one step.
+
+    Without damping it then returns again and again: nine events in a period of 2 kHz at tolerances from 1e-8 on.
+    """
+    chain = scene("sec2").evolve(N=1, F0=10.0, drive="rest", f=2000.0, D=0.0)
+    scaled = scale_chain(chain)
+    start = State(np.array([scaled.slots.preload.static[0] * (1.0 + 1e-16) * scaled.scales.length]),
+                  np.array([1e-3 * scaled.scales.velocity]), 0.0)
+    for tolerance in (1e-8, 1e-10):
+        engine = Engine(chain, MethodSetting(method, tolerance=tolerance), 4)
+        engine.start(start)
+        engine.record(4)
+        assert engine.counts.by_name["events"] == 9

@@ -21,9 +21,6 @@ def test_an_orbit_of_the_first_peak_is_in_step_those_of_valleys_are_not_and_othe
     # docs/lecture.md, `sec2`: peaks 1:1 … 1:5 and the valleys between them; the stop band begins at 1970 Hz
     found = response(orbit(at(frequency)))
     assert (found.strong, found.periods) == ratio and found.in_step is in_step
-    # the former attribute: one strong push in several periods counted as a resonance
-    words = {True: "resonance", False: "anti-resonance", None: "resonance" if ratio[1] > 1 else ""}
-    assert found.kind == words[in_step]
 
 
 def test_at_the_first_peak_the_push_meets_the_reflected_pulse() -> None:

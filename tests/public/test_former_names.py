@@ -6,17 +6,20 @@ import argparse
 import dataclasses
 import importlib
 import re
+import sys
 import tomllib
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
 import granchain
 import granchain_core
 from app import former_names as own
 from app.cli import commands, pulse, serve
+from granchain_core import fitting
 from granchain_core import former_names as core
 from granchain_core.kernels import batch_size
 from granchain_core.orbits import BranchPoint, Response, SpecialPoint
@@ -25,7 +28,7 @@ ROOT = Path(__file__).resolve().parents[2]
 #: Modules whose names are not those of the package.
 MODULES = {name: importlib.import_module(f"granchain_core.{name}") for name in ("orbits", "integrate", "parameter_maps")}
 CLASSES: dict[str, Any] = {one.__name__: one for one in (
-    *(getattr(granchain_core, name) for name in ("Branch", "Orbit", "Regime", "Pulse")), BranchPoint, Response, SpecialPoint)}
+    *(getattr(granchain_core, name) for name in ("Branch", "Fit", "Orbit", "Regime", "Pulse")), BranchPoint, Response, SpecialPoint)}
 
 
 def short(name: str) -> str:
@@ -76,8 +79,29 @@ def test_a_former_column_has_the_numbers_of_the_present_one(row: core.FormerName
 @pytest.mark.parametrize("row", own.KEYS, ids=lambda row: row.former)
 def test_a_former_key_has_the_value_of_the_present_one(row: core.FormerName, wave: granchain_core.Pulse) -> None:
     assert row.former.startswith("pulse.")
-    said = own.with_former_keys("pulse", pulse._json(wave))
+    said = core.with_former_keys("pulse", pulse._json(wave), own.KEYS)
     assert said[row.last] == said[short(row.name)] and row.last not in pulse._json(wave)
+
+
+@pytest.mark.parametrize("row", core.KEYS, ids=lambda row: row.former)
+def test_a_former_key_of_a_result_stands_beside_the_present_one(row: core.FormerName) -> None:
+    assert core.with_former_keys(row.former.partition(".")[0], {short(row.name): 3})[row.last] == 3
+
+
+def test_fit_takes_its_former_parameter(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Ended(Exception):
+        """The search was called."""
+
+    def search(problem: object, initial_points: int, good: object) -> None:
+        raise Ended(initial_points)
+
+    monkeypatch.setattr(sys.modules["granchain_core.fitting.fit"], "search", search)
+    (row,) = core.PARAMETERS
+    target = fitting.FeatureTarget([], np.array([500.0]))
+    for name in (row.name, row.former):
+        with pytest.raises(Ended, match="7"):
+            granchain_core.fit(granchain_core.scene("sec2"), target, [fitting.Free("D", 50.0, 200.0, prior=(100.0, 10.0))],
+                               **{name.partition("(")[2].rstrip(")"): 7})
 
 
 @pytest.mark.parametrize("row", own.COMMANDS, ids=lambda row: row.former)

@@ -50,6 +50,7 @@ SIMD_LONG_FOUNDED = ("tests/kernels/simd/test_simd.py", "-k", "along_the_chain a
 SIMD_LONG_PRESSED = ("tests/kernels/simd/test_simd.py", "-k", "along_the_chain and long-pressed")
 
 #: A short chain in a transformed time against the method that ends its steps at events; brief touches; marks of slots.
+ROOT_ROUNDING = ("tests/kernels/dop853_root/test_events_inside.py",)
 ROOT = ("tests/numerics/test_methods_agree.py", "-k", "linear-dop853-root")
 ROOT_FOUNDED = ("tests/numerics/test_methods_agree.py", "-k", "foundation-dop853-root")
 ROOT_PRESSED = ("tests/numerics/test_methods_agree.py", "-k", "preload-dop853-root")

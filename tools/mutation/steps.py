@@ -51,7 +51,7 @@ FIXED = (
            "a touch inside a step that begins slowly is not found", k.CUBIC),
     Mutant("simpson-wrong-side", _EVENTS, "1.0 - done if rate > 0.0 else done", "done if rate > 0.0 else 1.0 - done",
            "the excess is taken over the open part of the step", k.STEP_EVENTS),
-    Mutant("simpson-not-given-back", _EVENTS, "return (part + whole) / 6.0 - 1.0 / (p + 1.0) * (r + 2.0) * far", "return 0.0 * (part + whole * far * p)",
+    Mutant("simpson-not-given-back", _EVENTS, "return (part + full_steps) / 6.0 - 1.0 / (p + 1.0) * (r + 2.0) * far", "return 0.0 * (part + full_steps * far * p)",
            "the impulse beside an event is off by a part of h^{5/2}", k.STEP_EVENTS),
     Mutant("simpson-one-step-too-few", _EVENTS, "* (r + 2.0) * far", "* (r + 1.0) * far",
            "the excess is integrated one step too short", k.STEP_EVENTS),
