@@ -171,7 +171,8 @@ def test_the_flow_has_a_time_substitution_and_only_dop853_root_a_transformed_tim
     flow = [*(ROOT / "granchain_core" / "kernels" / "flow").glob("*.py"), *(ROOT / "granchain_core" / "orbits").rglob("*.py"),
             ROOT / "docs" / "orbits.md", ROOT / "docs" / "branches.md"]
     assert [path.name for path in flow if re.search(r"transformed time|regularis", path.read_text(encoding="utf-8"), re.IGNORECASE)] == []
-    rows = [line for page in ("design.md", "method.md") for line in (ROOT / "docs" / page).read_text("utf-8").splitlines() if "flow" in line]
+    rows = [line for page in ("design.md", "method.md") for line in (ROOT / "docs" / page).read_text("utf-8").splitlines()
+            if "flow" in line]
     assert rows and not [line for line in rows if re.search(r"transformed time|regularis", line) and "dop853_root" not in line]
 
 

@@ -13,7 +13,8 @@ from app.cli.commands import OLDER_NAMES as COMMANDS
 from granchain_core.kernels import batch_size
 
 ROOT = Path(__file__).resolve().parents[2]
-ROWS = re.findall(r"^\| `([^`]+)` \| `([^`]+)` \| (1\.0|stays) \|$", (ROOT / "docs" / "python.md").read_text(encoding="utf-8"), re.MULTILINE)
+ROWS = re.findall(r"^\| `([^`]+)` \| `([^`]+)` \| (1\.0|stays) \|$",
+                  (ROOT / "docs" / "python.md").read_text(encoding="utf-8"), re.MULTILINE)
 LISTED = {(new, old) for new, old, _ in ROWS}
 _OLDER = re.compile(r"The older name of `(\w+)`")
 
