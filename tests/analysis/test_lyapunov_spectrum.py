@@ -38,7 +38,8 @@ def test_on_an_orbit_the_exponents_are_those_of_its_multipliers() -> None:
 
 
 @pytest.mark.parametrize("knobs", [
-    {"N": 3, "F0": 10.0, "dissipation": "tsuji"}, {"N": 5, "F0": 10.0, "k": 1e5}, {"N": 3, "F0": 10.0, "k": 1e5, "dissipation": "kuwabara-kono"},
+    {"N": 3, "F0": 10.0, "dissipation": "tsuji"}, {"N": 5, "F0": 10.0, "k": 1e5},
+    {"N": 3, "F0": 10.0, "k": 1e5, "dissipation": "kuwabara-kono"},
 ])
 @pytest.mark.parametrize("f", [340.0, 1000.0])
 def test_stated_errors_hold_on_orbits_with_complex_multipliers(knobs: dict[str, Any], f: float) -> None:

@@ -43,7 +43,8 @@ _WITHOUT_NUMBER = {
     ("kernels/rk4/contact_events.py", "add_quadrature_errors"), ("kernels/flow/event_time.py", "smooth_power"),
     ("kernels/batch/contact_correction.py", "impulse_error"), ("kernels/batch/contact_correction.py", "next_step_error"),
     ("kernels/batch/contact_correction.py", "three_halves_by_series"), ("kernels/batch/contact_correction.py", "correct_contacts"),
-    ("scene/description.py", "hertz_stiffness"),     ("scene/validity.py", "peak_pressures"), ("scene/effects.py", "latex"), ("fitting/parameters.py", "UNITS"),
+    ("scene/description.py", "hertz_stiffness"), ("scene/validity.py", "peak_pressures"), ("scene/effects.py", "latex"),
+    ("fitting/parameters.py", "UNITS"),
     ("scene/hertz.py", "HERTZ_DURATION"), ("scene/hertz.py", "HERTZ_FORCE"), ("scene/hertz.py", "SOLITARY_BY_FORCE"),
     ("scene/hertz.py", "SOLITARY_BY_VELOCITY"), ("analysis/pulse.py", "CONTINUUM")}
 

@@ -39,7 +39,8 @@ def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(prog="python -m tests.benchmarks", description=__doc__)
     parser.add_argument("parts", nargs="*", metavar="part", help=", ".join(PARTS))
-    parser.add_argument("--quick", action="store_true", help="about a minute: fewer points and repeats; trajectory and curve if no part is named")
+    parser.add_argument("--quick", action="store_true",
+                        help="about a minute: fewer points and repeats; trajectory and curve if no part is named")
     parser.add_argument("--only", nargs="+", choices=list(PEERS), default=list(PEERS), help="these peers only")
     parser.add_argument("--write", action="store_true", help="put the tables into docs/benchmarks.md as those of this machine")
     options = parser.parse_args()

@@ -114,8 +114,8 @@ def _table(found: list[Answer], points: int, notes: list[str]) -> str:
         each = "–" if one.whole_evaluations is None else f"{1e9 * one.whole / one.whole_evaluations / 12:.2f}"
         mark = "" if one.worst <= EQUAL else " !"
         rows.append([one.case.label, one.case.form, f"{one.case.unit} {one.setting:.3g}", f"{one.points}",
-                     f"{one.compared}", f"{one.worst:.0e}{mark}", seconds(one.whole) + (" n = 1" if one.runs == 1 else ""), count(one.whole_evaluations),
-                     each, ratio(one.whole / base)])
+                     f"{one.compared}", f"{one.worst:.0e}{mark}", seconds(one.whole) + (" n = 1" if one.runs == 1 else ""),
+                     count(one.whole_evaluations), each, ratio(one.whole / base)])
     return table(f"Curve of {points} points, 100 + 20 periods each, one core",
                  ["solver", "form", "setting", "points", "compared", "worst", "whole curve", "evaluations",
                   "ns/contact", "× granchain"], rows, notes)

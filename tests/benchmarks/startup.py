@@ -50,5 +50,6 @@ def report(names: list[str], quick: bool, tell: Callable[[str], None]) -> str:
         rows = [[*row[:3], "–", *row[4:]] for row in rows]
     return table("Start-up and memory: a new process, one trajectory twice",
                  ["peer", "form", "cold, whole", "warm, whole", "to first answer", "second answer", "peak MB"], rows,
-                 ["Cold: compiled code is nowhere on disk; the columns to the right are of a warm process (of the cold one with --quick). C compiles at every start. CyRK and "
+                 ["Cold: compiled code is nowhere on disk; the columns to the right are of a warm process (of the cold one with "
+                  "--quick). C compiles at every start. CyRK and "
                   "numbalsoda bring wrappers that Numba compiles in every process. Peak: largest resident set."])

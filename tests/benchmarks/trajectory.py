@@ -103,6 +103,7 @@ def _table(rungs: dict[tuple[str, str], tuple[Case, list[Rung]]], target: float,
     base = min(ours) if ours else float("nan")
     rows = [[case.label, case.form, f"{case.unit} {rung.setting:.3g}", f"{rung.error:.1e}", seconds(spent.median),
              seconds(spent.least), count(rung.evaluations), ratio(spent.median / base)] for case, rung, spent in found]
-    notes = [f"Not reached on their ladders (or not in {QUICK_PATIENCE if quick else PATIENCE:g} s a run): {', '.join(missed)}."] if missed else []
+    patience = QUICK_PATIENCE if quick else PATIENCE
+    notes = [f"Not reached on their ladders (or not in {patience:g} s a run): {', '.join(missed)}."] if missed else []
     return table(f"Trajectory at error {target:g}",
                  ["solver", "form", "setting", "error", "median", "least", "evaluations", "× granchain"], rows, notes)

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 
@@ -32,7 +34,8 @@ def points() -> dict[str, BifurcationPoint]:
 
 @pytest.mark.parametrize(("kind", "condition"), [
     ("period_doubling", lambda mu: mu + 1.0), ("fold", lambda mu: mu - 1.0), ("neimark_sacker", lambda mu: abs(mu) - 1.0)])
-def test_the_orbit_there_has_the_critical_multiplier(points: dict[str, BifurcationPoint], kind: str, condition) -> None:  # type: ignore[no-untyped-def]
+def test_the_orbit_there_has_the_critical_multiplier(points: dict[str, BifurcationPoint], kind: str,
+                                                     condition: Callable[[complex], complex]) -> None:
     found = points[kind]
     assert abs(condition(found.multiplier)) <= 1e-6
     shown, start, period = near(kind)

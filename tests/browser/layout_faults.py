@@ -18,7 +18,8 @@ FAULTS = """() => {
   const inside = (node, other) => { for (let at = node; at; at = parent(at)) if (at === other) return true; return false; };
   const seen = (one) => one.checkVisibility({ visibilityProperty: true, opacityProperty: true })
     && one.getClientRects().length > 0;
-  const words = (one) => `${one.tagName.toLowerCase()} “${(one.ariaLabel || one.textContent || one.value || one.id).trim().slice(0, 40)}”`;
+  const named = (one) => (one.ariaLabel || one.textContent || one.value || one.id).trim().slice(0, 40);
+  const words = (one) => `${one.tagName.toLowerCase()} “${named(one)}”`;
   const styles = new Map(); // each is asked for many times
   const styleOf = (one) => {
     if (!styles.has(one)) {
@@ -53,7 +54,8 @@ FAULTS = """() => {
     if (part.top > box.top + slack || part.bottom < box.bottom - slack) return "is cut";
     return "";
   };
-  const elements = [...all(document.body)].filter(seen).filter((one) => !inside(one, document.getElementById("lost")) && !one.closest(".unseen"));
+  const elements = [...all(document.body)].filter(seen)
+    .filter((one) => !inside(one, document.getElementById("lost")) && !one.closest(".unseen"));
   const bars = ["bar", "foot", "side"].map((id) => document.getElementById(id)); // on a phone what scrolls passes under them
   const passes = (a, b) => scrolling && bars.some((bar) => inside(a, bar) !== inside(b, bar));
   const controls = elements.filter((one) => one.matches("button, input, select, summary, a[href]"));
@@ -100,7 +102,8 @@ FAULTS = """() => {
     }
   }
   for (const [i, [a, p]] of texts.entries()) for (const [b, q] of texts.slice(i + 1))
-    if (a !== b && Math.min(p.right, q.right) - Math.max(p.left, q.left) > 1 && Math.min(p.bottom, q.bottom) - Math.max(p.top, q.top) > 0.22 * p.height) // the box of a line is higher than its words
+    if (a !== b && Math.min(p.right, q.right) - Math.max(p.left, q.left) > 1
+        && Math.min(p.bottom, q.bottom) - Math.max(p.top, q.top) > 0.22 * p.height) // a line's box is higher than its words
       faults.push(`${words(a)} and ${words(b)} are written over one another`);
   return [...new Set(faults)];
 }"""

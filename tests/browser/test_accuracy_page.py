@@ -56,10 +56,27 @@ def test_the_status_line_says_what_is_asked_reached_and_how_long_it_took(visit: 
     assert float(reached) <= 1e-9
 
 
+@pytest.fixture(scope="module")
+def measured(shared: Visit) -> Page:
+    """A page whose tab of the accuracy has measured: three beads, as eleven take longer and show nothing more."""
+    page = shared("?v=1&scene=sec2&N=3")
+    page.get_by_role("tab", name="accuracy").click()
+    expect(page.locator("#tabs .small canvas").first).to_be_visible(timeout=COMPILED)
+    expect(page.locator("#tabs")).to_contain_text("The cheapest way to", timeout=COMPILED)
+    return page
+
+
+def test_its_tab_opens_the_page(measured: Page) -> None:
+    measured.get_by_role("button", name="open the page").click()
+    expect(measured.locator("#overlay .work canvas").first).to_be_visible()
+    assert measured.evaluate(POINTS)
+    measured.keyboard.press("Escape")
+    expect(measured.locator("#overlay")).to_be_hidden()
+
+
 @pytest.mark.long
-def test_points_appear_and_the_cheapest_way_is_told(visit: Visit) -> None:
-    """With three beads: eleven take longer and show nothing more."""
-    page = visit("?v=1&scene=sec2&N=3")
+def test_points_appear_and_the_cheapest_way_is_told(measured: Page) -> None:
+    page = measured
     sheet = opened(page)
     expect(sheet.get_by_role("button", name="measure again")).to_be_visible(timeout=COMPILED)
     methods = page.evaluate(POINTS)
@@ -101,6 +118,24 @@ def test_points_appear_and_the_cheapest_way_is_told(visit: Visit) -> None:
     fits(page, sheet)
 
 
+def test_a_moved_knob_greys_the_page_until_it_is_measured_again(measured: Page) -> None:
+    page = measured
+    if page.locator("#overlay").is_hidden():
+        opened(page)
+    sheet = page.locator('[data-overlay="accuracy"]')
+    expect(sheet.get_by_role("button", name="measure again")).to_be_visible(timeout=COMPILED)
+    type_into(page, "D", "90")
+    expect(sheet.locator(".stale")).to_be_visible()
+    expect(sheet).to_contain_text("measured for another chain")
+    type_into(page, "D", "100")
+    expect(sheet.locator(".stale")).to_have_count(0)
+    type_into(page, "D", "80")
+    sheet.get_by_role("button", name="measure again").click()
+    expect(sheet.locator(".stale")).to_have_count(0)
+    page.wait_for_function(f"Object.keys(({POINTS})()).length > 0", timeout=COMPILED)
+    sheet.locator("button:text-is('stop')").first.evaluate("one => one.click()")  # hidden where all is measured already
+
+
 def naive_force_lies_over_the_accurate_one(page: Page, sheet: Locator) -> None:
     """It is dashed, has as many points, and its error is said for the chosen steps."""
     expect(sheet.locator(".naive canvas").first).to_be_visible()
@@ -136,27 +171,3 @@ def test_steps_that_blow_up_are_told_and_a_stopped_measurement_keeps_its_points(
     sheet.get_by_label("its steps in a drive period").select_option("100")  # steps that blow up are told
     expect(sheet.locator(".naive p")).to_contain_text("nothing would have been drawn", timeout=COMPILED)
     assert naive_line(page)["naive"] == 0
-
-
-def test_its_tab_opens_the_page_and_a_moved_knob_greys_it_until_it_is_measured_again(visit: Visit) -> None:
-    page = visit("?v=1&scene=sec2&f=2000&N=3")  # three beads: the chain is measured twice
-    page.get_by_role("tab", name="accuracy").click()
-    expect(page.locator("#tabs .small canvas").first).to_be_visible(timeout=COMPILED)
-    expect(page.locator("#tabs")).to_contain_text("The cheapest way to", timeout=COMPILED)
-    page.get_by_role("button", name="open the page").click()
-    expect(page.locator("#overlay .work canvas").first).to_be_visible()
-    assert page.evaluate(POINTS)
-    page.keyboard.press("Escape")
-    expect(page.locator("#overlay")).to_be_hidden()
-    sheet = opened(page)
-    expect(sheet.get_by_role("button", name="measure again")).to_be_visible(timeout=COMPILED)
-    type_into(page, "D", "90")
-    expect(sheet.locator(".stale")).to_be_visible()
-    expect(sheet).to_contain_text("measured for another chain")
-    type_into(page, "D", "100")
-    expect(sheet.locator(".stale")).to_have_count(0)
-    type_into(page, "D", "80")
-    sheet.get_by_role("button", name="measure again").click()
-    expect(sheet.locator(".stale")).to_have_count(0)
-    page.wait_for_function(f"Object.keys(({POINTS})()).length > 0", timeout=COMPILED)
-    sheet.locator("button:text-is('stop')").first.evaluate("one => one.click()")  # hidden where all is measured already

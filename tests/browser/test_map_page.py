@@ -60,7 +60,8 @@ def page(filled: Page, request: pytest.FixtureRequest, log: Path) -> Page:
 def cell(page: Page) -> dict[str, Any]:
     """A cell of the finest size in the middle of the map."""
     cells = source(page, "map", "cells")
-    row = max(range(len(cells["x"])), key=lambda i: (1900 < cells["x"][i] < 2300) * (cells["spacing"][i] == 1) * cells["y"][i] * (cells["y"][i] < 5))
+    x, y, spacing = (cells[name] for name in ("x", "y", "spacing"))
+    row = max(range(len(x)), key=lambda i: (1900 < x[i] < 2300) * (spacing[i] == 1) * y[i] * (y[i] < 5))
     return {name: cells[name][row] for name in ("x", "y", "tooltip")}
 
 

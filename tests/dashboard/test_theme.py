@@ -39,8 +39,9 @@ def test_the_page_has_the_colours_of_its_pictures(name: str) -> None:
     style, theme = properties(name), THEMES[name]
     assert style.pop("color-scheme") == theme.scheme
     for role in ("text_size", "small_text_size"):
-        smallest, largest = re.fullmatch(r"clamp\((\d+)px, .+, (\d+)px\)", style.pop(f"--{role.replace('_', '-')}")).groups()  # type: ignore[union-attr]
-        assert (int(smallest), int(largest)) == (getattr(theme, role), getattr(theme, f"largest_{role}"))
+        size = re.fullmatch(r"clamp\((\d+)px, .+, (\d+)px\)", style.pop(f"--{role.replace('_', '-')}"))
+        assert size is not None
+        assert (int(size[1]), int(size[2])) == (getattr(theme, role), getattr(theme, f"largest_{role}"))
     assert style.pop("--phone-text-size") == "13px" and style.pop("--roomy", "") == ("none" if theme.text_size > 15 else "")
     assert style == {f"--{field.name.replace('_', '-')}": str(getattr(theme, field.name)) for field in fields(Theme)
                      if field.name != "scheme" and not field.name.endswith("text_size")} | {

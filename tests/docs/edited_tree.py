@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import os
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 from documents import ROOT, blocks, edited
+from forked import python
 
 from granchain_core.kernels.compiling.cache_folder import CACHE_FOLDER
 
@@ -17,6 +16,8 @@ _PARTS = ("granchain_core", "app", "assets", "tests/chains.py", "tests/conftest.
           "tests/numerics/test_orders.py", "docs/command-line.md",
           "tests/cli/test_json_keys.py", "tests/cli/test_command_lists.py", "tools/__init__.py", "tools/fuzzing", "tools/hostile",
           "tests/kernels/equations", "tests/reference/reference.npz")
+#: What most commands in such a tree import.
+_LIBRARIES = ("numba", "pytest", "panel", "bokeh.plotting")
 
 
 def files_of(page: Path, until: str = "") -> tuple[set[str], set[str]]:
@@ -75,8 +76,7 @@ def follow(tree: Path, *arguments: str, own_kernels: bool = True) -> str:
     """
     cache = tree / "cache" if CACHE_FOLDER is None else CACHE_FOLDER.parent / "edited-trees"
     kernels = {"GRANCHAIN_CACHE": str(cache), "NUMBA_OPT": "1"} if own_kernels else {}
-    done = subprocess.run([sys.executable, *arguments], cwd=tree, capture_output=True, text=True, timeout=900,
-                          env={**os.environ, "PYTHONPATH": str(tree), **kernels})
+    done = python(*arguments, folder=tree, environment={**os.environ, "PYTHONPATH": str(tree), **kernels}, libraries=_LIBRARIES)
     assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
     return done.stdout
 

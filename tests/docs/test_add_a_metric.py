@@ -15,7 +15,8 @@ PAGE = ROOT / "docs" / "add-a-metric.md"
 def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A copy of the repository with the page's edits made."""
     copy = tmp_path_factory.mktemp("metric") / "tree"
-    for part in ("granchain", "granchain_start", "tools", "docs", "tests/serve/monitoring", "tests/dashboard", "tests/waiting.py", "tests/host.py"):
+    for part in ("granchain", "granchain_start", "tools", "docs", "tests/serve/monitoring", "tests/dashboard",
+                 "tests/waiting.py", "tests/host.py"):
         copied(part, copy)
     return edited_copy(PAGE, copy)
 

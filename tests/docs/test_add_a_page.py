@@ -111,8 +111,9 @@ print(shown["status"])
 
 
 def test_the_tables_of_pages_and_messages_have_the_new_page(tree: Path) -> None:
-    assert "| `app/pages/transmission` | How much of the input force arrives at the wall | – |\n" in (tree / "docs" / "design.md").read_text(encoding="utf-8")
-    assert "| page `transmission` | `transmission-say`, `transmission-search`, `transmission-stop` |\n" in (tree / "docs" / "dashboard.md").read_text(encoding="utf-8")
+    design, dashboard = ((tree / "docs" / name).read_text(encoding="utf-8") for name in ("design.md", "dashboard.md"))
+    assert "| `app/pages/transmission` | How much of the input force arrives at the wall | – |\n" in design
+    assert "| page `transmission` | `transmission-say`, `transmission-search`, `transmission-stop` |\n" in dashboard
 
 
 @pytest.mark.long

@@ -28,7 +28,8 @@ def sentence(text: str) -> str:
 
 
 @pytest.mark.parametrize(("page", "core", "words"), [
-    ("README.md", "znver5", "On one core of a Zen 5 the fastest other program takes {} times as long as `dop853-root` at an error of 1e-8, and {} times at 1e-10"),
+    ("README.md", "znver5", "On one core of a Zen 5 the fastest other program takes {} times as long as `dop853-root` at an "
+                            "error of 1e-8, and {} times at 1e-10"),
     ("docs/benchmarks.md", "znver4", "in the tables of the second section, a day later, it is {} and {} times")])
 def test_a_sentence_says_what_the_tables_do(page: str, core: str, words: str) -> None:
     (section,) = (text for title, text in _SECTIONS.items() if core in title)

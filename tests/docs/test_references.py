@@ -10,9 +10,11 @@ from documents import ROOT
 ENTRIES = {(entry[1].split()[-1] if entry[1].startswith("di ") else entry[1], entry[2]) for entry in re.finditer(
     r"^- \*\*((?:di )?[A-Z]\w+)[^*]*? (\d{4})\.\*\*", (ROOT / "docs" / "references.md").read_text(encoding="utf-8"), re.MULTILINE)}
 #: First author, perhaps others, and a year: "Keller 1977", "Zhang et al. (2016)", "Benettin, Galgani & Strelcyn 1976".
-CITED = re.compile(r"\b([A-ZÅÖ][a-zø]+)(?:(?:, [A-Z][a-zøö]+)*(?:,? (?:&|and) [A-Z][a-zøö]+)| et al\.)? \(?((?:18|19|20)\d\d)\b\)?(?!-)")
+CITED = re.compile(r"\b([A-ZÅÖ][a-zø]+)(?:(?:, [A-Z][a-zøö]+)*(?:,? (?:&|and) [A-Z][a-zøö]+)| et al\.)?"
+                   r" \(?((?:18|19|20)\d\d)\b\)?(?!-)")
 #: Words that are not authors.
-NOT_AUTHORS = {"Methods", "In", "On", "Above", "Below", "November", "Since", "Taken", "Before", "After", "Of", "Seed", "Over", "To", "About"}
+NOT_AUTHORS = {"Methods", "In", "On", "Above", "Below", "November", "Since", "Taken", "Before", "After", "Of", "Seed", "Over",
+               "To", "About"}
 FILES = [path for path in [*(ROOT / "docs").glob("*.md"), *(ROOT / "granchain_core").rglob("*.py")]
          if path.name not in ("references.md", "benchmarks.md", "reliability.md", "cite.py", "mutation.md", "hard-cases.md")]
 

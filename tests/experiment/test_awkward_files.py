@@ -266,7 +266,8 @@ def test_what_a_figure_cannot_use_is_not_read() -> None:
 
 
 @pytest.mark.parametrize(("words", "sentence"), [
-    (["x=1:Hz"], "Unknown quantity 'x'"), (["f=one:Hz"], "'one' is not the number of a column"), (["f=1:N"], "'N' is not a unit of frequency"),
+    (["x=1:Hz"], "Unknown quantity 'x'"), (["f=one:Hz"], "'one' is not the number of a column"),
+    (["f=1:N"], "'N' is not a unit of frequency"),
     (["f=0:Hz"], "not the number"), (["F=2:2.248V/Hz"], "not a unit of force"), (["F=2:0V/kN"], "not a unit of force"),
 ])
 def test_a_malformed_answer_is_refused(words: list[str], sentence: str) -> None:

@@ -56,8 +56,9 @@ def test_numbers_of_a_single_wrong_sample() -> None:
     assert out.relative == pytest.approx(out.rms / np.sqrt(np.mean(measured**2)))
 
 
-@pytest.mark.parametrize(("time", "count"), [(np.linspace(0.0, 1.0, 11), 11), (np.linspace(0.0, 4.0, 9), 5), (np.linspace(-1.0, 1.0, 9), 5)],
-                         ids=["shorter", "longer", "begins earlier"])
+@pytest.mark.parametrize(("time", "count"), [
+    (np.linspace(0.0, 1.0, 11), 11), (np.linspace(0.0, 4.0, 9), 5), (np.linspace(-1.0, 1.0, 9), 5),
+], ids=["shorter", "longer", "begins earlier"])
 def test_only_samples_within_the_motion_count(time: np.ndarray, count: int) -> None:
     out = compared_forces(series(time, output_force=-time), RAMP)["output_force"]
     assert (out.compared, out.samples) == (count, len(time)) and out.largest < 1e-15

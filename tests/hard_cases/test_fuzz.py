@@ -167,7 +167,8 @@ def test_a_length_that_does_not_scale_and_a_state_that_is_rounded_are_noticed(mo
 
     monkeypatch.setattr(properties, "_period", absolute)
     assert "shift by a period" in {name for name, _ in check(EASY).faults}
-    monkeypatch.setattr(properties, "_period", lambda scene, start, stop: real(scene, start, stop) + 1e-9 * (scale_chain(scene).scales.length > 1e-6))
+    monkeypatch.setattr(properties, "_period", lambda scene, start, stop: (
+        real(scene, start, stop) + 1e-9 * (scale_chain(scene).scales.length > 1e-6)))
     assert "scaling" in {name for name, _ in check(EASY).faults}
 
 

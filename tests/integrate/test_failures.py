@@ -159,7 +159,7 @@ def test_too_many_steps_in_a_period_have_a_status_of_their_own(monkeypatch: pyte
     monkeypatch.setattr(flow, "flow_step", step)
     stroboscopic_map = StroboscopicMap(scene("sec2"), 1)
     engine = stroboscopic_map.engine
-    status, done, _ = flow.run_flow.py_func(engine.stepper.method, FlowProblem(engine.stepper.trajectory(engine.y), stroboscopic_map._contacts, None), 1,
-                                            engine.counts.array, engine.stop.flag)
+    problem = FlowProblem(engine.stepper.trajectory(engine.y), stroboscopic_map._contacts, None)
+    status, done, _ = flow.run_flow.py_func(engine.stepper.method, problem, 1, engine.counts.array, engine.stop.flag)
     assert (status, done) == (TOO_MANY_STEPS, 0)
     assert failure(status).error.status == "too-many-steps"

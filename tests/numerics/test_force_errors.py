@@ -86,7 +86,8 @@ def test_the_computation_scales_and_agrees_with_itself_and_with_scipy(law: str, 
 @functools.cache
 def slice_of(kind: str, count: int) -> list[Verdict]:
     """Verdicts on a few draws."""
-    return [v for v in verdicts(kind, count, SEED, FEW if kind == "run" else FEW[:1], longest=LONGEST, budget=BUDGET) if isinstance(v, Verdict)]
+    found = verdicts(kind, count, SEED, FEW if kind == "run" else FEW[:1], longest=LONGEST, budget=BUDGET)
+    return [v for v in found if isinstance(v, Verdict)]
 
 
 @pytest.mark.long

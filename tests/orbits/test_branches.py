@@ -204,17 +204,28 @@ def test_an_isola_closes_on_itself() -> None:
     assert sum(s.kind == "fold" for s in found.special) % 2 == 0
 
 
-@pytest.mark.parametrize("slow", [1, -1])
-def test_the_threads_do_not_decide_which_arm_of_an_isola_is_kept(slow: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    """That with fewer orbits, also where it takes longer; and it is the one that is kept where both go on alternately.
-    """
+def again(begun: Branch) -> Branch:
+    """A branch that goes on by itself from where another one begins."""
+    return replace(begun, half_branches=tuple(HalfBranch(half.direction, list(half.points)) for half in begun.half_branches))
+
+
+@pytest.fixture(scope="module")
+def isola() -> tuple[Branch, HalfBranch]:
+    """A branch that has begun on the isola, and the arm that is kept where both go on alternately."""
     shown, frequency, period = closed_loop()
     begun = begin_branch(shown.evolve(f=frequency), "f", 100.0, 3000.0, period, both=True)
-    copies = [replace(begun, half_branches=tuple(HalfBranch(half.direction, list(half.points))
-                                                 for half in begun.half_branches)) for _ in range(2)]
-    alternately = Continuation(copies[0])
+    alternately = Continuation(again(begun))
     for _ in alternately:
         pass
+    return begun, alternately.branch.half_branches[0]
+
+
+@pytest.mark.parametrize("slow", [1, -1])
+def test_the_threads_do_not_decide_which_arm_of_an_isola_is_kept(slow: int, isola: tuple[Branch, HalfBranch],
+                                                                 monkeypatch: pytest.MonkeyPatch) -> None:
+    """That with fewer orbits, also where it takes longer; and it is the one that is kept where both go on alternately.
+    """
+    begun, expected = isola
     step = HalfContinuation.__next__
 
     def slowed(one: HalfContinuation) -> BranchPoint:
@@ -223,10 +234,9 @@ def test_the_threads_do_not_decide_which_arm_of_an_isola_is_kept(slow: int, monk
         return step(one)
 
     monkeypatch.setattr(HalfContinuation, "__next__", slowed)
-    found = Continuation(copies[1]).run()
-    kept, = found.half_branches
-    assert kept.direction == alternately.branch.half_branches[0].direction
-    assert [p.knob for p in kept.points] == [p.knob for p in alternately.branch.half_branches[0].points]
+    kept, = Continuation(again(begun)).run().half_branches
+    assert kept.direction == expected.direction
+    assert [p.knob for p in kept.points] == [p.knob for p in expected.points]
 
 
 def test_the_error_for_a_seed_that_is_no_orbit_has_its_residuals() -> None:

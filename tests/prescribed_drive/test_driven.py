@@ -261,7 +261,8 @@ def test_a_measured_velocity_or_displacement_drives_the_chain(tmp_path: Path, ca
 
 @pytest.mark.parametrize(("words", "sentence"), [
     (["run", "sec2", "--drive", "chirp=300:600"], "chirp=f0:f1:duration"), (["run", "sec2", "--drive", "crisp=1:2:3"], "crisp"),
-    (["run", "sec2", "--drive", "noise=600:300:1"], "from a lower to a higher"), (["run", "impact", "--drive", "burst=300:3:0.1"], "drive = rest"),
+    (["run", "sec2", "--drive", "noise=600:300:1"], "from a lower to a higher"),
+    (["run", "impact", "--drive", "burst=300:3:0.1"], "drive = rest"),
     (["run", "sec2", "--drive", "burst=300:3:0.1", "--periods", "5"], "--periods is for a harmonic drive"),
     (["run", "sec2", "--drive", "chirp=300:600:1e5"], "nearest valid duration"),
     (["run", "sec2", "--drive", "burst=300:3:0.1", "--gap", "zero"], "--gap is for --drive FILE"),
@@ -281,7 +282,8 @@ def test_finer_knots_and_a_shift_leave_the_motion_as_it_is() -> None:
     at = np.linspace(0.0, 0.004, 333)
     np.testing.assert_allclose(finer.displacement_at(at), given.displacement_at(at), atol=1e-12 * np.abs(given.displacement).max())
     np.testing.assert_allclose(moved.displacement_at(at) - given.displacement_at(at), 2e-7)
-    assert all(one.displacement[0] == pytest.approx(2e-7 + before.displacement[0]) for one, before in zip(moved.coarser, given.coarser, strict=True))
+    assert all(one.displacement[0] == pytest.approx(2e-7 + before.displacement[0])
+               for one, before in zip(moved.coarser, given.coarser, strict=True))
     assert given.finer(1.0) is given
     with pytest.raises(BadInput, match="nearest valid spacing"):
         given.finer(1e-10)
@@ -322,8 +324,10 @@ def test_forces_in_a_file_of_a_drive_are_compared(tmp_path: Path, capsys: pytest
 
 def test_a_file_without_forces_and_a_formula_have_nothing_to_compare(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path, time = tmp_path / "both.csv", np.linspace(0.0, 2e-3, 201)
-    path.write_text("time (s),velocity (m/s),displacement (m)\n" + "".join(f"{t:.9f},{1e-3 * np.sin(6e3 * t):.9e},0\n" for t in time), "utf-8")
-    for words, sentence in ((str(path), "the file has no force to compare. The displacement is not used."), ("burst=2000:2:0.002", "burst")):
+    rows = "".join(f"{t:.9f},{1e-3 * np.sin(6e3 * t):.9e},0\n" for t in time)
+    path.write_text("time (s),velocity (m/s),displacement (m)\n" + rows, "utf-8")
+    for words, sentence in ((str(path), "the file has no force to compare. The displacement is not used."),
+                            ("burst=2000:2:0.002", "burst")):
         assert main(["run", "sec2", "--set", "N=3", "--drive", words, "--json"]) == 0
         printed, said = capsys.readouterr()
         found = json.loads(printed)

@@ -111,7 +111,8 @@ def test_frequencies_may_come_from_a_generator() -> None:
 
 def test_the_file_of_another_result_is_said_to_be_one(tmp_path: Path) -> None:
     path = save_curve(resonance_curve(CHAIN, [2000.0]), tmp_path / "curve.h5")
-    with pytest.raises(BadInput, match=r"reads runs, and .* holds another result: its tables are curve; granchain_core\.store\.load_curve reads"):
+    with pytest.raises(BadInput, match=r"reads runs, and .* holds another result: its tables are curve; "
+                                       r"granchain_core\.store\.load_curve reads"):
         load(path)
     with pytest.raises(BadInput, match=r"are multipliers, newton, state; xarray\.open_dataset\(path, group=.multipliers.\) reads one"):
         load(save(orbit(CHAIN), tmp_path / "orbit.h5"))

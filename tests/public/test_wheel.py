@@ -92,7 +92,8 @@ def test_every_module_of_the_wheel_is_found_under_its_name_there(wheel: Path) ->
             "names = [found.name for found in pkgutil.walk_packages(granchain_app.__path__, 'granchain_app.')]\n"
             "for name in names: importlib.import_module(name)\n"
             "from granchain_app.dashboard import scales; from granchain_app.session import stories\n"
-            "from granchain_app.pages.data import page as data; from granchain_app.session import terms; assert 'resonance' in terms.definitions()\n"
+            "from granchain_app.pages.data import page as data; from granchain_app.session import terms\n"
+            "assert 'resonance' in terms.definitions()\n"
             "assert scales.FILE.is_file() and data.SAMPLES.is_dir() and stories.FOLDER.is_dir()\n"
             "print(len(names) > 100, 'app' in sys.modules)")
     ran = subprocess.run([sys.executable, "-c", code, str(wheel)], cwd=wheel, text=True, capture_output=True, check=False)

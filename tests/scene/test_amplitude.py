@@ -133,6 +133,7 @@ def test_a_branch_follows_its_amplitude_and_keeps_it(tmp_path: Path) -> None:
     (["map", "sec2", "--x", "f=1900:2000:2", "--y", "A0=1e-7:2e-7:2"], "A0 cannot vary independently"),
     (["branch", "sec2", "--knob", "D", "--from", "1", "--to", "2"], "make f a knob"),
 ])
-def test_knobs_that_do_not_go_with_it_are_refused(words: list[str], sentence: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_knobs_that_do_not_go_with_it_are_refused(words: list[str], sentence: str, tmp_path: Path,
+                                                  capsys: pytest.CaptureFixture[str]) -> None:
     assert main([*words, "--amplitude", "constant-velocity=6e-3", "--out", str(tmp_path / "a.h5")]) == 2
     assert sentence in capsys.readouterr().err

@@ -27,8 +27,8 @@ from tools.damage.kinds import KINDS, made, told
 pytestmark = pytest.mark.quick
 
 #: A dataset that each reader needs.
-NEEDED = {"run": "run/displacement", "start of orbit": "run/velocity", "force of a run": "run/input_force", "branch": "branch/state", "curve": "curve/period",
-          "map": "map/regime", "observation": "observation/displacement"}
+NEEDED = {"run": "run/displacement", "start of orbit": "run/velocity", "force of a run": "run/input_force",
+          "branch": "branch/state", "curve": "curve/period", "map": "map/regime", "observation": "observation/displacement"}
 
 
 #: What is said of each forgery; a dataset that a link replaced may be missed before the link is met.
@@ -170,7 +170,9 @@ def test_a_size_is_bounded_before_memory_is_allocated(shape: tuple[int, ...], op
     (lambda f: f["run/jump_contact"].write_direct(np.full(f["run/jump_contact"].shape, 99)), "jump_contact holds 99 to 99"),
     (lambda f: f.attrs.modify("cost", '{"wall_s": 1, "steps": -1}'), "cost.steps is '-1', not a whole number from 0"),
     (lambda f: f.attrs.modify("regime", "[" * 30_000), "not JSON: it is nested too deeply"),
-    (lambda f: f.attrs.modify("granchain_schema", 2), "schema is 2"), (lambda f: f.attrs.__setitem__("cost", np.zeros(3)), "not one value")])
+    (lambda f: f.attrs.modify("granchain_schema", 2), "schema is 2"),
+    (lambda f: f.attrs.__setitem__("cost", np.zeros(3)), "not one value"),
+])
 def test_kinds_and_values_are_checked(change: Callable[[h5py.File], Any], words: str, changed: Callable[..., Path]) -> None:
     assert words in refused(load, changed("run", change))
 
@@ -289,6 +291,8 @@ def test_a_child_has_limits_of_time_and_memory(tmp_path: Path) -> None:
 
 def test_a_child_imports_nothing_of_granchain() -> None:
     """Which would take a second, and be loaded from wherever the file stands."""
-    program = "import sys; sys.path.insert(0, sys.argv[1]); import plain; print([m for m in sys.modules if 'granchain' in m or m == 'numba'])"
-    done = subprocess.run([sys.executable, "-P", "-c", program, str(Path(plain.__file__).parent)], capture_output=True, text=True, check=True)
+    program = ("import sys; sys.path.insert(0, sys.argv[1]); import plain; "
+               "print([m for m in sys.modules if 'granchain' in m or m == 'numba'])")
+    command = [sys.executable, "-P", "-c", program, str(Path(plain.__file__).parent)]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
     assert done.stdout == "[]\n"

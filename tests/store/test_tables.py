@@ -150,7 +150,8 @@ def test_errors_and_regimes_stand_beside_the_numbers() -> None:
     parameters = result("Fit").to_pandas()
     assert parameters.loc["D", "low"] < parameters.loc["D", "best"] < parameters.loc["D", "high"]
     run = result("Run").to_xarray()
-    assert float(run.max_output_force) == result("Run").max_output_force and run.max_output_force.attrs["units"] == "N"  # type: ignore[attr-defined]
+    assert float(run.max_output_force) == result("Run").max_output_force  # type: ignore[attr-defined]
+    assert run.max_output_force.attrs["units"] == "N"
     assert run.regime.item() == result("Run").regime.name and float(run.error_estimate_displacement) > 0.0  # type: ignore[attr-defined]
     runs = result("Runs").to_pandas()
     assert list(runs["wall"]) == ["bead", "rigid", "bead"] and list(runs["N"]) == [2, 2, 3] and runs["max_output_force"].is_unique

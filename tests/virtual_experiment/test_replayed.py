@@ -60,7 +60,8 @@ def test_a_record_that_begins_before_the_shaker_is_replayed_from_rest(tmp_path: 
     still = found.time < 1.0 / 60.0
     assert np.abs(found.velocity[still]).max() < 1e-4 * found.velocity.max()
     assert found.velocity.max() == pytest.approx(RIG.A0 * 120.0 * np.pi, rel=1e-3)
-    for bad, sentence in ((["--start", "end"], "settled"), (["--start", "rest", "--kind", "curve", "--from", "60", "--to", "60"], "--kind series")):
+    for bad, sentence in ((["--start", "end"], "settled"),
+                          (["--start", "rest", "--kind", "curve", "--from", "60", "--to", "60"], "--kind series")):
         assert main(["virtual", "fig12-60", *bad]) == 2
         assert sentence in capsys.readouterr().err
 
@@ -135,9 +136,11 @@ def test_a_record_that_begins_at_rest_is_not_warned_of() -> None:
 
 @pytest.mark.parametrize(("chain", "series", "words"), [
     (CHAIN, Series(np.linspace(0.0, 1.0, 9), None, None, np.zeros(9), "made"), "neither velocity nor displacement"),
-    (CHAIN, Series(np.linspace(0.0, 5e-3, 501), np.cos(3e3 * np.linspace(0.0, 5e-3, 501)), None, None, "made"), "is no sine of f = 1000 Hz"),
-    (CHAIN.evolve(dissipation="none"), Series(np.linspace(0.0, 5e-3, 501), np.cos(2e3 * np.pi * np.linspace(0.0, 5e-3, 501)), None, None,
-                                              "made"), "has no state that belongs to a drive phase"),
+    (CHAIN, Series(np.linspace(0.0, 5e-3, 501), np.cos(3e3 * np.linspace(0.0, 5e-3, 501)), None, None, "made"),
+     "is no sine of f = 1000 Hz"),
+    (CHAIN.evolve(dissipation="none"),
+     Series(np.linspace(0.0, 5e-3, 501), np.cos(2e3 * np.pi * np.linspace(0.0, 5e-3, 501)), None, None, "made"),
+     "has no state that belongs to a drive phase"),
     (scene("impact"), Series(np.linspace(0.0, 1.0, 9), np.zeros(9), None, None, "made"), "drive")])
 def test_what_has_no_settled_beginning_is_refused(chain, series: Series, words: str) -> None:  # type: ignore[no-untyped-def]
     with pytest.raises(BadInput, match=words):

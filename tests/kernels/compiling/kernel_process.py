@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import json
 import os
-import subprocess
-import sys
 from pathlib import Path
+
+from forked import python
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -32,7 +32,6 @@ print(json.dumps({"folder": str(CACHE_FOLDER)}))
 def used(folder: Path, program: str = PROGRAM) -> tuple[dict, list[str]]:
     """What a new process says of its kernel, and its lines on stderr."""
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "GRANCHAIN_CACHE": str(folder)}
-    done = subprocess.run([sys.executable, "-c", program], env=environment, text=True, capture_output=True, timeout=300,
-                          check=False)
+    done = python("-c", program, folder=ROOT, environment=environment)
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout.splitlines()[-1]), done.stderr.splitlines()

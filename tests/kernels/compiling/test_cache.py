@@ -5,11 +5,10 @@ from __future__ import annotations
 import json
 import os
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from forked import python
 
 import granchain_core
 from granchain_core import scene
@@ -35,8 +34,7 @@ print(json.dumps([sum(sum(getattr(k.stats, name).values()) for k in kernels) for
 def hits_and_misses(cache: Path | None, tree: Path, does: str) -> tuple[int, int]:
     """Numba's own count in a new process with the core in `tree`; `cache` is None for the folder that all tests use."""
     environment = {**os.environ, "PYTHONPATH": str(tree), **({} if cache is None else {"GRANCHAIN_CACHE": str(cache)})}
-    done = subprocess.run([sys.executable, "-c", PROGRAM, does], env=environment, cwd=tree, text=True, capture_output=True,
-                          timeout=300, check=False)
+    done = python("-c", PROGRAM, does, folder=tree, environment=environment)
     assert done.returncode == 0, done.stderr
     hits, misses = json.loads(done.stdout)
     return hits, misses
@@ -66,8 +64,7 @@ def copied_core(tree: Path) -> Path:
 def is_warm(tree: Path, cache: Path, word: str = "ask") -> bool:
     """What a new process in a copy of the core says."""
     environment = {**os.environ, "PYTHONPATH": str(tree), "GRANCHAIN_CACHE": str(cache)}
-    done = subprocess.run([sys.executable, "-c", MARK, word], env=environment, cwd=tree, text=True, capture_output=True,
-                          timeout=300, check=False)
+    done = python("-c", MARK, word, folder=tree, environment=environment)
     assert done.returncode == 0, done.stderr
     return done.stdout.strip() == "True"
 

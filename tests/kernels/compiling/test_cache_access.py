@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import tempfile
+from functools import cache as cache_once
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,15 @@ import pytest
 from kernel_process import FOLDER, used
 
 from granchain_core.kernels.compiling import cache, cache_folder
+
+#: The hashes of the sources, which take a tenth of a second each and are the same in all tests here.
+_HASHES = {name: cache_once(getattr(cache_folder, name)) for name in ("sources_hash", "source_bytes_hash")}
+
+
+@pytest.fixture(autouse=True)
+def hashed_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name, known in _HASHES.items():
+        monkeypatch.setattr(cache_folder, name, known)
 
 
 def mode_with(umask: int, folder: Path) -> int:

@@ -36,7 +36,8 @@ def describe(v: Verdict) -> str:
     s = v.scene
     figures = "; ".join(f"{name} true {e:.2e} stated {b:.1e} known {k:.0e}"
                         for name, e, b, k in zip(COLUMNS, v.error, v.stated, v.known, strict=True))
-    return (f"{v.kind} {v.index} λ={v.strength:.2g} {v.what}: {figures}: {s.name} f={s.f!r} A0={s.A0!r} D={s.D!r} k={s.k!r} F0={s.F0!r} N={s.N} "
+    return (f"{v.kind} {v.index} λ={v.strength:.2g} {v.what}: {figures}: "
+            f"{s.name} f={s.f!r} A0={s.A0!r} D={s.D!r} k={s.k!r} F0={s.F0!r} N={s.N} "
             f"{s.wall} {s.dissipation} {s.tension} accuracy={s.accuracy:g} thrown={s.start_velocity}")
 
 

@@ -49,7 +49,8 @@ def draw(seed: int, index: int, structures: list, longest: float = LONGEST) -> D
     if rng.random() < 0.3:
         speed = _rate(chosen) * chosen.A0 * _decade(rng, "thrown") * rng.choice([-1.0, 1.0])
         chosen = replace(chosen, start_velocity=((int(rng.integers(1, chosen.N + 1)), float(speed)),))
-    return Draw(index, chosen, *_shortened(chosen, int(rng.integers(0, MOST_PERIODS + 1)), int(rng.integers(1, MOST_RECORDED + 1)), longest))
+    periods, recorded = int(rng.integers(0, MOST_PERIODS + 1)), int(rng.integers(1, MOST_RECORDED + 1))
+    return Draw(index, chosen, *_shortened(chosen, periods, recorded, longest))
 
 
 def draw_steady(seed: int, index: int, structures: list) -> Scene:

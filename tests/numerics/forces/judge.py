@@ -98,7 +98,8 @@ def judge_run(drawn: Draw, most_steps: int = MOST_STEPS, budget: float = BUDGET)
     except (ComputationError, OverBudget):
         return "refused or failed, and said so"
     try:
-        true, nearly = (located(chosen, drawn.periods, drawn.record, 1, tolerance, most_steps=most_steps).maxima for tolerance in (_TIGHT, _LOOSE))
+        true, nearly = (located(chosen, drawn.periods, drawn.record, 1, tolerance, most_steps=most_steps).maxima
+                        for tolerance in (_TIGHT, _LOOSE))
     except (TooLong, FloatingPointError):
         return "truth not known"
     return Verdict("run", drawn.index, chosen, f"{found.status} {drawn.periods}+{drawn.record}", apart(forces(found), true),

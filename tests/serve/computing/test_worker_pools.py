@@ -6,6 +6,8 @@ import gc
 import threading
 import time
 import weakref
+from collections.abc import Callable
+from concurrent.futures import Future
 
 import pytest
 import waiting
@@ -63,19 +65,26 @@ def test_cancelled_work_that_has_not_begun_is_not_done_and_not_kept(limit: int |
 
 
 @pytest.mark.parametrize("limit", [None, 1])
-def test_work_that_is_cancelled_as_a_thread_takes_it_is_left_alone(limit: int | None, caplog: pytest.LogCaptureFixture) -> None:
+def test_work_that_is_cancelled_as_a_thread_takes_it_is_left_alone(limit: int | None, caplog: pytest.LogCaptureFixture,
+                                                                   monkeypatch: pytest.MonkeyPatch) -> None:
     """The thread comes between the two steps of a cancellation: the state of the future, and the call of those told."""
     pool, go_on, taken = WorkerPool("tested", 1, per_owner_limit=limit), threading.Event(), threading.Event()
-    first, owner = pool.submit(go_on.wait, 120), object()
-    second = pool.submit(pytest.fail, "it was cancelled", owner=owner)
-    told = second._invoke_callbacks  # type: ignore[attr-defined]
 
-    def after_the_thread() -> None:
+    def after_the_thread(_: object) -> None:
         go_on.set()
         assert pool.submit(taken.set).result(60) is None, "the only thread has passed the cancelled work"
-        told()
 
-    second._invoke_callbacks = after_the_thread  # type: ignore[attr-defined]
+    class Told(Future[object]):
+        """A future that tells the thread before it tells the pool."""
+
+        def add_done_callback(self, fn: Callable[[Future[object]], object]) -> None:
+            super().add_done_callback(after_the_thread)
+            super().add_done_callback(fn)
+
+    first, owner = pool.submit(go_on.wait, 120), object()
+    with monkeypatch.context() as patch:
+        patch.setattr(worker_pools, "Future", Told)
+        second = pool.submit(pytest.fail, "it was cancelled", owner=owner)
     assert second.cancel() and first.result(60) and taken.is_set()
     assert caplog.records == [] and not pool._taken and not pool._held
 
