@@ -25,7 +25,8 @@ from .ends import Ending, Ends
 from .equations import BranchEquations, Solved
 from .newton import Near
 from .point import BranchPoint, recorded, unrecorded
-from .special import SpecialPoint, special_between
+from .special import SpecialPoint
+from .special_search import special_between
 from .steps import FIRST_STEP, LARGEST_CORRECTION, LEAST_COSINE, SHORTEST_STEP, next_step, predicted
 
 #: Points from the starting orbit on before the branch may close on itself.

@@ -15,7 +15,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-SUPERCRITICAL, SUBCRITICAL, GENERIC, NOT_DECIDED = CRITICALITIES = (
+#: Criticalities as JSON and files spell them; a nondegenerate fold has always been "generic" there.
+SUPERCRITICAL, SUBCRITICAL, NONDEGENERATE, NOT_DECIDED = CRITICALITIES = (
     "supercritical", "subcritical", "generic", "not decided")
 
 #: Why a criticality is not decided; results, files and JSON spell these so.
@@ -62,7 +63,8 @@ class NormalForm:
     Attributes
     ----------
     criticality : str
-        "supercritical" or "subcritical"; "generic" for a fold whose quadratic coefficient is not zero; "not decided".
+        "supercritical" or "subcritical"; "generic", that is nondegenerate, for a fold whose quadratic coefficient is
+        not zero; "not decided".
     coefficient : float
         |a| of a fold, c of a period doubling (supercritical: c > 0), Re d of a Neimark–Sacker point (supercritical:
         Re d < 0), for ξ in units of the scaled state's root mean square. NaN where it was not computed.
@@ -143,7 +145,7 @@ def _judged(kind: str, one: float, other: float) -> NormalForm:
     if not error < _LARGEST_ERROR * abs(mean):
         return NormalForm(NOT_DECIDED, mean, error, DISAGREE)
     if kind == "fold":
-        return NormalForm(GENERIC, mean, error)
+        return NormalForm(NONDEGENERATE, mean, error)
     return NormalForm(SUPERCRITICAL if (mean > 0.0) == (kind == "period_doubling") else SUBCRITICAL, mean, error)
 
 

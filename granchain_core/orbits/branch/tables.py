@@ -102,7 +102,7 @@ def _special(over: KnobAxis, special: Sequence[SpecialPoint], half_branches: Seq
                         "what the contact has once more on one side: touch (a closed interval) or separation (an open "
                         "one)"),
         "criticality": Column(words([form.criticality for form in forms]), along, "",
-                              "supercritical, subcritical, generic (a fold) or not decided"),
+                              "supercritical, subcritical, generic (a nondegenerate fold) or not decided"),
         "coefficient": Column(number([form.coefficient for form in forms]), along, "1",
                               "coefficient of the normal form that decides it, NaN where not computed"),
         "coefficient_error": Column(number([form.error for form in forms]), along, "1",

@@ -2,7 +2,7 @@
 
 A motion may stay near an unstable orbit for hundreds of periods, and may need thousands to reach a stable one;
 meanwhile both look alike. So the orbit itself is found by Newton's method, and its multipliers predict the growth of
-small disturbances. The prediction is tested: from its present distance and from smaller and smaller ones, the motion
+small perturbations. The prediction is tested: from its present distance and from smaller and smaller ones, the motion
 must approach the orbit about as fast as the multipliers say. The search for orbits that a motion does not follow, which
 has no limit of the distance, is orbits/search.py.
 """
