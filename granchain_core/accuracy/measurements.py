@@ -1,4 +1,4 @@
-"""What `work_precision` measured: a row for each method and setting, and the references they are compared with."""
+"""Results of `work_precision`: a row for each method and setting, and the references they are compared with."""
 
 from __future__ import annotations
 

@@ -184,7 +184,7 @@ def listing(attractors_found: Sequence[Attractor]) -> Iterator[str]:
 
 
 def failed_sentence(failed: Sequence[Origin]) -> list[str]:
-    """The starts that have no steady state in one sentence, the first of them by name; empty where there is none."""
+    """One sentence about the starts without a steady state, which names the first; empty where there is none."""
     if not failed:
         return []
     names = ", ".join(origin.name for origin in failed[:_NAMED])

@@ -30,23 +30,23 @@ from ..steady.steady_state import SteadyState
 from .attractor import Attractor, Attractors, Origin
 from .sameness import Found, found, merged
 
-#: Frequencies of a sweep before the one asked for.
+#: Frequencies of a sweep before its last, the frequency of the scene.
 _SWEEP_POINTS = 8
-#: Drive periods at each of them.
+#: Drive periods at each frequency of a sweep.
 _PASS_PERIODS = 150
-#: Distance from the frequency asked for at which a sweep begins, relative to it.
+#: Distance of the first frequency of a sweep from its last, relative to the last.
 _SWEEP_RANGE = 0.08
 #: Size of the box of random states, in units of the largest displacement and velocity that any bead has at phase 0 in
 #: the first `_PASS_PERIODS` of the motion from rest.
 _BOX_SIZE = 1.5
 #: Displacement from an unstable orbit, relative to the motion.
 _DEPARTURE = 1e-2
-#: Drive periods before the next check: enough to leave an orbit with |μ| = 1.003.
+#: Drive periods from an unstable orbit to the next check: enough to leave an orbit with |μ| = 1.003.
 _DEPARTURE_PERIODS = 3000
-#: Drive periods that a motion that does not repeat is run on, to see whether it comes to an orbit after all: on the way
-#: to a locked orbit of long period it may wander for thousands beside a closed curve.
+#: Drive periods for which a motion without a period is continued, in case it comes to an orbit after all: on the way to
+#: a locked orbit of long period it may stay beside a closed curve for thousands of periods.
 _LATER_PERIODS = 6400
-#: Most times that motions are run on, for either reason.
+#: Most times that motions are continued, for either reason.
 _MOST_ROUNDS = 3
 #: Most random states.
 MOST_STATES = 10_000

@@ -1,4 +1,4 @@
-"""Comparing results: whether two of them are the same steady state.
+"""Comparing results: whether two results are the same steady state.
 
 docs/parameter-map.md ("All attractors of one setting") has the rules and the reasons.
 """
@@ -18,12 +18,12 @@ from ..scene import Scene
 from ..scene.state import State
 from ..steady.steady_state import SteadyState
 
-#: Largest difference of states that is explained by one stated error. It is the error of the output force, which stands
-#: in for that of the states and is infinite where the force is zero.
+#: Largest difference of states that is explained by one stated error. The error of the output force is taken for that
+#: of the states; it is infinite where the force is zero.
 _LARGEST_DIFFERENCE = 1e-3
 #: Orbits found by Newton's method that agree to this, over 1 − |μ|, are the same.
 _ORBIT_DIFFERENCE = 1e-7
-#: 1 − |μ| of an orbit counts as at least this.
+#: Least value of 1 − |μ| by which errors of orbits are divided.
 _LEAST_CONTRACTION = 1e-3
 #: Sections are different if their distance exceeds that between neighbouring states of one section by this factor.
 _SECTION_FACTOR = 3.0
@@ -48,9 +48,10 @@ class Found:
 
     @property
     def tolerance(self) -> float:
-        """How far its section may be from the true one, relative to the largest displacement or w.
+        """Error of the section's states, relative to the largest displacement or w.
 
-        0 where no error is stated: such a result is the same only as what it equals, and periodic ones all state one.
+        It is the stated error of the output force. Without a stated error, None, it is 0: such a result is merged with
+        an equal one only. Periodic results all state an error; others are compared by their sections.
         """
         if self.orbit is not None:
             return _ORBIT_DIFFERENCE / max(_LEAST_CONTRACTION, 1.0 - min(1.0, float(np.abs(self.orbit.multipliers[0]))))
@@ -66,7 +67,7 @@ class Found:
 
     @property
     def unstable(self) -> bool:
-        """Whether it is on an unstable orbit."""
+        """Whether the result is on an unstable orbit."""
         return self.orbit is not None and not self.orbit.stable
 
 

@@ -37,7 +37,7 @@ from ..scene.hertz import RATE_POWER
 from ..scene.quantities import QUANTITIES
 from ..scene.state import State
 
-#: How exactly the critical multiplier meets its condition: it is not known better.
+#: Error of a multiplier: the critical one meets its condition to this.
 _CONDITION_ERROR = MULTIPLIER_ERROR
 #: Relative change of a knob for its difference quotient; the map is smooth to 1e-12.
 _DIFFERENCE = 1e-6

@@ -151,7 +151,7 @@ def bifurcation_curves(parameter_map: ParameterMap, rows: Iterable[int] | None =
 
 
 def _pairs(parameter_map: ParameterMap, row: int) -> Iterator[_Pair]:
-    """Neighbours in a row of which one is periodic and the other something else."""
+    """Neighbouring cells of a row, the first periodic, the second not or with another period."""
     width = parameter_map.grid.shape[1]
     regimes, periods = parameter_map.cells["regime"], parameter_map.cells["period"]
     names = np.array(CELL_REGIMES)[regimes]
@@ -167,7 +167,7 @@ def _pairs(parameter_map: ParameterMap, row: int) -> Iterator[_Pair]:
 
 
 def _kinds(period: int, neighbour_period: int, regime: str) -> tuple[str, ...]:
-    """What to try between an orbit of `period` and a neighbour of this regime and period, 0 where it has none."""
+    """Kinds to try between an orbit of `period` and a neighbour of this regime and period, 0 where it has none."""
     if regime in ("unsettled", "failed") or period == 2 * neighbour_period:
         return ()
     if regime == "quasi-periodic":
@@ -190,7 +190,7 @@ def _between(parameter_map: ParameterMap, pair: _Pair, stop: Stop | None) -> tup
 
 
 def _point_between(parameter_map: ParameterMap, pair: _Pair, kind: str, stop: Stop | None) -> BifurcationPoint | None:
-    """The point of one kind, from the orbit that comes nearest to it; None where there is none."""
+    """The point of this kind, sought from the orbit nearest to its condition; None where there is none."""
     grid = parameter_map.grid
     columns = [number % grid.shape[1] for number in (pair.inside, pair.outside)]
     a, b = (grid.x.values[column] for column in columns)

@@ -18,7 +18,7 @@ _FIRST_ROWS = 5
 
 @dataclass(frozen=True)
 class Answers:
-    """What a person says about a file.
+    """A person's answers about a file.
 
     `columns` has for every quantity the columns that hold it, numbered from 1, with a unit or a sensitivity each;
     columns that are not named are left out. `dataset` names one of a digitiser's.

@@ -38,7 +38,7 @@ Target = CurveTarget | SeriesTarget | RecordsTarget | FeatureTarget
 STEP = 2e-3
 #: Initial points from which the search descends in a round.
 _STARTS = 3
-#: Most evaluations of a descent from one of them.
+#: Most evaluations of a descent.
 _DESCENT_CALLS = 20
 #: Most evaluations of the simplex for every parameter.
 _SIMPLEX_CALLS = 40
@@ -123,7 +123,7 @@ class Problem:
         return np.concatenate([evaluation.residuals, self.priors(x), [np.sqrt(max(evaluation.log_variance, 0.0))]])
 
     def misfit(self, x: np.ndarray) -> float:
-        """What is made least: χ² and the logarithms of the variances, −2 ln of the likelihood but for a constant."""
+        """The quantity that is minimised: χ² and the logarithms of the variances, −2 ln L up to a constant."""
         return self._misfit(self.evaluate(x), np.clip(x, 0.0, 1.0))
 
     def chi_squared(self, x: np.ndarray) -> float:

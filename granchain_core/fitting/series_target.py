@@ -20,7 +20,7 @@ from .trains import Train, moved
 
 #: Samples of a model's train in a drive period.
 _TRAIN = 768
-#: The most of them, for sensors with a bandwidth.
+#: Most samples of a model's train in a drive period, for sensors with a bandwidth.
 _MOST_TRAIN = 8192
 #: Most samples of a series that are compared; a longer one is thinned out evenly.
 _COMPARED = 4000

@@ -165,7 +165,7 @@ def sizes(quick: bool) -> list[Measurement]:
 
 
 def sizes_picture() -> Picture:
-    """A bead of a thousandth of the mass between two others: ours, and plain RK4 with one step for all of them."""
+    """A bead of a thousandth of the mass between two others: ours, and plain RK4 with one step for all beads."""
     chosen, samples, stride, light = unequal({2: 1e-3}, 3), 200, 10, 1
     ours = run(chosen, periods=0, record=1, samples=samples).displacement / chosen.A0
     chain = PlainChain.of(chosen)

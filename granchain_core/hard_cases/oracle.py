@@ -73,7 +73,7 @@ class PlainChain:
 
 def solved(chain: PlainChain, start: np.ndarray, times: np.ndarray, method: str = "DOP853",
            rtol: float = 1e-12) -> np.ndarray:
-    """States (T, 2N) of displacements and velocities at scaled `times` (T,), from `start` (2N,) at the first of them.
+    """States (T, 2N) of displacements and velocities at scaled `times` (T,), from `start` (2N,) at the first time.
 
     Raises `ComputationError` where SciPy gives up.
     """

@@ -139,9 +139,9 @@ def near_bifurcation_picture() -> Picture:
 
 #: A frequency at which the chain of `sec2` has orbits of period 1 and of period 3, both stable [Hz].
 _SHARED = 885.7627
-#: Where the sweep up to it begins [Hz].
+#: Frequency at which the sweep up begins [Hz].
 _BELOW = 800.0
-#: Where the sweep down to it begins [Hz].
+#: Frequency at which the sweep down begins [Hz].
 _ABOVE = 1000.0
 
 

@@ -117,7 +117,7 @@ _EMPTY = IS_NEIGHBOUR
 
 
 def _no_check(*arguments: object) -> None:
-    """What stands for a check of types until the kernel is known."""
+    """Stands for a check of types until the kernel is known."""
 
 
 class Batch:

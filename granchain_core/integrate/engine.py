@@ -209,7 +209,7 @@ class Engine:
 
     @property
     def unresolved(self) -> int:
-        """How many of them were touches within a step, by a method that does not locate events."""
+        """Number of touches shorter than a step that a method without located events has noticed."""
         return int(self.log.counts[UNRESOLVED])
 
     @property

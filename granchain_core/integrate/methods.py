@@ -165,19 +165,19 @@ class Method:
 
 
 def _fixed(kind: Any, simd: bool = False) -> Callable[[MethodSetting, ScaledChain, int], Stepper]:
-    """What makes the stepper of a method with fixed steps in (u, w)."""
+    """A function that makes the stepper of a method with fixed steps in (u, w)."""
     return lambda setting, scaled, samples: FixedStep(kind(setting.steps_per_period(scaled, samples)), scaled,
                                                        samples, simd)
 
 
 def _in_velocity(kind: Any) -> Callable[[MethodSetting, ScaledChain, int], Stepper]:
-    """What makes the stepper of a method with fixed steps in (u, v)."""
+    """A function that makes the stepper of a method with fixed steps in (u, v)."""
     return lambda setting, scaled, samples: FixedStepInVelocity(kind(setting.steps_per_period(scaled, samples)),
                                                                  scaled, samples)
 
 
 def _error_controlled(kind: Any) -> Callable[[MethodSetting, ScaledChain, int], Stepper]:
-    """What makes the stepper of a method with error control."""
+    """A function that makes the stepper of a method with error control."""
     return lambda setting, scaled, samples: kind(setting.tolerance, scaled, samples)
 
 
@@ -288,7 +288,7 @@ def typical_error(setting: MethodSetting) -> float:
 
 def jump_errors(setting: MethodSetting, scaled: ScaledChain, step: float, jumps: np.ndarray,
                 maxima: np.ndarray) -> np.ndarray:
-    """What the stated relative errors (3,) of the largest forces must be at least where these are at jumps (2,).
+    """Lower limits (3,) of the stated relative errors of the largest forces where these are at jumps (2,).
 
     All in scaled units.
 

@@ -24,7 +24,7 @@ _WORK_OF_CALL = 1 << 19
 
 
 class InParts(Protocol):
-    """A method with fixed steps, `grid` of them in a period."""
+    """A method with `grid` fixed steps in a period."""
 
     scaled: ScaledChain
     grid: int

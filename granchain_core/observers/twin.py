@@ -117,7 +117,7 @@ class Twin:
 
     @property
     def offset(self) -> np.ndarray:
-        """Mean displacement of the observer's beads over that of the chain's (T,) [m]."""
+        """Mean displacement of the observer's beads less that of the chain's (T,) [m]."""
         return (self.observer - self.chain).mean(axis=1)
 
     @property

@@ -155,7 +155,7 @@ def _state(name: str, stop: Stop | None) -> Settled:
 
 
 def _within(progress: Progress, begin: float, part: float) -> Progress:
-    """Progress of a part of a computation as that of the whole."""
+    """Progress of a part of a computation as progress of the whole."""
     return lambda done: progress(begin + part * done)
 
 

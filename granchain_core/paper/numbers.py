@@ -174,7 +174,7 @@ _NUMBERS: dict[str, Callable[[], Numbers]] = {
 
 
 def numbers_of(key: str) -> Numbers:
-    """What is bold in the row with this key, computed: numbers in the row's units, and words."""
+    """The bold entries of the row with this key, computed: numbers in the row's units, and words."""
     if key not in _NUMBERS:
         raise unknown_name("row", key, _NUMBERS)
     return _NUMBERS[key]()

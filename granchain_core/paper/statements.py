@@ -24,7 +24,7 @@ class Statement:
 
     @property
     def computed(self) -> list[str]:
-        """What is bold, in order."""
+        """The bold numbers and words, in order."""
         return re.findall(r"\*\*(.+?)\*\*", self.ours)
 
     def wrong(self, numbers: Sequence[float | str]) -> list[str]:

@@ -214,7 +214,7 @@ def _driven(chain: MovedChain, signal: Signal, finest: Refined, between: np.ndar
 
 
 def formula_errors(scene: Scene, signal: Signal, growth: float, displacement: float, maxima: np.ndarray) -> np.ndarray:
-    """What the signal's difference from its formula adds to the relative errors (4,): of displacements, then of forces.
+    """Relative errors (4,) of displacements and largest forces that come from the signal's difference from its formula.
 
     `growth` is that of the errors in this motion, `displacement` the largest of a bead [m], `maxima` are the largest
     input, output and elastic output force [N].

@@ -271,7 +271,7 @@ def _of_samples(count: int, put_in: np.ndarray, of: Callable[[np.ndarray], Signa
     full, measured = of(np.arange(count)), np.delete(np.arange(count), put_in)
 
     def by_every(nth: int) -> tuple[tuple[Signal, ...], float]:
-        """Signals by every nth sample, and how far the displacement of one of them is from the full signal's."""
+        """Signals by every nth sample, and the largest distance of their displacements from the full signal's."""
         signals = tuple(of(np.unique(np.concatenate([measured[first::nth], measured[[0, -1]], put_in])))
                         for first in range(nth))
         return signals, max(float(np.abs(signal.displacement_at(full.time) - full.displacement).max())

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 from ..kernels.strobes.periodicity import assumed_contraction
 
-#: What a motion can be called.
+#: Names of regimes.
 NAMES = ("periodic", "quasi-periodic", "chaotic", "unsettled")
 #: Those of steady states that never repeat; their errors are not stated.
 NEVER_REPEATING = ("quasi-periodic", "chaotic")
-#: How the orbit of a periodic motion was found: the motion settled on it, or was still approaching it.
+#: Ways in which the orbit of a periodic motion was found: the motion settled on it, or was still approaching it.
 FOUND_BY = ("settling", "Newton", "extrapolation")
 #: [all] A distance is taken to shrink by |μ| per orbit, at most 1 less this (`Regime.assumed_contraction`).
 LEAST_BELOW_1 = 1e-6

@@ -26,7 +26,7 @@ EVIDENCE = {
     "lyapunov_error": "standard error of the Lyapunov exponent",
     "lyapunov_periods": "drive periods over which the Lyapunov exponent was measured, NaN where not measured",
 }
-#: The rest of it, which a map's cells do not keep.
+#: The rest of the evidence, which a map's cells do not keep.
 MORE_EVIDENCE = {
     "distance": "bound on the relative distance to the orbit, NaN where not periodic",
     "return_distance": "median distance of late strobes from the nearest early one, NaN where not measured",

@@ -21,7 +21,7 @@ from ..tables.provenance import Attribute
 from .recorded_motion import RecordedMotion, motion_columns, time_axis
 from .regime import Regime
 
-#: Where a run can have begun, its `start`: at rest, with the initial velocities of its scene, or in a given state.
+#: Starts of runs, the values of `start`: at rest, with the initial velocities of its scene, or in a given state.
 AT_REST, INITIAL_VELOCITY, GIVEN_STATE = "rest", "initial velocity", "given state"
 RUN_STARTS = (AT_REST, INITIAL_VELOCITY, GIVEN_STATE)
 
@@ -35,7 +35,7 @@ def start_words(scene: Scene, start: State | None) -> str:
 
 @dataclass(frozen=True)
 class Cost:
-    """What a computation took.
+    """The cost of a computation.
 
     Attributes
     ----------
@@ -125,7 +125,7 @@ class ForceErrors:
 
 
 class LargestForces(Protocol):
-    """What has largest forces [N]: a run, a driven motion, an observation, a point of a curve, an attractor."""
+    """Results with largest forces [N]: a run, a driven motion, an observation, a point of a curve, an attractor."""
 
     @property
     def max_input_force(self) -> float: ...

@@ -180,7 +180,7 @@ def run_many(scenes: Iterable[Scene], work: Callable[..., Any] = run,
 
 
 def attempted(work: Callable[..., Any], chain: Scene, options: dict[str, Any]) -> Outcome:
-    """What `work` makes of a chain, or the sentence with which its computation failed."""
+    """The result of `work` for a chain, or the sentence with which the computation failed."""
     try:
         return work(chain, **options), ""
     except (ComputationError, OverBudget) as problem:

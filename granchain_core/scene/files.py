@@ -21,7 +21,7 @@ MOST_BYTES = 100_000
 #: Sections of a scene file that are tables, with the names each may hold.
 TABLES = {"chain": ("pattern", "impurities", "start_velocity", "reference_overlap"), "knobs": tuple(QUANTITIES),
           "ranges": tuple(QUANTITIES)}
-#: What else a scene file may hold: texts, and its place in the list of scenes.
+#: Further entries of a scene file: texts, and its place in the list of scenes.
 WORDS = ("parent", "title", "look_at", "question", "paper", "order")
 _BEAD = tuple(field.name for field in fields(Bead))
 
@@ -125,7 +125,7 @@ def _place(entry: dict[str, Any], name: str) -> int:
 
 
 def _impurity(entry: Any, beads: list[dict[str, Any]]) -> list[Any]:
-    """Place and bead; what the entry does not name is that of the pattern's bead there."""
+    """Place and bead; a value that the entry does not name is taken from the pattern's bead at that place."""
     values = _table(entry, "impurities", ("place", *_BEAD))
     place = _place(values, "impurities")
     own = {name: value for name, value in values.items() if name != "place"}

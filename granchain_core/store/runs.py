@@ -24,9 +24,9 @@ from ..tables import MAXIMA
 from ..tables.table import units_by_path
 from .writing import or_none
 
-#: What a run's `status` can be.
+#: Values of a run's `status`.
 STATUSES = ("done", "accuracy-not-reached", "over-budget")
-#: What older files of a steady state say for `GIVEN_STATE`.
+#: Spelling of `GIVEN_STATE` in older files of a steady state.
 _PREVIOUS_STATE = "previous state"
 #: Functions of granchain_core.store that read other results, by a table of the file.
 _LOADED = {"curve": "load_curve", "branch": "load_branch"}

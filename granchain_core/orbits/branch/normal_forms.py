@@ -28,7 +28,7 @@ NO_MULTIPLIER = "no multiplier of this kind is found on both sides"
 RESONANCE = "strong resonance"
 NO_MAP = "the map cannot be computed beside the orbit"
 REASONS = (SEQUENCE_IN_INTERVAL, SEQUENCE_NEAR, DISAGREE, ANOTHER_MULTIPLIER, NO_MULTIPLIER, RESONANCE, NO_MAP)
-#: As earlier versions spelled two of them, and what is read for these.
+#: Earlier spellings of two reasons, and the reasons that are read for them.
 EARLIER_REASONS = {"a contact grazes in the same interval of the knob": SEQUENCE_IN_INTERVAL,
                    "a contact grazes within the smallest amplitude": SEQUENCE_NEAR}
 

@@ -47,7 +47,7 @@ SPECIAL_KINDS = tuple(kind.name for kind in KINDS)
 #: Kinds at which the stability of an orbit may change, each with a normal form.
 BIFURCATIONS = SPECIAL_KINDS[:3]
 _WORDS = {kind.name: kind.words for kind in KINDS}
-#: What a contact has once more on one side of a grazing, and how JSON and files spell it.
+#: Intervals of which a contact has one more on one side of a grazing, and their spelling in JSON and files.
 EVENTS = {"closed interval": "touch", "open interval": "separation"}
 
 

@@ -15,9 +15,9 @@ from .normal_forms import NormalForm
 from .point import BranchPoint
 from .special import SPECIAL_KINDS, SpecialPoint
 
-#: What is told of a special point without a normal form.
+#: Entries of a special point without a normal form.
 _NO_NORMAL_FORM = NormalForm("")
-#: What the column `arm` holds.
+#: Meaning of the column `arm`.
 _HALF_BRANCH = "half-branch: 0 first, 1 second; direction in the attribute branch"
 #: The contact of a special point that is not a grazing.
 NO_CONTACT = -1

@@ -151,7 +151,7 @@ def _lengths(rows: np.ndarray, offsets: np.ndarray) -> np.ndarray:
 
 
 def orbit_of(scene: Scene, period: int, x: np.ndarray, stop: Stop) -> NearbyOrbit | None:
-    """The orbit of `period` drive periods, or of a part of them, that Newton's method finds from x; else None."""
+    """The orbit of `period` drive periods, or of a divisor of them, that Newton's method finds from x; else None."""
     stroboscopic_map = FiniteDifferenceMap(scene, period, stop)
     point = fixed_point(stroboscopic_map, x)
     if point is None:
