@@ -90,7 +90,7 @@ class Attractor:
 
     @property
     def share_words(self) -> str:
-        """Its share with the standard error in per cent, "–" where there is none."""
+        """The share with the standard error in per cent, "–" where there is none."""
         if self.share is None:
             return "–"
         error = "" if self.share_error is None else f" ± {100.0 * self.share_error:.0f}"
@@ -133,7 +133,7 @@ class Attractors(list[Attractor], Labelled):
         return (attractors_table(self.scene, self),)
 
     def attributes(self) -> dict[str, Attribute]:
-        """Where they come from."""
+        """Provenance, and the largest error of a force."""
         errors = [one.force_errors.output for one in self if one.force_errors.output is not None]
         return dict(provenance(self.scene, attractor_methods(self.scene, self), max(errors) if errors else None))
 

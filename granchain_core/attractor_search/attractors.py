@@ -28,7 +28,7 @@ from ..steady.regime_criteria import find_period, grows, is_neutral, rounding_of
 from ..steady.settling.regime_decisions import REMEMBERED
 from ..steady.steady_state import SteadyState
 from .attractor import Attractor, Attractors, Origin
-from .sameness import Found, found, merged
+from .sameness import Candidate, merged, with_section
 
 #: Frequencies of a sweep before its last, the frequency of the scene.
 _SWEEP_POINTS = 8
@@ -116,7 +116,7 @@ def attractors_from(scene: Scene, origins: list[Origin], stop: Stop | None = Non
     if results and not any(not result.failure for result in results):
         raise ComputationError(results[0].failure, "not-finite")
     failed = {result.number for result in results if result.failure}
-    groups = merged([found(result) for result in results if not result.failure])
+    groups = merged([with_section(result) for result in results if not result.failure])
     for _ in range(_MOST_ROUNDS):
         left = [group for group in groups if group[0].unstable or _locks(group[0], stop)]
         if not left:
@@ -127,7 +127,7 @@ def attractors_from(scene: Scene, origins: list[Origin], stop: Stop | None = Non
                + (_DEPARTURE_PERIODS if group[0].unstable else _LATER_PERIODS) for group in left for one in group}
         results = _settled(again, stop)
         failed |= {result.number for result in results if result.failure}
-        moved = [found(_counted(result, ran[result.number])) for result in results if not result.failure]
+        moved = [with_section(_counted(result, ran[result.number])) for result in results if not result.failure]
         groups = merged(kept + moved)
     return [_attractor(group, origins) for group in groups], [origins[number] for number in sorted(failed)]
 
@@ -148,7 +148,7 @@ def _settled(starts: list[Start], stop: Stop | None,
     return sorted(results, key=lambda result: result.number)
 
 
-def _beside(group: list[Found], stop: Stop | None) -> Iterator[Start]:
+def _beside(group: list[Candidate], stop: Stop | None) -> Iterator[Start]:
     """New starts near the orbit for all results on an unstable orbit."""
     orbit = group[0].orbit
     assert orbit is not None
@@ -159,14 +159,14 @@ def _beside(group: list[Found], stop: Stop | None) -> Iterator[Start]:
         yield Start(orbit.scene, _run_on(orbit.scene, near, _DEPARTURE_PERIODS, stop)[0], member.result.number)
 
 
-def _later(group: list[Found], stop: Stop | None) -> Iterator[Start]:
+def _later(group: list[Candidate], stop: Stop | None) -> Iterator[Start]:
     """New starts for all results of a group, where each motion is after `_LATER_PERIODS`."""
     for one in group:
         result = one.result
         yield Start(result.scene, _run_on(result.scene, result.state, _LATER_PERIODS, stop)[0], result.number)
 
 
-def _locks(candidate: Found, stop: Stop | None) -> bool:
+def _locks(candidate: Candidate, stop: Stop | None) -> bool:
     """Whether a motion that does not repeat comes to an orbit after all, within `_LATER_PERIODS`."""
     if candidate.result.regime.period is not None:
         return False
@@ -224,7 +224,7 @@ def or_infinite(error: float | None) -> float:
     return math.inf if error is None else error
 
 
-def _attractor(group: list[Found], origins: list[Origin]) -> Attractor:
+def _attractor(group: list[Candidate], origins: list[Origin]) -> Attractor:
     """The attractor of a group: forces with the least error, or in an irregular group the largest of any member."""
     best = min((one.result for one in group), key=lambda result: or_infinite(result.output_force_error))
     first, maxima = group[0], best.maxima

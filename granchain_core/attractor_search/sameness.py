@@ -25,6 +25,9 @@ _LARGEST_DIFFERENCE = 1e-3
 _ORBIT_DIFFERENCE = 1e-7
 #: Least value of 1 − |μ| by which errors of orbits are divided.
 _LEAST_CONTRACTION = 1e-3
+#: A result is on an unstable orbit if its distance is at most this factor times its tolerance, plus this distance
+#: relative to the largest displacement or w. A motion that only passes such an orbit is farther away.
+_UNSTABLE_FACTOR, _UNSTABLE_DISTANCE = 10.0, 1e-6
 #: Sections are different if their distance exceeds that between neighbouring states of one section by this factor.
 _SECTION_FACTOR = 3.0
 #: States in the section of a motion that is not periodic, taken after as many further periods, and in the longer ones
@@ -35,10 +38,10 @@ _DOP853_SETTING = dop853_setting(1e-11)
 
 
 @dataclass(eq=False)
-class Found:
-    """One result with its section: n strobes of a periodic orbit, or the record of another motion, (P, 2, N).
+class Candidate:
+    """A result that may be the same steady state as another, with its section (P, 2, N).
 
-    `longer` holds longer records of a motion that is not periodic, by their number of states.
+    The section has the n strobes of a periodic orbit, or a record of strobes of another motion. `longer` holds longer records of a motion that is not periodic, by their number of states.
     """
 
     result: SteadyState
@@ -71,10 +74,10 @@ class Found:
         return self.orbit is not None and not self.orbit.stable
 
 
-def found(result: SteadyState) -> Found:
+def with_section(result: SteadyState) -> Candidate:
     """A result with the section of its motion."""
     period = result.regime.period
-    return Found(result, _strobes(result.scene, result.state, period, _setting(result)) if period
+    return Candidate(result, _strobes(result.scene, result.state, period, _setting(result)) if period
                  else _section(result, _STATES_OF_SECTION[0]))
 
 
@@ -102,18 +105,19 @@ def _strobes(scene: Scene, state: State, periods: int, setting: MethodSetting) -
     return np.array(rows).reshape(periods, 2, -1)[:, :, 1:-1]
 
 
-def merged(results: list[Found]) -> list[list[Found]]:
-    """Results grouped by attractor; the first of a group represents it."""
-    groups: list[list[Found]] = []
-    for one in results:
-        _join(groups, [one])
-    polished: list[list[Found]] = []
+def merged(results: list[Candidate]) -> list[list[Candidate]]:
+    """Results grouped by attractor; the first result of a group represents the group."""
+    groups: list[list[Candidate]] = []
+    for candidate in results:
+        _join(groups, [candidate])
+    polished: list[list[Candidate]] = []
     for group in groups:
         _join(polished, [_polished(group[0]), *group[1:]])
     return polished
 
 
-def _join(groups: list[list[Found]], new: list[Found]) -> None:
+def _join(groups: list[list[Candidate]], new: list[Candidate]) -> None:
+    """Add the results `new` of one attractor to its group, or make them a new group."""
     for group in groups:
         if _same(group[0], new[0]):
             group.extend(new)
@@ -121,8 +125,8 @@ def _join(groups: list[list[Found]], new: list[Found]) -> None:
     groups.append(new)
 
 
-def _polished(candidate: Found) -> Found:
-    """The result on its converged orbit, if Newton's method ends on the orbit that it began at."""
+def _polished(candidate: Candidate) -> Candidate:
+    """The result on its converged orbit, if Newton's method ends on the orbit where it began."""
     period = candidate.result.regime.period
     if period is None or candidate.orbit is not None:
         return candidate
@@ -134,15 +138,16 @@ def _polished(candidate: Found) -> Found:
             orbit = periodic_orbit(candidate.result.scene, shortest, orbit.state)
     except (BadInput, ComputationError):  # a scene that cuts tension has no converged orbits
         return candidate
-    # states are known less well than forces; a stable orbit that is as near as this is the one the motion settled on
-    most = _LARGEST_DIFFERENCE if orbit.stable else 10.0 * candidate.tolerance + 1e-6
+    # states are known less well than forces; a motion this near to a stable orbit has settled on it
+    most = _LARGEST_DIFFERENCE if orbit.stable else _UNSTABLE_FACTOR * candidate.tolerance + _UNSTABLE_DISTANCE
     if _distance(section, candidate.section) > most:
         return candidate
     result = replace(candidate.result, regime=replace(candidate.result.regime, period=shortest))
-    return Found(result, section[:shortest], orbit)
+    return Candidate(result, section[:shortest], orbit)
 
 
-def _same(a: Found, b: Found) -> bool:
+def _same(a: Candidate, b: Candidate) -> bool:
+    """Whether two results are the same steady state."""
     if a.result.regime.period != b.result.regime.period:
         return False
     if a.result.regime.period is not None:

@@ -122,7 +122,7 @@ class Newton:
         raise self._failure()
 
     def solve_exact(self) -> Flow:
-        """Solve for the orbit of the exact map from that of the quick one; returns the exact map with its derivative."""
+        """Solve for the orbit of the exact map from that of the quick one; returns that map with its derivative."""
         quick = self._quick_end() if self._quick_end_here is None else self._quick_end_here
         end, ratio = self._exact_end(TOLERANCE), 1.0
         self._record(end)
