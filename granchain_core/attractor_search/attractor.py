@@ -138,7 +138,7 @@ class Attractors(list[Attractor], Labelled):
         return dict(provenance(self.scene, attractor_methods(self.scene, self), max(errors) if errors else None))
 
     def summary(self) -> list[str]:
-        """How many, a line for each, and the starts that failed."""
+        """The number of steady states, a line for each, and the starts that failed."""
         return [f"{len(self)} found", *(f"{i}: {line}" for i, line in enumerate(listing(self), 1)),
                 *failed_sentence(self.failed)]
 

@@ -101,7 +101,7 @@ def attractors(scene: Scene, random_states: int = 64, seed: int = 0, stop: Stop 
 
 
 def _random_count(origins: list[Origin]) -> int:
-    """How many of these starts are random states."""
+    """Number of random states among these starts."""
     return sum(origin.name.startswith("random") for origin in origins)
 
 

@@ -41,7 +41,8 @@ _DOP853_SETTING = dop853_setting(1e-11)
 class Candidate:
     """A result that may be the same steady state as another, with its section (P, 2, N).
 
-    The section has the n strobes of a periodic orbit, or a record of strobes of another motion. `longer` holds longer records of a motion that is not periodic, by their number of states.
+    The section has the n strobes of a periodic orbit, or a record of strobes of another motion. `longer` holds longer
+    records of a motion that is not periodic, by their number of states.
     """
 
     result: SteadyState

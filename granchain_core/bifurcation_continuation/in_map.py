@@ -216,7 +216,7 @@ def _point_between(parameter_map: ParameterMap, pair: _Pair, kind: str, stop: St
 
 
 def _away(orbit: Orbit, kind: str) -> float:
-    """How far the multipliers of an orbit are from meeting a condition."""
+    """Distance of an orbit's multipliers from the condition of this kind."""
     if kind == "neimark_sacker":
         pairs = orbit.multipliers[np.abs(orbit.multipliers.imag) > 0.0]
         return float(np.abs(np.abs(pairs) - 1.0).min()) if len(pairs) else np.inf

@@ -138,7 +138,7 @@ def _separator(lines: list[tuple[int, str]]) -> str:
 
 
 def _numbers(fields: list[str], mark: str) -> int:
-    """How many fields look like numbers; one that holds another separator than a decimal comma does not."""
+    """Number of fields that look like numbers; one that holds another separator than a decimal comma does not."""
     return sum(bool(LIKE_A_NUMBER.fullmatch(one)) and not re.search(r"\d \d(?!\d\d)", one) for one in fields)
 
 

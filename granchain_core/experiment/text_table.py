@@ -59,7 +59,7 @@ def _parted(grid: TextGrid) -> _Parts:
 
 
 def _width(rows: list[Row]) -> int:
-    """How many fields most rows with two numbers have."""
+    """Number of fields that most rows with two numbers have."""
     numeric = [len(fields) for _, fields in rows if _is_data(fields)]
     return max(set(numeric), key=numeric.count) if numeric else 0
 
@@ -69,7 +69,7 @@ def _is_data(fields: list[str]) -> bool:
 
 
 def _has_number(fields: list[str]) -> bool:
-    """Whether it may be a row of data in which something else than a number stands."""
+    """Whether the fields may be a row of data in which something else than a number stands."""
     return any(LIKE_A_NUMBER.fullmatch(one) for one in fields)
 
 

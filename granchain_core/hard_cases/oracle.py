@@ -59,7 +59,7 @@ class PlainChain:
         return bodies[:-1] - bodies[1:] + self.static
 
     def rates(self, t: float, state: np.ndarray) -> np.ndarray:
-        """How fast the overlaps grow, (N+1,)."""
+        """Rates of the overlaps (N + 1,)."""
         bodies = np.concatenate([[self.beta * np.cos(self.beta * t)], state[len(self.masses) :], [0.0]])
         return bodies[:-1] - bodies[1:]
 

@@ -66,7 +66,7 @@ def distance(state: np.ndarray, orbit: np.ndarray, scale: np.ndarray) -> float:
 
 
 def claims(count: int, seed: int) -> tuple[int, int, int]:
-    """How often `count` maps near a bifurcation are called settled, how often wrongly, and how many slow ones are.
+    """Of `count` maps near a bifurcation: how many are called settled, how many of these wrongly, how many are slow.
 
     Wrong is a bound or a period. A slow map has a multiplier so near 1 that it cannot have settled within its strobes.
     """

@@ -214,7 +214,7 @@ class Engine:
 
     @property
     def closings_missing(self) -> int:
-        """How many further jumps there were, for which there was no place."""
+        """Number of further jumps, for which there was no place."""
         return max(0, int(self.log.counts[CLOSED]) - len(self.log.closings))
 
     def advance_and_find_largest(self, periods: int) -> np.ndarray:

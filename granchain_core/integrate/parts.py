@@ -102,6 +102,6 @@ def _stride(stepper: InParts, y: np.ndarray, first: int, stride: int, part: int,
 
 
 def _rows(samples: Samples, first: int, end: int) -> Samples:
-    """These rows, not copied."""
+    """The rows as views, not copies."""
     energy = None if samples.energy is None else samples.energy[first:end]
     return Samples(samples.displacement[first:end], samples.velocity[first:end], samples.force[first:end], energy)

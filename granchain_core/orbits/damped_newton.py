@@ -27,7 +27,7 @@ _MOST_SIZES = 6
 
 @dataclass(frozen=True, eq=False)
 class Iterated:
-    """Where the iteration ended: the point z, the map from there with its derivative, and the residuals of all points.
+    """The end of an iteration: the point z, the map from z with its derivative, and the residuals of all points.
 
     It has `converged` where the last residual is accepted.
     """

@@ -186,7 +186,7 @@ class Orbit(Labelled):
                 *([self.period_note] if self.period_note else [])]
 
     def distance_words(self) -> str:
-        """How near the motion comes to an orbit that was sought from it; empty where it was not."""
+        """Distance of the motion from an orbit that was sought near it, in words; empty for any other orbit."""
         if self.distance_of_motion is None:
             return ""
         return f"the motion comes within {self.distance_of_motion:.2g} of it, relative to its own size"

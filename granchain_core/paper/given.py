@@ -23,7 +23,7 @@ class Given:
 
     @property
     def sentences(self) -> list[str]:
-        """How every file was understood."""
+        """A sentence for each file: how it was understood."""
         parts = [measurement.understood for measurement in (self.curve, self.shaker) if measurement is not None]
         return parts + [f"at {f:g} Hz {measurement.understood}" for f, measurement in sorted(self.series.items())]
 

@@ -127,7 +127,7 @@ class ParameterMap(Labelled):
         return (Table("map", axes, columns, both),)
 
     def attributes(self) -> dict[str, Attribute]:
-        """Both knobs, cost, and where it comes from; `accuracy_reached` is the largest error of an output force.
+        """Both knobs, cost and provenance; `accuracy_reached` is the largest error of an output force.
 
         Only cells that were settled alone were computed to `accuracy_asked`, and at best to `CURVE_ACCURACY`.
         """

@@ -45,7 +45,7 @@ class Formula:
 
     @property
     def needed(self) -> int:
-        """How many numbers must be given."""
+        """Number of values that must be given."""
         return len(self.numbers) - self.optional
 
     @property

@@ -240,12 +240,12 @@ class Signal:
         return np.asarray(constant + since * (linear + since * quadratic))
 
     def shifted(self, start: float) -> Signal:
-        """The same motion, further into the chain by `start` [m] throughout."""
+        """The motion moved into the chain by `start` [m] at all times."""
         return replace(self, displacement=self.displacement + start,
                        coarser=tuple(signal.shifted(start) for signal in self.coarser))
 
     def finer(self, spacing: float) -> Signal:
-        """The same motion with knots at most `spacing` [s] apart, at which `drive` then states the forces.
+        """The motion with knots at most `spacing` [s] apart, at which `drive` then states the forces.
 
         Each interval is divided into the same number of equal parts, so the given knots are among the new ones.
         """

@@ -27,7 +27,7 @@ RUN_STARTS = (AT_REST, INITIAL_VELOCITY, GIVEN_STATE)
 
 
 def start_words(scene: Scene, start: State | None) -> str:
-    """Where a motion of `scene` from `start` begins, one of `RUN_STARTS`; without a start it is the scene's own."""
+    """The start of a motion of `scene` from `start`, one of `RUN_STARTS`; without `start`, the scene's own."""
     if start is not None:
         return GIVEN_STATE
     return INITIAL_VELOCITY if scene.moves_at_start else AT_REST

@@ -87,11 +87,11 @@ class Runs(list[Any], Labelled):
         return made()
 
     def heading(self) -> str:
-        """How many of which scenes."""
+        """Number and names of the scenes."""
         return f"{len(self)} runs of {', '.join(sorted({one.name for one in self.scenes}))}"
 
     def summary(self) -> list[str]:
-        """How many of which regime, and what failed."""
+        """Number of results by regime, and the failures."""
         kinds: dict[str, int] = {}
         for result in self:
             regime = getattr(result, "regime", None)

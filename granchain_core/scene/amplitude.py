@@ -100,7 +100,7 @@ class Amplitude:
 
     @classmethod
     def from_json(cls, data: Any) -> Amplitude:
-        """What `to_json` gave. Raises `BadInput` for anything else."""
+        """The amplitude that `to_json` wrote. Raises `BadInput` for anything else."""
         if not isinstance(data, dict) or set(data) != {"formula", "values", "frequencies", "source"}:
             raise BadInput("A drive amplitude has formula, values, frequencies and source.")
         rows = [data["values"], data["frequencies"]]

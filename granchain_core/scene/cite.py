@@ -1,4 +1,4 @@
-"""What to cite for a scene: the software, the paper of the model, and the sources of its damping law and effects."""
+"""Sources to cite for a scene: the software, the paper of the model, and the sources of its damping law and effects."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ from .quantities import QUANTITIES, WALL_FACTORS
 
 
 def is_number(value: object) -> bool:
-    """Whether it is a real number, one of NumPy too, and not a truth value."""
+    """Whether a value is a real number, one of NumPy too, and not a truth value."""
     return isinstance(value, (float, int, np.floating, np.integer)) and not isinstance(value, bool)
 
 
@@ -196,7 +196,7 @@ class Description:
 
     @property
     def drive_amplitude(self) -> float:
-        """How far the driver moves from its middle position [m]: A0, or 0 for one at rest."""
+        """Largest distance of the driver from its middle position [m]: A0, or 0 for a driver at rest."""
         return self.A0 if self.is_driven else 0.0
 
     @property

@@ -99,7 +99,7 @@ def _read(file: File) -> Run:
 
 
 def _start(file: File) -> str:
-    """Where a run began; files written before it was kept are of runs from rest."""
+    """The start of a run; files without this entry, from older versions, are of runs from rest."""
     if not file.stated("start"):
         return AT_REST
     text = file.text("start")
@@ -107,7 +107,7 @@ def _start(file: File) -> str:
 
 
 def _rows(file: File) -> int:
-    """How many samples a run has, at least one."""
+    """Number of samples of a run, at least one."""
     shape = file.shape("run/time")
     if len(shape) != 1 or shape[0] < 1:
         raise Refused(f"/run/time has shape {shape}, expected one row of samples")

@@ -114,7 +114,7 @@ class SpecialPoint:
 
 
 def more_and_fewer(a: BranchPoint, b: BranchPoint, contact: int) -> tuple[BranchPoint, BranchPoint]:
-    """Of two orbits first the one along which a contact closes more often."""
+    """Two orbits in order: first the orbit along which a contact closes more often."""
     return (a, b) if closings_of(a, contact) > closings_of(b, contact) else (b, a)
 
 

@@ -77,7 +77,7 @@ class NearbyOrbit:
 
     @property
     def period(self) -> int:
-        """Its period in drive periods."""
+        """The orbit's period in drive periods."""
         return self.stroboscopic_map.periods
 
     @property
