@@ -9,9 +9,9 @@ import numpy as np
 
 from ..orbits import Orbit
 from ..orbits.stroboscopic_map import FLOW_METHOD
+from ..results.forces import ForceErrors
 from ..results.regime import Regime
 from ..results.regime_columns import evidence_columns, regime_columns
-from ..results.run import ForceErrors
 from ..scene import Scene
 from ..scene.state import State
 from ..steady.batch.starts import settling_methods

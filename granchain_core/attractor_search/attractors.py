@@ -16,8 +16,8 @@ from ..errors import ComputationError
 from ..execution.stop import Stop
 from ..inputs.checks import whole_number
 from ..integrate import Engine, following_setting
+from ..results.forces import ForceErrors
 from ..results.regime import Regime
-from ..results.run import ForceErrors
 from ..scene import Scene
 from ..scene.refusals import require_scene
 from ..scene.state import State, rest

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..results.forces import ForceErrors
 from ..results.regime import NAMES, Regime
 from ..results.regime_columns import EVIDENCE
-from ..results.run import ForceErrors
 from ..scene import Scene
 from ..scene.quantities import QUANTITIES
 from ..steady.batch.starts import settling_methods

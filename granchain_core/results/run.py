@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import json
-import math
 from dataclasses import asdict, dataclass, field
-from typing import Protocol
 
 import numpy as np
 
@@ -18,6 +16,7 @@ from ..scene.state import State
 from ..scene.validity import overlap_warnings
 from ..tables import MAXIMA, Column, Table, axis, bead_axis, contact_axis, force_columns, or_nan, provenance
 from ..tables.provenance import Attribute
+from .forces import RUN_ERRORS, ForceErrors, force_sentences
 from .recorded_motion import RecordedMotion, motion_columns, time_axis
 from .regime import Regime
 
@@ -104,44 +103,6 @@ class Jumps:
                 "jump_force": Column(self.force, ("jump",), "N", "its force just after, where it was 0 before")}
 
 
-@dataclass(frozen=True)
-class ForceErrors:
-    """Relative errors of the largest input, output and elastic output force; None where none is stated."""
-
-    input: float | None = None
-    output: float | None = None
-    elastic: float | None = None
-
-    @classmethod
-    def of(cls, errors: np.ndarray | None) -> ForceErrors:
-        """From an array (3,) in that order; a force that is zero has no relative error."""
-        return cls() if errors is None else cls(*(e if math.isfinite(e) else None for e in errors.tolist()))
-
-    @property
-    def row(self) -> tuple[float, float, float]:
-        """The errors of input, output and elastic force as numbers, NaN where none is stated."""
-        values = (self.input, self.output, self.elastic)
-        return tuple(np.nan if e is None else e for e in values)  # type: ignore[return-value]
-
-
-class LargestForces(Protocol):
-    """Results with largest forces [N]: a run, a driven motion, an observation, a point of a curve, an attractor."""
-
-    @property
-    def max_input_force(self) -> float: ...
-    @property
-    def max_output_force(self) -> float: ...
-    @property
-    def max_output_force_elastic(self) -> float: ...
-
-
-class HasForces(LargestForces, Protocol):
-    """Largest forces with their relative errors."""
-
-    @property
-    def force_errors(self) -> ForceErrors: ...
-
-
 @dataclass(frozen=True, eq=False, repr=False)
 class Run(RecordedMotion):
     """A recorded motion: T samples of N beads and N + 1 contacts, in SI.
@@ -216,7 +177,7 @@ class Run(RecordedMotion):
     energy_residual: float | None
     cost: Cost
     start: str = AT_REST
-    force_errors: ForceErrors = ForceErrors()
+    force_errors: ForceErrors = field(default_factory=ForceErrors)
     jumps: Jumps = field(default_factory=Jumps)
 
     @property
@@ -260,20 +221,8 @@ class Run(RecordedMotion):
         """Regime, largest forces and errors."""
         error = self.displacement_error
         reached = "no error stated" if error is None else f"relative error {error:.1e}"
-        return [self.regime.sentence, *said_forces(self),
+        return [self.regime.sentence, *force_sentences(self),
                 f"{len(self.time)} samples; displacements: {reached}; {self.status.replace('-', ' ')}"]
-
-
-#: Attributes with the relative errors of a run's largest forces.
-RUN_ERRORS = ("error_estimate_input", "error_estimate_output", "error_estimate_elastic")
-
-
-def said_forces(motion: HasForces) -> list[str]:
-    """The largest forces in words, with their errors."""
-    errors = (motion.force_errors.output, motion.force_errors.elastic, motion.force_errors.input)
-    forces = (motion.max_output_force, motion.max_output_force_elastic, motion.max_input_force)
-    return [f"largest {name} force {force:.6g} N" + (", no error stated" if e is None else f", relative error {e:.1e}")
-            for name, force, e in zip(("output", "elastic output", "input"), forces, errors, strict=True)]
 
 
 def require_run(value: object) -> None:

@@ -21,9 +21,9 @@ from ..errors import FAILURES
 from ..hdf5 import File, opened
 from ..hdf5.border import one_of, within
 from ..hdf5.plain import Refused
+from ..results.forces import ForceErrors
 from ..results.regime import FOUND_BY, NAMES, Regime
 from ..results.regime_columns import EVIDENCE, MORE_EVIDENCE
-from ..results.run import ForceErrors
 from ..scene import Amplitude, Scene
 from ..scene.state import rest
 from ..steady.curve.curve import Curve, CurvePoint

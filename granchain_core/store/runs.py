@@ -17,9 +17,10 @@ from ..errors import BadInput
 from ..hdf5 import File, opened
 from ..hdf5.border import entries, finite, one_of, within
 from ..hdf5.plain import Refused
+from ..results.forces import RUN_ERRORS, ForceErrors
 from ..results.recorded_motion import motion_units
 from ..results.regime import FOUND_BY, NAMES, Regime
-from ..results.run import AT_REST, GIVEN_STATE, RUN_ERRORS, RUN_STARTS, Cost, ForceErrors, Jumps, Run
+from ..results.run import AT_REST, GIVEN_STATE, RUN_STARTS, Cost, Jumps, Run
 from ..tables import MAXIMA
 from ..tables.table import units_by_path
 from .writing import or_none
