@@ -21,7 +21,8 @@ from ..orbits import Orbit, periodic_orbit
 from ..orbits.stroboscopic_map import refuse_cut
 from ..parameter_maps.cells import CELL_REGIMES, ParameterMap
 from ..scene.quantities import QUANTITIES
-from .continuation import END_WORDS, REACHED, BifurcationPoint, bifurcation_point, follow_curve
+from .continuation import END_WORDS, REACHED, follow_curve
+from .point import BifurcationPoint, bifurcation_point
 
 #: Steps in which an orbit is carried from its cell to the neighbour.
 _STEPS = 6
