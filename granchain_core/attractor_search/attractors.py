@@ -122,9 +122,9 @@ def attractors_from(scene: Scene, origins: list[Origin], stop: Stop | None = Non
         if not left:
             break
         again = [start for group in left for start in (_beside if group[0].unstable else _later)(group, stop)]
-        kept = [one for group in groups if group not in left for one in group]
-        ran = {one.result.number: one.result.regime.periods_run
-               + (_DEPARTURE_PERIODS if group[0].unstable else _LATER_PERIODS) for group in left for one in group}
+        kept = [member for group in groups if group not in left for member in group]
+        ran = {member.result.number: member.result.regime.periods_run
+               + (_DEPARTURE_PERIODS if group[0].unstable else _LATER_PERIODS) for group in left for member in group}
         results = _settled(again, stop)
         failed |= {result.number for result in results if result.failure}
         moved = [with_section(_counted(result, ran[result.number])) for result in results if not result.failure]
@@ -161,8 +161,8 @@ def _beside(group: list[Candidate], stop: Stop | None) -> Iterator[Start]:
 
 def _later(group: list[Candidate], stop: Stop | None) -> Iterator[Start]:
     """New starts for all results of a group, where each motion is after `_LATER_PERIODS`."""
-    for one in group:
-        result = one.result
+    for member in group:
+        result = member.result
         yield Start(result.scene, _run_on(result.scene, result.state, _LATER_PERIODS, stop)[0], result.number)
 
 
@@ -226,14 +226,15 @@ def or_infinite(error: float | None) -> float:
 
 def _attractor(group: list[Candidate], origins: list[Origin]) -> Attractor:
     """The attractor of a group: forces with the least error, or in an irregular group the largest of any member."""
-    best = min((one.result for one in group), key=lambda result: or_infinite(result.output_force_error))
+    best = min((member.result for member in group), key=lambda result: or_infinite(result.output_force_error))
     first, maxima = group[0], best.maxima
     if first.result.regime.period is None:
-        maxima = np.max([one.result.maxima for one in group], axis=0)
-    regime = _regime([one.result.regime for one in group])
+        maxima = np.max([member.result.maxima for member in group], axis=0)
+    regime = _regime([member.result.regime for member in group])
     state = first.result.state if first.orbit is None else first.orbit.state
     return Attractor(best.scene, regime, float(maxima[0]), float(maxima[1]), float(maxima[2]),
-                     ForceErrors.of(best.errors), state, first.orbit, [origins[one.result.number] for one in group])
+                     ForceErrors.of(best.errors), state, first.orbit,
+                     [origins[member.result.number] for member in group])
 
 
 def _regime(regimes: list[Regime]) -> Regime:
@@ -244,12 +245,12 @@ def _regime(regimes: list[Regime]) -> Regime:
     is judged as if it had been measured over the shortest P, and whether it is neutral by the error of a single one.
     """
     known = [regime.lyapunov for regime in regimes if regime.lyapunov is not None]
-    periods = min((one.lyapunov_periods for one in regimes if one.lyapunov_periods is not None),
+    periods = min((regime.lyapunov_periods for regime in regimes if regime.lyapunov_periods is not None),
                   default=MEASURED_PERIODS - TURNING_PERIODS)
     if regimes[0].period is not None or not known:
         return regimes[0]
     mean, error = sum(value for value, _ in known) / len(known), math.sqrt(sum(e**2 for _, e in known)) / len(known)
-    names = {one.name for one in regimes}
+    names = {regime.name for regime in regimes}
     if len(names) == 1:
         name = regimes[0].name
     elif grows(mean, error, periods):

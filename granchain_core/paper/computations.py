@@ -118,7 +118,8 @@ def observers(stop: Stop | None, frequencies: Sequence[float] = (COUPLED_FREQUEN
     all multipliers lie inside and (e, f) both first beads move alike.
     """
     chains = [scene(name).evolve(f=f) for f in frequencies for name in ("fig11-free", "fig11-founded")]
-    return Observers(tuple(CoupledRow(one.f, one.kappa, twin(one, distance, periods, stop=stop)) for one in chains))
+    return Observers(tuple(CoupledRow(chain.f, chain.kappa, twin(chain, distance, periods, stop=stop))
+                           for chain in chains))
 
 
 def column(named: float, series: Series | None, observed: bool, stop: Stop | None) -> Column:

@@ -52,7 +52,7 @@ def read_given(number: str, takes: Sequence[str], frequencies: Sequence[float], 
         measurement = read_experiment(path, answers)
         kind = _KINDS[type(measurement)]
         if kind not in takes:
-            raise BadInput(f"Figure {number} takes {' and '.join(_WORDS[one] for one in takes)}; "
+            raise BadInput(f"Figure {number} takes {' and '.join(_WORDS[kind] for kind in takes)}; "
                            f"{path} is {_WORDS[kind]}.")
         if isinstance(measurement, Series):
             at = _frequency(hertz, frequencies, path, number)

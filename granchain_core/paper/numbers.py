@@ -74,9 +74,9 @@ def _stop_band() -> Numbers:
 
 def _energy() -> Numbers:
     states = [settle(scene(name), samples=_FINE) for name in ("fig3a", "fig3b")]
-    ratios = [pushes(one.run) or (0, 0) for one in states]
+    ratios = [pushes(state.run) or (0, 0) for state in states]
     return [*(f"{strong}:{periods}" for strong, periods in ratios),
-            *(1e6 * float(one.run.kinetic_energy.max()) for one in states)]
+            *(1e6 * float(state.run.kinetic_energy.max()) for state in states)]
 
 
 def _mass() -> Numbers:

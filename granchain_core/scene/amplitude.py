@@ -105,8 +105,8 @@ class Amplitude:
             raise BadInput("A drive amplitude has formula, values, frequencies and source.")
         rows = [data["values"], data["frequencies"]]
         listed = all(isinstance(row, list) for row in rows)
-        numbers = listed and all(isinstance(one, (int, float)) and not isinstance(one, bool)
-                                 for row in rows for one in row)
+        numbers = listed and all(isinstance(value, (int, float)) and not isinstance(value, bool)
+                                 for row in rows for value in row)
         if not isinstance(data["formula"], str) or not isinstance(data["source"], str) or not numbers:
             raise BadInput("A drive amplitude has a formula, numbers, and a source in words.")
         return cls(data["formula"], tuple(map(float, rows[0])), tuple(map(float, rows[1])), data["source"])

@@ -79,8 +79,8 @@ def built(name: str, data: dict[str, Any]) -> Scene:
         "k": 0.0, "F0": 0.0, "wall": "bead", "dissipation": "linear", "tension": "allowed", "accuracy": 1e-6, **knobs,
         "name": name, "title": data.get("title", name), "look_at": data.get("look_at", ""),
         "paper": data.get("paper", ""), "reference_overlap": chain["reference_overlap"], "pattern": beads,
-        "impurities": [_impurity(one, beads) for one in _list(chain.get("impurities", ()), "impurities")],
-        "start_velocity": [_start(one) for one in _list(chain.get("start_velocity", ()), "start_velocity")],
+        "impurities": [_impurity(entry, beads) for entry in _list(chain.get("impurities", ()), "impurities")],
+        "start_velocity": [_start(entry) for entry in _list(chain.get("start_velocity", ()), "start_velocity")],
         "ranges": [_range(knob, ends) for knob, ends in data.get("ranges", {}).items()]})
     ranges = tuple((knob, float(low), float(high)) for knob, low, high in fields["ranges"])
     new = Scene(**{**fields, "ranges": ranges})

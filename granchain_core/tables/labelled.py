@@ -77,7 +77,7 @@ class Labelled:
         return frame(chosen, (rows,) if rows else chosen.rows, self.attributes())
 
     def _table(self, name: str) -> Table:
-        tables = {one.name: one for one in self.tables()}
+        tables = {table.name: table for table in self.tables()}
         if not tables:
             raise BadInput("There is nothing in this result yet.")
         if name and name not in tables:

@@ -119,7 +119,7 @@ class HalfContinuation(Iterator[BranchPoint]):
     @property
     def _last_two(self) -> list[BranchPoint]:
         """The last two orbits, or the starting orbit alone."""
-        return [*self.half.points[-2:], *(one.ending.point for one in self._ahead)][-2:]
+        return [*self.half.points[-2:], *(ahead.ending.point for ahead in self._ahead)][-2:]
 
     def _advance(self) -> None:
         """Compute the next orbit ahead; halve the step where it is too long."""

@@ -129,7 +129,7 @@ def normal_form(kind: str, multiplier: complex, sides: tuple[MapNear, MapNear],
         critical[1] = _with_sign_of(critical[1], critical[0])
     for amplitude in amplitudes[kind]:
         try:
-            form = _judged(kind, *(_COEFFICIENTS[kind](side, one, size) for side, one, size in
+            form = _judged(kind, *(_COEFFICIENTS[kind](side, vectors, size) for side, vectors, size in
                                     zip(sides, critical, (amplitude, 0.5 * amplitude), strict=True)))
         except NotSmooth as obstacle:
             form = NormalForm(NOT_DECIDED, reason=str(obstacle))
