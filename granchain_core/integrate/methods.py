@@ -33,7 +33,7 @@ _FIXED_STEP_ERROR = 7e-6
 _ERROR_SPREAD = 8.0
 #: dop853's first tolerance per step, as a part of the accuracy asked for: errors of steps add up.
 _TOLERANCE_PER_ACCURACY = 0.1
-#: Its largest first tolerance per step, whatever accuracy is asked for.
+#: dop853's largest first tolerance per step, whatever accuracy is asked for.
 _LARGEST_TOLERANCE = 1e-3
 #: The next finer tolerance is not below this, except as an eighth of the present one.
 _SMALLEST_TOLERANCE = 1e-15

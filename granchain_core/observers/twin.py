@@ -33,7 +33,7 @@ LINEAR = 0.03
 #: Smallest distance that the fit of the multipliers uses: below it rounding is a part of the distance.
 LEAST_DISTANCE = 1e-11
 #: The observer is in step, and is followed no further, once all entries of the difference are below this for a period.
-#: It is a tenth of `LEAST_DISTANCE`, so that no distance of the fit is missing.
+#: A tenth of `LEAST_DISTANCE`, so that no distance of the fit is missing.
 SYNCHRONISED = 1e-12
 #: Most drive periods of a twin: a minute or so.
 MOST_TWIN_PERIODS = 20_000

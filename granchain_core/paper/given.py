@@ -32,7 +32,7 @@ class Given:
 _LEAST_AMPLITUDE = 1e-3
 #: The field of `Given` that a file's content belongs to.
 _KINDS = {Measured: "curve", Shaker: "shaker", Series: "series"}
-#: The same in words, with the columns of such a file.
+#: Contents of the files in words, with their columns.
 _WORDS = {"curve": "a resonance curve (frequency_Hz, force_N)",
           "shaker": "the shaker's amplitude (frequency_Hz, velocity_m_s or displacement_m)",
           "series": "time series (time_s and velocity_m_s, input_force_N, output_force_N)"}

@@ -9,7 +9,7 @@ from ..kernels.strobes.periodicity import assumed_contraction
 
 #: Names of regimes.
 NAMES = ("periodic", "quasi-periodic", "chaotic", "unsettled")
-#: Those of steady states that never repeat; their errors are not stated.
+#: Names of steady states that never repeat, for which no errors are stated.
 NEVER_REPEATING = ("quasi-periodic", "chaotic")
 #: Ways in which the orbit of a periodic motion was found: the motion settled on it, or was still approaching it.
 FOUND_BY = ("settling", "Newton", "extrapolation")

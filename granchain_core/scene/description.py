@@ -20,7 +20,8 @@ def is_number(value: object) -> bool:
     return isinstance(value, (float, int, np.floating, np.integer)) and not isinstance(value, bool)
 
 
-#: What a bead's values must be above, and may be at most. Poisson's ratio of a stable material is from −1 to 0.5.
+#: Limits of a bead's values: above the first, at most the second. Poisson's ratio of a stable material is from −1 to
+#: 0.5.
 BEAD_LIMITS = {"mass": (0.0, math.inf), "radius": (0.0, math.inf), "young": (0.0, math.inf), "poisson": (-1.0, 0.5)}
 
 

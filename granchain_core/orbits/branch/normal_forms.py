@@ -42,7 +42,7 @@ _SMALL_AMPLITUDE = 2e-5
 AMPLITUDES = {"fold": (_SMALL_AMPLITUDE,), "period_doubling": (_AMPLITUDE, _SMALL_AMPLITUDE),
               "neimark_sacker": (_AMPLITUDE, _SMALL_AMPLITUDE)}
 #: [branch] Largest difference of the two values of a coefficient, relative to their mean, at which its sign is decided.
-#: It would take an error of four times the difference to change it.
+#: Only an error of four times the difference would change the sign.
 _LARGEST_ERROR = 0.25
 #: [branch] Another multiplier is at the unit circle if its modulus is this near to 1. The passing one mostly is within
 #: 5e-4.
