@@ -143,7 +143,7 @@ def _observer(chain: Scene, series: Series | None, delay: float,
         rows = min(len(pair.time), round(SHOWN * chain.f) * _TRAIN_SAMPLES + 1)
         return pair.time[:rows], pair.observer_output_force[-rows:], "fed with model (5)'s input force, from rest"
     if series.input_force is None:
-        raise BadInput("Model (3) is pushed by the measured input force; the series has no column input_force_N.")
+        raise BadInput("Model (3) is driven by the measured input force; the series has no column input_force_N.")
     observed = observe(chain.evolve(accuracy=_OBSERVER_ACCURACY), force_record(series.time, series.input_force),
                        stop=stop)
     time = series.time - delay
