@@ -19,7 +19,7 @@ from granchain_core.analysis import lyapunov_spectrum
 from granchain_core.integrate.fixed import SHORT_CHAIN
 from granchain_core.kernels.batch import checks, record
 from granchain_core.observers.drift import TRANSLATION
-from granchain_core.orbits.branch import ends, normal_forms, special, steps
+from granchain_core.orbits.branch import ends, normal_forms, special_search, steps
 from granchain_core.parameter_maps import scheduled
 from granchain_core.results.regime import Regime
 from granchain_core.steady import exponent_measurements, regime_criteria, residuals
@@ -62,8 +62,8 @@ def test_the_text_on_branches_has_the_values_of_the_constants() -> None:
         r"if t turns by more than ([\d.]+)°": steps._LARGEST_TURN, r"The longest step is ([\d.]+),": steps.LONGEST_STEP,
         r"the shortest ([\de-]+)\.": steps.SHORTEST_STEP, r"method aims at ([\de-]+);": residuals.RESIDUAL_GOAL,
         r"below ([\de-]+) the orbit is accepted": residuals.ACCEPTED_RESIDUAL,
-        r"whose knobs differ by at most ([\de-]+) of the knob \(": special.RELATIVE_WIDTH,
-        r"for at most (\d+) levels of bisection": special._MOST_LEVELS,
+        r"whose knobs differ by at most ([\de-]+) of the knob \(": special_search.RELATIVE_WIDTH,
+        r"for at most (\d+) levels of bisection": special_search._MOST_LEVELS,
         r"back to the starting orbit within ([\de-]+):": ends._CLOSING_DISTANCE,
         r"first differences only: ξ = ([\de-]+)\.": normal_forms._SMALL_AMPLITUDE,
         r"The others have ξ = ([\de-]+),": normal_forms._AMPLITUDE,
