@@ -9,7 +9,8 @@ from .common import say
 
 if TYPE_CHECKING:
     from granchain_core import Driven, Run, Scene
-    from granchain_core.results.run import Cost, LargestForces
+    from granchain_core.results.forces import LargestForces
+from granchain_core.results.run import Cost
 
 
 def scene_json(scene: Scene) -> dict[str, Any]:

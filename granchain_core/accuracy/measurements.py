@@ -1,4 +1,4 @@
-"""What `work_precision` measured: a row for each method and setting, and the references they are compared with."""
+"""Results of `work_precision`: a row for each method and setting, and the references they are compared with."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ class WorkPrecision(Labelled):
             **column("failure", "", "why there is neither error nor time; empty where there are", object)}),)
 
     def attributes(self) -> dict[str, Attribute]:
-        """Both references and how well they agree, and where it comes from."""
+        """Both references, their agreement, and the provenance."""
         return {**provenance(self.scene, self.reference, None), "reference": self.reference,
                 "second": self.second, "agreement": self.agreement, "disagreement": self.disagreement}
 

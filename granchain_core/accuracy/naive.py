@@ -21,7 +21,7 @@ NATURAL_STEPS = (100, 200, 500, 1000, 2000)
 _SAMPLES = 100
 #: Drive periods run from rest. Without a drive it is one time 1/f.
 _RUN = 10
-#: The last of them, which are shown: a 1:3 resonance pushes once in three.
+#: Last drive periods, which are shown: in a 1:3 resonance there is one strong push in three.
 _SHOWN = 3
 #: Reference.
 _TRUE = dop853_setting(1e-11)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -33,7 +33,7 @@ _REFERENCE = dop853_setting(3e-15)
 _SECOND = ("DOP853", 1e-14)
 #: Time after which a setting is abandoned [s].
 _ROW_LIMIT = 8.0
-#: The same for a reference [s].
+#: Time after which a reference is abandoned [s].
 _REFERENCE_LIMIT = 60.0
 #: A setting is repeated for this time [s]; the fastest run counts, so that neither a compiler nor another
 #: process is measured.
@@ -50,7 +50,7 @@ _BRIEF = 0.1
 class Computed(NamedTuple):
     """One computation: displacements in scaled units, evaluations, and the seconds it took."""
 
-    moved: np.ndarray
+    displacement: np.ndarray
     rhs: int
     seconds: float
 
@@ -97,41 +97,45 @@ def work_precision(scene: Scene, stop: Stop | None = None, progress: Callable[[f
     (True, True)
     """
     stop = Stop() if stop is None else stop
-    todo = list(measured_settings())
-    total, done = 2 * len(todo) + 3, 0
-
-    def advance() -> None:
-        nonlocal done
-        done += 1
+    settings = list(measured_settings())
+    parts = 2 * len(settings) + 3
+    comparison = WorkPrecision(scene, f"dop853 with located events, tolerance {_REFERENCE.tolerance:g}",
+                               f"SciPy DOP853, started anew at contact events, tolerance {_SECOND[1]:g}")
+    for done, _ in enumerate(_measured_parts(comparison, settings, stop), start=1):
         if report is not None:
             report(comparison)
         if progress is not None:
-            progress(done / total)
+            progress(done / parts)
         if pause is not None:
             pause()
         if stop:
             raise Cancelled
+    return comparison
 
-    comparison = WorkPrecision(scene, f"dop853 with located events, tolerance {_REFERENCE.tolerance:g}",
-                          f"SciPy DOP853, started anew at contact events, tolerance {_SECOND[1]:g}")
+
+def _measured_parts(comparison: WorkPrecision, settings: Sequence[MeasuredSetting], stop: Stop) -> Iterator[None]:
+    """Fill in the comparison; yields after each part.
+
+    The parts are the reference, the lesson, each setting in two rounds, and the second reference.
+    """
+    scene = comparison.scene
     compile_methods(scene.evolve(f=max(scene.f, 1000.0)))  # else a method's first row would include compiling
-    exact = _within("The reference", stop, _REFERENCE_LIMIT, lambda stop: _ours(scene, _REFERENCE, stop)).moved
-    advance()
+    exact = _within("The reference", stop, _REFERENCE_LIMIT, lambda stop: _ours(scene, _REFERENCE, stop)).displacement
+    yield
     comparison.lesson = lesson(scene, stop)
-    advance()
-    for choice in todo:
-        comparison.rows.append(_row(scene, choice, exact, stop))
-        advance()
-    for place, choice in enumerate(todo):
-        comparison.rows[place] = _faster(comparison.rows[place], scene, choice, exact, stop)
-        advance()
+    yield
+    for setting in settings:
+        comparison.rows.append(_row(scene, setting, exact, stop))
+        yield
+    for number, setting in enumerate(settings):
+        comparison.rows[number] = _faster(comparison.rows[number], scene, setting, exact, stop)
+        yield
     try:
-        other = _within("It", stop, _REFERENCE_LIMIT, lambda stop: _scipys(scene, *_SECOND, stop, located=True))
-        comparison.agreement = _distance(other.moved, exact)
+        second = _within("It", stop, _REFERENCE_LIMIT, lambda stop: _scipys(scene, *_SECOND, stop, located=True))
+        comparison.agreement = _distance(second.displacement, exact)
     except ComputationError as problem:
         comparison.disagreement = problem.sentence
-    advance()
-    return comparison
+    yield
 
 
 def compile_methods(scene: Scene) -> None:
@@ -153,7 +157,7 @@ def _row(scene: Scene, choice: MeasuredSetting, exact: np.ndarray, stop: Stop) -
         best = _fastest(stop, measure)
     except (ComputationError, BadInput) as problem:
         return Row(choice.method, choice.label, float("inf"), 0.0, 0, choice.value, str(problem))
-    return Row(choice.method, choice.label, _distance(best.moved, exact), best.seconds, best.rhs, choice.value)
+    return Row(choice.method, choice.label, _distance(best.displacement, exact), best.seconds, best.rhs, choice.value)
 
 
 def _faster(before: Row, scene: Scene, choice: MeasuredSetting, exact: np.ndarray, stop: Stop) -> Row:

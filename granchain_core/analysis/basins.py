@@ -80,8 +80,9 @@ class Basins(Labelled):
     def summary(self) -> list[str]:
         """The plane, and the fraction of it that leads to each attractor."""
         return [f"{len(self.x[1])} × {len(self.y[1])} starts over {self.x[0]} and {self.y[0]}",
-                *(f"{i}: {100.0 * share:.0f} %, {one.regime.sentence}, output force up to {one.max_output_force:.4g} N"
-                  for i, (one, share) in enumerate(zip(self.attractors, self.shares, strict=True), 1))]
+                *(f"{i}: {100.0 * share:.0f} %, {attractor.regime.sentence}, output force up to "
+                  f"{attractor.max_output_force:.4g} N"
+                  for i, (attractor, share) in enumerate(zip(self.attractors, self.shares, strict=True), 1))]
 
 
 def basins(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, Iterable[float]], stop: Stop | None = None,

@@ -38,7 +38,7 @@ from ..tables.words import state_columns
 _APART = 1e-3
 #: An orbit is refined to this fraction of the accuracy asked for: the error of its strobes is stated with a factor.
 _REFINED_FRACTION = 0.1
-#: What the error of a value's strobes is.
+#: Meaning of the error of a value's strobes.
 _ERROR = "largest error of a strobe over the largest displacement or velocity, NaN where none is stated"
 #: Most values of the knob.
 MOST_VALUES = 20_000

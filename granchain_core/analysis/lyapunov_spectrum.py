@@ -30,9 +30,9 @@ from ..steady.settling.nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS
 from ..tables import Column, Labelled, Table, axis, or_nan, provenance
 from ..tables.provenance import Attribute
 
-#: Directions that shrink in one period by more than this fraction of the one that grows most are rounding.
+#: Directions whose stretching in one period is at most this fraction of the largest are rounding.
 _ROUNDING = 1e-12
-#: First periods, which are not counted: the directions align with those that grow at the rates of the exponents.
+#: First periods, which are left out of the means: in them the directions align with those of the exponents.
 _ALIGNMENT_PERIODS = 50
 #: Most periods of one measurement.
 MOST_SPECTRUM_PERIODS = 1_000_000
@@ -103,7 +103,10 @@ class LyapunovSpectrum(Labelled):
 
     @property
     def liouville(self) -> float | None:
-        """Difference of their sum from the mean trace, over the larger of it and 1; None unless all are resolved."""
+        """Difference of the exponents' sum from the mean trace, over the larger of |mean trace| and 1.
+
+        None unless all exponents are resolved.
+        """
         if self.resolved < len(self.exponents):
             return None
         return float(abs(self.exponents.sum() - self.mean_trace) / max(1.0, abs(self.mean_trace)))
@@ -196,11 +199,23 @@ def lyapunov_spectrum(scene: Scene, periods: int = 400, start: State | None = No
     check_range("N =", scene.N, 1, MOST_BEADS_WITH_MULTIPLIERS)
     stroboscopic_map = StroboscopicMap(scene, 1, stop)
     x = stroboscopic_map.inner(run_until_settled(scene, start, stop).engine.y)
-    size = len(x)
-    total_periods = _ALIGNMENT_PERIODS + periods
-    directions, growth, traces = np.eye(size), np.zeros((total_periods, size)), np.zeros(total_periods)
-    rounding = np.zeros(size, dtype=bool)
-    for p in range(total_periods):
+    growth, traces, resolved = _growth(stroboscopic_map, x, _ALIGNMENT_PERIODS + periods, progress)
+    exponents, errors = _exponents(growth[_ALIGNMENT_PERIODS:])
+    # the factorization puts them in this order in the limit only: near ones may have changed places
+    order = np.concatenate([np.argsort(-exponents[:resolved], kind="stable"), np.arange(resolved, len(x))])
+    mean_trace = float(traces[_ALIGNMENT_PERIODS:].mean())
+    return LyapunovSpectrum(scene, exponents[order], errors[order], resolved, periods, mean_trace)
+
+
+def _growth(stroboscopic_map: StroboscopicMap, x: np.ndarray, periods: int,
+            progress: Callable[[float], None] | None) -> tuple[np.ndarray, np.ndarray, int]:
+    """Logarithms of the stretching of 2N orthogonal directions in each period (P, 2N), and ∫ trace over it (P,).
+
+    The third value is the number of leading directions whose stretching is above rounding in every period.
+    """
+    directions, growth, traces = np.eye(len(x)), np.zeros((periods, len(x))), np.zeros(periods)
+    rounding = np.zeros(len(x), dtype=bool)
+    for p in range(periods):
         flow = stroboscopic_map(x, directions=directions)
         directions, triangle = np.linalg.qr(flow.derivative)
         stretching = np.abs(np.diag(triangle))
@@ -208,16 +223,16 @@ def lyapunov_spectrum(scene: Scene, periods: int = 400, start: State | None = No
         growth[p] = np.log(np.maximum(stretching, np.finfo(float).tiny))
         x, traces[p] = flow.end, flow.log_determinant
         if progress is not None:
-            progress((p + 1) / total_periods)
-    counted = growth[_ALIGNMENT_PERIODS:]
-    blocks = np.array([part.mean(axis=0) for part in np.array_split(counted, _BLOCKS)])
-    resolved = int(np.argmax(rounding)) if rounding.any() else size
-    exponents, errors = counted.mean(axis=0), blocks.std(axis=0, ddof=1) / np.sqrt(_BLOCKS)
-    errors = np.maximum(errors, _swing(counted - exponents) / (2.0 * periods))
-    # the factorization puts them in this order in the limit only: near ones may have changed places
-    order = np.concatenate([np.argsort(-exponents[:resolved], kind="stable"), np.arange(resolved, size)])
-    mean_trace = float(traces[_ALIGNMENT_PERIODS:].mean())
-    return LyapunovSpectrum(scene, exponents[order], errors[order], resolved, periods, mean_trace)
+            progress((p + 1) / periods)
+    return growth, traces, int(np.argmax(rounding)) if rounding.any() else len(x)
+
+
+def _exponents(growth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Means (n,) of the growth (P, n) over the periods, and their standard errors."""
+    exponents = growth.mean(axis=0)
+    blocks = np.array([part.mean(axis=0) for part in np.array_split(growth, _BLOCKS)])
+    errors = blocks.std(axis=0, ddof=1) / np.sqrt(_BLOCKS)
+    return exponents, np.maximum(errors, _swing(growth - exponents) / (2.0 * len(growth)))
 
 
 def _swing(deviations: np.ndarray) -> np.ndarray:

@@ -35,9 +35,9 @@ _LONGEST_DURATION = 1.5
 #: changes it by 9 b s² h²: by four times the error at s = h/2, by three times near s = 0. Twice as much is stated. The
 #: same holds for the place of the maximum, which is wrong by (b/a) s (4s² − h²) and changes by 3 (b/a) s h².
 _ERROR_OVER_CHANGE = 2.0 / 3.0
-#: The same for the time above half height. A straight line between samples places a crossing at the part θ of its
-#: interval wrongly by a multiple of θ(1 − θ), and twice the spacing changes that by the same multiple of θ or 1 − θ: by
-#: the error itself, or more.
+#: Stated error of the time above half height, divided by its change with every second sample. A straight line between
+#: samples places a crossing at the part θ of its interval wrongly by a multiple of θ(1 − θ), and twice the spacing
+#: changes that by the same multiple of θ or 1 − θ: by the error itself, or more.
 _WIDTH_ERROR_OVER_CHANGE = 2.0
 
 

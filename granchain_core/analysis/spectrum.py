@@ -74,7 +74,7 @@ class Spectrum(Labelled):
         NaN where the run states no error.
         """
         stated = (getattr(self.run.force_errors, self.force), self.run.displacement_error)
-        known = [one for one in stated if one is not None]
+        known = [error for error in stated if error is not None]
         return self.aliasing + max(known) * float(np.abs(self.run.force).max()) if known else math.nan
 
     @property

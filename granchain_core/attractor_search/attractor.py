@@ -9,9 +9,9 @@ import numpy as np
 
 from ..orbits import Orbit
 from ..orbits.stroboscopic_map import FLOW_METHOD
+from ..results.forces import ForceErrors
 from ..results.regime import Regime
 from ..results.regime_columns import evidence_columns, regime_columns
-from ..results.run import ForceErrors
 from ..scene import Scene
 from ..scene.state import State
 from ..steady.batch.starts import settling_methods
@@ -90,7 +90,7 @@ class Attractor:
 
     @property
     def share_words(self) -> str:
-        """Its share with the standard error in per cent, "–" where there is none."""
+        """The share with the standard error in per cent, "–" where there is none."""
         if self.share is None:
             return "–"
         error = "" if self.share_error is None else f" ± {100.0 * self.share_error:.0f}"
@@ -133,12 +133,12 @@ class Attractors(list[Attractor], Labelled):
         return (attractors_table(self.scene, self),)
 
     def attributes(self) -> dict[str, Attribute]:
-        """Where they come from."""
-        errors = [one.force_errors.output for one in self if one.force_errors.output is not None]
+        """Provenance, and the largest error of a force."""
+        errors = [attractor.force_errors.output for attractor in self if attractor.force_errors.output is not None]
         return dict(provenance(self.scene, attractor_methods(self.scene, self), max(errors) if errors else None))
 
     def summary(self) -> list[str]:
-        """How many, a line for each, and the starts that failed."""
+        """The number of steady states, a line for each, and the starts that failed."""
         return [f"{len(self)} found", *(f"{i}: {line}" for i, line in enumerate(listing(self), 1)),
                 *failed_sentence(self.failed)]
 
@@ -148,29 +148,31 @@ class Attractors(list[Attractor], Labelled):
 
 def attractor_methods(scene: Scene, listed: Iterable[Attractor]) -> str:
     """The methods behind the attractors of `scene` in words, for their provenance."""
-    has_orbits = any(one.orbit is not None for one in listed)
+    has_orbits = any(attractor.orbit is not None for attractor in listed)
     return settling_methods(scene, "start") + (f"; orbits by {FLOW_METHOD}" if has_orbits else "")
 
 
 def attractors_table(scene: Scene, listed: Sequence[Attractor]) -> Table:
     """Steady states as a table."""
     along = ("attractor",)
-    forces = np.array([[getattr(one, name) for name in MAXIMA] for one in listed]).reshape(-1, 3)
-    errors = np.array([one.force_errors.row for one in listed]).reshape(-1, 3)
-    stable = np.array([-1 if one.stable is None else int(one.stable) for one in listed], dtype=np.int8)
-    starts = np.array([", ".join(origin.name for origin in one.origins) for one in listed], dtype=object)
-    states = np.array([[one.state.displacement, one.state.velocity] for one in listed]).reshape(-1, 2, scene.N)
+    forces = np.array([[getattr(attractor, name) for name in MAXIMA] for attractor in listed]).reshape(-1, 3)
+    errors = np.array([attractor.force_errors.row for attractor in listed]).reshape(-1, 3)
+    stable = np.array([-1 if attractor.stable is None else int(attractor.stable) for attractor in listed],
+                      dtype=np.int8)
+    starts = np.array([", ".join(origin.name for origin in attractor.origins) for attractor in listed], dtype=object)
+    states = np.array([[attractor.state.displacement, attractor.state.velocity]
+                       for attractor in listed]).reshape(-1, 2, scene.N)
     return Table("attractors", {
         **axis("attractor", np.arange(1, len(listed) + 1), "1", "number of the steady state"), **bead_axis(scene.N)}, {
         **force_columns(forces, along), **error_columns(errors, along),
-        **regime_columns([one.regime for one in listed], "attractor"),
-        **evidence_columns([one.regime for one in listed], "attractor"),
+        **regime_columns([attractor.regime for attractor in listed], "attractor"),
+        **evidence_columns([attractor.regime for attractor in listed], "attractor"),
         "stable": Column(stable, along, "1", "1 if no multiplier of its orbit is outside, 0 if one is, -1 unknown"),
-        "share": Column(np.array([or_nan(one.share) for one in listed]), along, "1",
+        "share": Column(np.array([or_nan(attractor.share) for attractor in listed]), along, "1",
                         "fraction of the random states, or of a plane's starts, that end here"),
-        "share_error": Column(np.array([or_nan(one.share_error) for one in listed]), along, "1",
+        "share_error": Column(np.array([or_nan(attractor.share_error) for attractor in listed]), along, "1",
                               "standard error of the share"),
-        "share_of": Column(np.array([one.share_of for one in listed], dtype=object), along, "",
+        "share_of": Column(np.array([attractor.share_of for attractor in listed], dtype=object), along, "",
                            "which starts the share is a fraction of"),
         "starts": Column(starts, along, "", "starts that end here"),
         **state_columns(states[:, 0], states[:, 1], ("attractor", "bead"))})
@@ -184,7 +186,7 @@ def listing(attractors_found: Sequence[Attractor]) -> Iterator[str]:
 
 
 def failed_sentence(failed: Sequence[Origin]) -> list[str]:
-    """The starts that have no steady state in one sentence, the first of them by name; empty where there is none."""
+    """One sentence about the starts without a steady state, which names the first; empty where there is none."""
     if not failed:
         return []
     names = ", ".join(origin.name for origin in failed[:_NAMED])

@@ -16,8 +16,8 @@ from ..errors import ComputationError
 from ..execution.stop import Stop
 from ..inputs.checks import whole_number
 from ..integrate import Engine, following_setting
+from ..results.forces import ForceErrors
 from ..results.regime import Regime
-from ..results.run import ForceErrors
 from ..scene import Scene
 from ..scene.refusals import require_scene
 from ..scene.state import State, rest
@@ -28,7 +28,7 @@ from ..steady.regime_criteria import find_period, grows, is_neutral, rounding_of
 from ..steady.settling.regime_decisions import REMEMBERED
 from ..steady.steady_state import SteadyState
 from .attractor import Attractor, Attractors, Origin
-from .sameness import Found, found, merged
+from .sameness import Candidate, merged, with_section
 
 #: [attractors] Frequencies of a sweep before the one asked for.
 _SWEEP_POINTS = 8
@@ -102,7 +102,7 @@ def attractors(scene: Scene, random_states: int = 64, seed: int = 0, stop: Stop 
 
 
 def _random_count(origins: list[Origin]) -> int:
-    """How many of these starts are random states."""
+    """Number of random states among these starts."""
     return sum(origin.name.startswith("random") for origin in origins)
 
 
@@ -117,18 +117,18 @@ def attractors_from(scene: Scene, origins: list[Origin], stop: Stop | None = Non
     if results and not any(not result.failure for result in results):
         raise ComputationError(results[0].failure, "not-finite")
     failed = {result.number for result in results if result.failure}
-    groups = merged([found(result) for result in results if not result.failure])
+    groups = merged([with_section(result) for result in results if not result.failure])
     for _ in range(_MOST_ROUNDS):
         left = [group for group in groups if group[0].unstable or _locks(group[0], stop)]
         if not left:
             break
         again = [start for group in left for start in (_beside if group[0].unstable else _later)(group, stop)]
-        kept = [one for group in groups if group not in left for one in group]
-        ran = {one.result.number: one.result.regime.periods_run
-               + (_DEPARTURE_PERIODS if group[0].unstable else _LATER_PERIODS) for group in left for one in group}
+        kept = [member for group in groups if group not in left for member in group]
+        ran = {member.result.number: member.result.regime.periods_run
+               + (_DEPARTURE_PERIODS if group[0].unstable else _LATER_PERIODS) for group in left for member in group}
         results = _settled(again, stop)
         failed |= {result.number for result in results if result.failure}
-        moved = [found(_counted(result, ran[result.number])) for result in results if not result.failure]
+        moved = [with_section(_counted(result, ran[result.number])) for result in results if not result.failure]
         groups = merged(kept + moved)
     return [_attractor(group, origins) for group in groups], [origins[number] for number in sorted(failed)]
 
@@ -149,7 +149,7 @@ def _settled(starts: list[Start], stop: Stop | None,
     return sorted(results, key=lambda result: result.number)
 
 
-def _beside(group: list[Found], stop: Stop | None) -> Iterator[Start]:
+def _beside(group: list[Candidate], stop: Stop | None) -> Iterator[Start]:
     """New starts near the orbit for all results on an unstable orbit."""
     orbit = group[0].orbit
     assert orbit is not None
@@ -160,14 +160,14 @@ def _beside(group: list[Found], stop: Stop | None) -> Iterator[Start]:
         yield Start(orbit.scene, _run_on(orbit.scene, near, _DEPARTURE_PERIODS, stop)[0], member.result.number)
 
 
-def _later(group: list[Found], stop: Stop | None) -> Iterator[Start]:
+def _later(group: list[Candidate], stop: Stop | None) -> Iterator[Start]:
     """New starts for all results of a group, where each motion is after `_LATER_PERIODS`."""
-    for one in group:
-        result = one.result
+    for member in group:
+        result = member.result
         yield Start(result.scene, _run_on(result.scene, result.state, _LATER_PERIODS, stop)[0], result.number)
 
 
-def _locks(candidate: Found, stop: Stop | None) -> bool:
+def _locks(candidate: Candidate, stop: Stop | None) -> bool:
     """Whether a motion that does not repeat comes to an orbit after all, within `_LATER_PERIODS`."""
     if candidate.result.regime.period is not None:
         return False
@@ -225,16 +225,17 @@ def or_infinite(error: float | None) -> float:
     return math.inf if error is None else error
 
 
-def _attractor(group: list[Found], origins: list[Origin]) -> Attractor:
+def _attractor(group: list[Candidate], origins: list[Origin]) -> Attractor:
     """The attractor of a group: forces with the least error, or in an irregular group the largest of any member."""
-    best = min((one.result for one in group), key=lambda result: or_infinite(result.output_force_error))
+    best = min((member.result for member in group), key=lambda result: or_infinite(result.output_force_error))
     first, maxima = group[0], best.maxima
     if first.result.regime.period is None:
-        maxima = np.max([one.result.maxima for one in group], axis=0)
-    regime = _regime([one.result.regime for one in group])
+        maxima = np.max([member.result.maxima for member in group], axis=0)
+    regime = _regime([member.result.regime for member in group])
     state = first.result.state if first.orbit is None else first.orbit.state
     return Attractor(best.scene, regime, float(maxima[0]), float(maxima[1]), float(maxima[2]),
-                     ForceErrors.of(best.errors), state, first.orbit, [origins[one.result.number] for one in group])
+                     ForceErrors.of(best.errors), state, first.orbit,
+                     [origins[member.result.number] for member in group])
 
 
 def _regime(regimes: list[Regime]) -> Regime:
@@ -245,12 +246,12 @@ def _regime(regimes: list[Regime]) -> Regime:
     is judged as if it had been measured over the shortest P, and whether it is neutral by the error of a single one.
     """
     known = [regime.lyapunov for regime in regimes if regime.lyapunov is not None]
-    periods = min((one.lyapunov_periods for one in regimes if one.lyapunov_periods is not None),
+    periods = min((regime.lyapunov_periods for regime in regimes if regime.lyapunov_periods is not None),
                   default=MEASURED_PERIODS - TURNING_PERIODS)
     if regimes[0].period is not None or not known:
         return regimes[0]
     mean, error = sum(value for value, _ in known) / len(known), math.sqrt(sum(e**2 for _, e in known)) / len(known)
-    names = {one.name for one in regimes}
+    names = {regime.name for regime in regimes}
     if len(names) == 1:
         name = regimes[0].name
     elif grows(mean, error, periods):

@@ -1,4 +1,4 @@
-"""Comparing results: whether two of them are the same steady state.
+"""Comparing results: whether two results are the same steady state.
 
 docs/parameter-map.md ("All attractors of one setting") has the rules and the reasons.
 """
@@ -26,6 +26,11 @@ _LARGEST_DIFFERENCE = 1e-3
 _ORBIT_DIFFERENCE = 1e-7
 #: [attractors] Least value that 1 − |μ| of an orbit counts as.
 _LEAST_CONTRACTION = 1e-3
+#: [attractors] A result is on an unstable orbit if its distance is at most this factor times its tolerance, plus the
+#: distance below. A motion that only passes such an orbit is farther away.
+_UNSTABLE_FACTOR = 10.0
+#: [attractors] Distance that is added, relative to the largest displacement or w.
+_UNSTABLE_DISTANCE = 1e-6
 #: [attractors] Sections are different if their distance exceeds the distance between neighbouring states of one section
 #: by this factor.
 _SECTION_FACTOR = 3.0
@@ -37,10 +42,11 @@ _DOP853_SETTING = dop853_setting(1e-11)
 
 
 @dataclass(eq=False)
-class Found:
-    """One result with its section: n strobes of a periodic orbit, or the record of another motion, (P, 2, N).
+class Candidate:
+    """A result that may be the same steady state as another, with its section (P, 2, N).
 
-    `longer` holds longer records of a motion that is not periodic, by their number of states.
+    The section has the n strobes of a periodic orbit, or a record of strobes of another motion. `longer` holds longer
+    records of a motion that is not periodic, by their number of states.
     """
 
     result: SteadyState
@@ -50,9 +56,10 @@ class Found:
 
     @property
     def tolerance(self) -> float:
-        """How far its section may be from the true one, relative to the largest displacement or w.
+        """Error of the section's states, relative to the largest displacement or w.
 
-        0 where no error is stated: such a result is the same only as what it equals, and periodic ones all state one.
+        It is the stated error of the output force. Without a stated error, None, it is 0: such a result is merged with
+        an equal one only. Periodic results all state an error; others are compared by their sections.
         """
         if self.orbit is not None:
             return _ORBIT_DIFFERENCE / max(_LEAST_CONTRACTION, 1.0 - min(1.0, float(np.abs(self.orbit.multipliers[0]))))
@@ -68,14 +75,14 @@ class Found:
 
     @property
     def unstable(self) -> bool:
-        """Whether it is on an unstable orbit."""
+        """Whether the result is on an unstable orbit."""
         return self.orbit is not None and not self.orbit.stable
 
 
-def found(result: SteadyState) -> Found:
+def with_section(result: SteadyState) -> Candidate:
     """A result with the section of its motion."""
     period = result.regime.period
-    return Found(result, _strobes(result.scene, result.state, period, _setting(result)) if period
+    return Candidate(result, _strobes(result.scene, result.state, period, _setting(result)) if period
                  else _section(result, _STATES_OF_SECTION[0]))
 
 
@@ -103,18 +110,19 @@ def _strobes(scene: Scene, state: State, periods: int, setting: MethodSetting) -
     return np.array(rows).reshape(periods, 2, -1)[:, :, 1:-1]
 
 
-def merged(results: list[Found]) -> list[list[Found]]:
-    """Results grouped by attractor; the first of a group represents it."""
-    groups: list[list[Found]] = []
-    for one in results:
-        _join(groups, [one])
-    polished: list[list[Found]] = []
+def merged(results: list[Candidate]) -> list[list[Candidate]]:
+    """Results grouped by attractor; the first result of a group represents the group."""
+    groups: list[list[Candidate]] = []
+    for candidate in results:
+        _join(groups, [candidate])
+    polished: list[list[Candidate]] = []
     for group in groups:
         _join(polished, [_polished(group[0]), *group[1:]])
     return polished
 
 
-def _join(groups: list[list[Found]], new: list[Found]) -> None:
+def _join(groups: list[list[Candidate]], new: list[Candidate]) -> None:
+    """Add the results `new` of one attractor to its group, or make them a new group."""
     for group in groups:
         if _same(group[0], new[0]):
             group.extend(new)
@@ -122,8 +130,8 @@ def _join(groups: list[list[Found]], new: list[Found]) -> None:
     groups.append(new)
 
 
-def _polished(candidate: Found) -> Found:
-    """The result on its converged orbit, if Newton's method ends on the orbit that it began at."""
+def _polished(candidate: Candidate) -> Candidate:
+    """The result on its converged orbit, if Newton's method ends on the orbit where it began."""
     period = candidate.result.regime.period
     if period is None or candidate.orbit is not None:
         return candidate
@@ -135,15 +143,16 @@ def _polished(candidate: Found) -> Found:
             orbit = periodic_orbit(candidate.result.scene, shortest, orbit.state)
     except (BadInput, ComputationError):  # a scene that cuts tension has no converged orbits
         return candidate
-    # states are known less well than forces; a stable orbit that is as near as this is the one the motion settled on
-    most = _LARGEST_DIFFERENCE if orbit.stable else 10.0 * candidate.tolerance + 1e-6
+    # states are known less well than forces; a motion this near to a stable orbit has settled on it
+    most = _LARGEST_DIFFERENCE if orbit.stable else _UNSTABLE_FACTOR * candidate.tolerance + _UNSTABLE_DISTANCE
     if _distance(section, candidate.section) > most:
         return candidate
     result = replace(candidate.result, regime=replace(candidate.result.regime, period=shortest))
-    return Found(result, section[:shortest], orbit)
+    return Candidate(result, section[:shortest], orbit)
 
 
-def _same(a: Found, b: Found) -> bool:
+def _same(a: Candidate, b: Candidate) -> bool:
+    """Whether two results are the same steady state."""
     if a.result.regime.period != b.result.regime.period:
         return False
     if a.result.regime.period is not None:

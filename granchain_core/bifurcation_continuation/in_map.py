@@ -21,7 +21,8 @@ from ..orbits import Orbit, periodic_orbit
 from ..orbits.stroboscopic_map import refuse_cut
 from ..parameter_maps.cells import CELL_REGIMES, ParameterMap
 from ..scene.quantities import QUANTITIES
-from .continuation import END_WORDS, REACHED, BifurcationPoint, bifurcation_point, follow_curve
+from .continuation import END_WORDS, REACHED, follow_curve
+from .point import BifurcationPoint, bifurcation_point
 
 #: Steps in which an orbit is carried from its cell to the neighbour.
 _STEPS = 6
@@ -151,7 +152,7 @@ def bifurcation_curves(parameter_map: ParameterMap, rows: Iterable[int] | None =
 
 
 def _pairs(parameter_map: ParameterMap, row: int) -> Iterator[_Pair]:
-    """Neighbours in a row of which one is periodic and the other something else."""
+    """Neighbouring cells of a row, the first periodic, the second not or with another period."""
     width = parameter_map.grid.shape[1]
     regimes, periods = parameter_map.cells["regime"], parameter_map.cells["period"]
     names = np.array(CELL_REGIMES)[regimes]
@@ -167,7 +168,7 @@ def _pairs(parameter_map: ParameterMap, row: int) -> Iterator[_Pair]:
 
 
 def _kinds(period: int, neighbour_period: int, regime: str) -> tuple[str, ...]:
-    """What to try between an orbit of `period` and a neighbour of this regime and period, 0 where it has none."""
+    """Kinds to try between an orbit of `period` and a neighbour of this regime and period, 0 where it has none."""
     if regime in ("unsettled", "failed") or period == 2 * neighbour_period:
         return ()
     if regime == "quasi-periodic":
@@ -190,7 +191,7 @@ def _between(parameter_map: ParameterMap, pair: _Pair, stop: Stop | None) -> tup
 
 
 def _point_between(parameter_map: ParameterMap, pair: _Pair, kind: str, stop: Stop | None) -> BifurcationPoint | None:
-    """The point of one kind, from the orbit that comes nearest to it; None where there is none."""
+    """The point of this kind, sought from the orbit nearest to its condition; None where there is none."""
     grid = parameter_map.grid
     columns = [number % grid.shape[1] for number in (pair.inside, pair.outside)]
     a, b = (grid.x.values[column] for column in columns)
@@ -216,7 +217,7 @@ def _point_between(parameter_map: ParameterMap, pair: _Pair, kind: str, stop: St
 
 
 def _away(orbit: Orbit, kind: str) -> float:
-    """How far the multipliers of an orbit are from meeting a condition."""
+    """Distance of an orbit's multipliers from the condition of this kind."""
     if kind == "neimark_sacker":
         pairs = orbit.multipliers[np.abs(orbit.multipliers.imag) > 0.0]
         return float(np.abs(np.abs(pairs) - 1.0).min()) if len(pairs) else np.inf

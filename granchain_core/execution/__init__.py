@@ -1,1 +1,1 @@
-"""How long computations are executed: processors, child processes, checkpoints, the stop flag, their time."""
+"""Execution of long computations: processors, child processes, checkpoints, the stop flag, their time."""

@@ -47,7 +47,7 @@ class Columns:
 
 
 def kinds_of(quantities: Sequence[str]) -> list[str]:
-    """What a file with these quantities can be, the likeliest first."""
+    """Kinds of measurement that a file with these quantities can hold, the likeliest first."""
     present = set(quantities)
     kinds = []
     if "frequency" in present and "time" not in present:

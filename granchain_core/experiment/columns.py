@@ -31,7 +31,7 @@ Chosen = dict[str, list[tuple[int, str]]]
 
 @dataclass(frozen=True)
 class Convention:
-    """What a reader takes for granted where a file does not say it.
+    """Assumptions of a reader where a file says nothing.
 
     Attributes
     ----------

@@ -27,7 +27,7 @@ class Difference:
 
     @property
     def compared(self) -> np.ndarray:
-        """Where there is a model."""
+        """Points at which there is a model value."""
         return np.isfinite(self.model)
 
     @property

@@ -18,7 +18,7 @@ from .grid import Row
 
 #: The mark of a tar archive (POSIX.1-1988, ustar).
 _TAR_MARK = b"ustar"
-#: Its place in the header [bytes].
+#: Place of the mark in the header [bytes].
 _TAR_PLACE = 257
 #: Largest project within an archive [bytes]: an archive states sizes that its content need not have.
 _MOST_PROJECT = 20_000_000

@@ -21,7 +21,7 @@ class Feature:
 
     @property
     def is_resonance(self) -> bool:
-        """Whether it is a peak (and not a valley)."""
+        """Whether the extremum is a peak (and not a valley)."""
         return "anti" not in self.kind
 
 

@@ -23,7 +23,7 @@ from .text_table import decimal_of, number_of, read_text_table
 
 @dataclass(frozen=True)
 class Reading:
-    """How a file is to be read.
+    """Instructions for reading a file.
 
     Attributes
     ----------

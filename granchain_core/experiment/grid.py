@@ -20,10 +20,10 @@ _BOMS = ((codecs.BOM_UTF8, "utf-8-sig", "UTF-8"), (codecs.BOM_UTF32_LE, "utf-32"
          (codecs.BOM_UTF16_BE, "utf-16", "UTF-16"))
 #: A number in any dialect: digits with points, commas, apostrophes and spaces among them, and an exponent.
 LIKE_A_NUMBER = re.compile(r"[+-]?(\d[\d.,'’ ]*|[.,]\d+)([eEdD][+-]?\d+)?", re.ASCII)
-#: What begins with the sign of comments but is an error of a spreadsheet.
+#: Error values of spreadsheets, which begin with the sign of comments.
 _EXCEL_ERRORS = ("#DIV/0!", "#N/A", "#NAME?", "#NULL!", "#NUM!", "#REF!", "#VALUE!", "#WERT!", "#ZAHL!", "#NV")
 _COMMENT = ("#", "%", "//")
-#: What other files begin with, and what to do with them.
+#: First bytes of files that are no tables, and what to do with such a file.
 _FOREIGN = ((b"PK\x03\x04", "is an Excel workbook (or another ZIP file); save the sheet as CSV"),
             (b"\xd0\xcf\x11\xe0", "is an old Excel workbook; save the sheet as CSV"),
             (b"CDF\x01", "is a netCDF file of the classic kind; convert it with nccopy -k netCDF-4"),
@@ -138,7 +138,7 @@ def _separator(lines: list[tuple[int, str]]) -> str:
 
 
 def _numbers(fields: list[str], mark: str) -> int:
-    """How many fields look like numbers; one that holds another separator than a decimal comma does not."""
+    """Number of fields that look like numbers; one that holds another separator than a decimal comma does not."""
     return sum(bool(LIKE_A_NUMBER.fullmatch(one)) and not re.search(r"\d \d(?!\d\d)", one) for one in fields)
 
 

@@ -78,7 +78,7 @@ def _group(stored: dict[str, Stored]) -> list[str]:
 
 
 def _guess(place: int, name: str, units: str | None) -> Guess:
-    """What a row's name and its attribute `units` say."""
+    """Quantity and unit of a row by its name and its attribute `units`."""
     bare = name.rpartition("/")[2]
     if not units:
         quantity, unit, _ = heading(bare)
@@ -89,7 +89,7 @@ def _guess(place: int, name: str, units: str | None) -> Guess:
 
 
 def _note(file: File) -> str:
-    """What the file says about itself in the attributes that the CF conventions name."""
+    """The file's description of itself, in the attributes that the CF conventions name."""
     notes = []
     for name in ("title", "source", "comment", "history"):
         try:

@@ -8,7 +8,7 @@ import numpy as np
 
 #: Largest file with a measurement [bytes].
 MOST_BYTES = 50_000_000
-#: Most rows of it.
+#: Most rows of a measured table.
 MOST_ROWS = 1_000_000
 #: The words at the beginning of the note of data that were computed (granchain_core/virtual_experiment).
 VIRTUAL = "virtual experiment"
@@ -21,12 +21,12 @@ class Noted:
 
     @property
     def virtual(self) -> bool:
-        """Whether the data are a virtual experiment: nothing of them was measured."""
+        """Whether the data come from a virtual experiment; nothing was measured."""
         return self.note.startswith(VIRTUAL)
 
     @property
     def word(self) -> str:
-        """What the data are called in keys of pictures: "measured", or "virtual experiment"."""
+        """Name of the data in keys of pictures: "measured", or "virtual experiment"."""
         return VIRTUAL if self.virtual else "measured"
 
 

@@ -1,4 +1,4 @@
-"""How far a computed quantity is from a measured one, as one set of numbers and one set of words.
+"""The difference of a computed quantity from a measured one, as one set of numbers and one set of words.
 
 Equation   d = model − measured,   rms = √⟨d²⟩,   relative = rms / √⟨measured²⟩
 Note       Signed as everywhere: positive where the model is larger. Where the measured quantity is 0 throughout there

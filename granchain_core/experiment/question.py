@@ -18,7 +18,7 @@ _FIRST_ROWS = 5
 
 @dataclass(frozen=True)
 class Answers:
-    """What a person says about a file.
+    """A person's answers about a file.
 
     `columns` has for every quantity the columns that hold it, numbered from 1, with a unit or a sensitivity each;
     columns that are not named are left out. `dataset` names one of a digitiser's.
@@ -43,7 +43,7 @@ class Guess:
 
     @property
     def likely_unit(self) -> str:
-        """Its unit or, where none is known, the SI unit of its quantity; for a voltage a sensitivity as an example."""
+        """The unit or, where none is known, the SI unit of the quantity; for a voltage a sensitivity as an example."""
         usual = next(iter(UNITS[QUANTITIES[self.quantity or "frequency"]]))
         if self.unit in VOLTS:
             return f"2.248{self.unit}/{usual}"
@@ -52,7 +52,7 @@ class Guess:
 
 @dataclass(frozen=True)
 class Question:
-    """What is asked: `about` has "columns", "decimal" or "dataset"; the first rows are (line, fields)."""
+    """A question about a file: `about` is "columns", "decimal" or "dataset"; the first rows are (line, fields)."""
 
     reason: str
     about: tuple[str, ...]

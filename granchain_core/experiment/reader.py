@@ -16,7 +16,7 @@ from .measured import MOST_BYTES, MOST_ROWS, Measured
 from .question import Answers, Unclear
 from .series import Series, Shaker
 
-#: What a file can hold: a resonance curve, the shaker's amplitudes over frequency, a time series.
+#: Kinds of files: a resonance curve, the shaker's amplitudes over frequency, a time series.
 TABLE_KINDS = ("curve", "shaker", "series")
 
 

@@ -74,7 +74,7 @@ class Sensors:
 
     @property
     def words(self) -> str:
-        """What is not perfect about them, and their rate."""
+        """The imperfections of the sensors, and their rate."""
         parts = [(f"noise {self.noise:g} N", self.noise > 0.0),
                  (f"velocity noise {self.velocity_noise:g} m/s", self.velocity_noise > 0.0),
                  (f"bandwidth {self.bandwidth:g} Hz", math.isfinite(self.bandwidth)),

@@ -59,7 +59,7 @@ def _parted(grid: TextGrid) -> _Parts:
 
 
 def _width(rows: list[Row]) -> int:
-    """How many fields most rows with two numbers have."""
+    """Number of fields that most rows with two numbers have."""
     numeric = [len(fields) for _, fields in rows if _is_data(fields)]
     return max(set(numeric), key=numeric.count) if numeric else 0
 
@@ -69,12 +69,12 @@ def _is_data(fields: list[str]) -> bool:
 
 
 def _has_number(fields: list[str]) -> bool:
-    """Whether it may be a row of data in which something else than a number stands."""
+    """Whether the fields may be a row of data in which something else than a number stands."""
     return any(LIKE_A_NUMBER.fullmatch(one) for one in fields)
 
 
 def _is_units(fields: list[str], width: int) -> bool:
-    """Whether a row holds nothing but units, in brackets or not, one of them known."""
+    """Whether a row holds nothing but units, in brackets or not, at least one of which is known."""
     bare = [one.strip("[]() ") for one in fields]
     known, filled = sum(unit_named(one) is not None for one in bare), sum(bool(one) for one in bare)
     return len(fields) == width and (known >= 2 or known == filled == 1)
@@ -145,7 +145,7 @@ def read_text_table(grid: TextGrid, answers: Answers, wanted: Sequence[str], sou
 
 
 def _guess(place: int, parts: _Parts) -> Guess:
-    """What a column's title and the units row say of it."""
+    """Quantity and unit of a column by its title and the units row."""
     title = parts.titles[place] if parts.titles else ""
     quantity, unit, _ = heading(title) if title else (None, None, "")
     below = parts.units[place] if parts.units else ""

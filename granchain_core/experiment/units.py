@@ -73,7 +73,7 @@ def dimension_of(unit: str) -> str:
 
 
 def factor_of(quantity: str, unit: str, column: str | None = None) -> float | None:
-    """What a column's numbers are multiplied by for SI; None where `unit` is none of the quantity.
+    """Factor that takes a column's numbers to SI; None where `unit` is no unit of the quantity.
 
     A sensitivity as 2.248V/kN is a unit as well: of a column in volts, or in `column` where its header says mV.
     """
@@ -89,7 +89,7 @@ def factor_of(quantity: str, unit: str, column: str | None = None) -> float | No
 
 
 def heading(title: str) -> tuple[str | None, str | None, str]:
-    """What a column's title says: its quantity and its unit, None for what it does not say, and its bare name.
+    """Quantity and unit of a column by its title, None where the title does not say them, and its bare name.
 
     Understood: "Frequency (kHz)", "F [mN]", "f / Hz", "force, N", "time_ms", "velocity in mm/s", "Hz".
     """

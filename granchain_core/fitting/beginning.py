@@ -1,4 +1,4 @@
-"""Where a chain stands when a record begins that does not begin at rest: on its settled motion, at the record's phase.
+"""The start of a record that does not begin at rest: a state of the settled motion, at the drive phase of the record.
 
 Equation   v(t) = A0 ω cos(ωt + φ) by least squares over the record: φ is the drive phase at its first sample, and
            A0 sin φ the displacement of the driver there

@@ -78,11 +78,11 @@ class CurveTarget(Compared):
 
     @property
     def frequencies(self) -> np.ndarray:
-        """Where it was measured (F,) [Hz]."""
+        """The measured frequencies (F,) [Hz]."""
         return self.measured.frequency
 
     def where(self, datum: int) -> str:
-        """Where a datum was measured, in words."""
+        """The frequency of a datum, in words."""
         return f"at {self.frequencies[datum]:g} Hz"
 
     def evaluate(self, scene: Scene, amplitude: Amplitude | None, stop: Stop | None) -> Evaluation:

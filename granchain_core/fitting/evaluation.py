@@ -1,4 +1,4 @@
-"""What all targets of a fit have in common: their residuals with the model's values, and where errors come from.
+"""Common parts of all targets of a fit: residuals with the model's values, and the origin of errors.
 
 A residual is a difference over its standard deviation. A motion that is not periodic has no steady maximum and no
 train that comes back: for it the model predicts a distribution only, so the variance is enlarged by the model's own,
@@ -42,7 +42,7 @@ class Evaluation:
 
 
 class Compared:
-    """What most targets have in common: smooth residuals; errors that are given, or estimated from the fit."""
+    """Common part of most targets: smooth residuals; errors that are given, or estimated from the fit."""
 
     @property
     def smooth(self) -> bool:

@@ -102,7 +102,7 @@ def _others(best: np.ndarray, j: int) -> list[int]:
 
 def _end(problem: Problem, best: np.ndarray, j: int, ridge: np.ndarray, reach: float, top: float, lowest: float,
          rises: dict[float, float]) -> tuple[float, bool]:
-    """Where √Δχ² crosses its limit on the side of `reach`, by the secant between points below and above; whether open.
+    """The end of the interval on the side of `reach`, where √Δχ² crosses its limit, by secants; and whether it is open.
 
     The first point is `reach` away from the best one. `rises` gets the rise of the misfit at each value. Raises
     `BetterMinimum` where the misfit falls below the least by more than −`lowest`.

@@ -41,7 +41,7 @@ class Overlay:
 
     @property
     def sentence(self) -> str:
-        """How the series was moved, and the differences in words."""
+        """The shift of the series and the differences, in words."""
         if self.rms is None:
             return "The present motion does not repeat: the series is drawn from its own start, and no misfit is given."
         left = " and ".join(f"{rms:.3g} N for the {name.replace('_', ' ')}" for name, rms in self.rms.items())

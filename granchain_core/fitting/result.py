@@ -126,7 +126,7 @@ class Fit(Labelled):
 
     @property
     def limit(self) -> float:
-        """How far the misfit has risen at the ends of the 95 % intervals."""
+        """The rise of the misfit at the ends of the 95 % intervals."""
         return limit(self.scale, scale_degrees_of_freedom(self.target, self.degrees_of_freedom))
 
     def summary(self) -> list[str]:

@@ -124,7 +124,7 @@ class Problem:
         return np.concatenate([evaluation.residuals, self.priors(x), [np.sqrt(max(evaluation.log_variance, 0.0))]])
 
     def misfit(self, x: np.ndarray) -> float:
-        """What is made least: χ² and the logarithms of the variances, −2 ln of the likelihood but for a constant."""
+        """The quantity that is minimised: χ² and the logarithms of the variances, −2 ln L up to a constant."""
         return self._misfit(self.evaluate(x), np.clip(x, 0.0, 1.0))
 
     def chi_squared(self, x: np.ndarray) -> float:

@@ -18,10 +18,10 @@ from scipy.optimize import minimize_scalar
 from ..experiment.sensors import Sensors
 from ..results.run import Run
 
-#: How far around the best shift of the coarse search the best one is sought, in steps of that search: its neighbours
-#: are one step away.
+#: Half the range around the best shift of the coarse search in which the best shift is sought, in steps of the coarse
+#: search: the neighbours are one step away.
 _AROUND = 1.5
-#: How finely the best shift is found, in the same steps.
+#: Accuracy of the best shift, in the same steps.
 _FINE = 1e-4
 _PERFECT = Sensors()
 
@@ -61,7 +61,7 @@ class Train:
         return np.asarray((self._integral(time + 0.5 * width) - self._integral(time - 0.5 * width)) / width)
 
     def recorded(self, time: np.ndarray, width: float, sensors: Sensors) -> np.ndarray:
-        """What is recorded at `time` [s]: the force after a low-pass, or means over `width` [s] where there is none."""
+        """Recorded values at `time` [s]: the force after a low-pass, or means over `width` [s] where there is none."""
         if sensors.filters:
             return sensors.passed(self.time, self.force, time, periodic=True)
         return self.mean_over(time, width)

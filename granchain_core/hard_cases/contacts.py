@@ -57,7 +57,7 @@ def mirrored(beads: int, time: float, tolerance: float = 1e-13, cut: bool = Fals
 
 
 def reordered(beads: int, time: float, seed: int) -> float:
-    """How far a chain is from its mirror image, in which simultaneous events come in the other order.
+    """Distance of a chain from its mirror image, in which simultaneous events come in reversed order.
 
     Velocities are drawn from three values, so that collisions coincide without the whole being symmetric. The two take
     steps of their own, so their tolerance is far below the limit: at 1e-14 one of 200 chains was 1.2e-12 off, now

@@ -18,7 +18,7 @@ from .oracle import PlainChain, solved
 
 
 def scaled_difference(frequency: float, setting: MethodSetting, times: tuple[float, ...]) -> float:
-    """How far scaled motions of (sA0, s^{1/4} f, s^{1/4} D) are from that of s = 1, over the largest displacement."""
+    """Distance of scaled motions of (sA0, s^{1/4} f, s^{1/4} D) from that of s = 1, over the largest displacement."""
     base = scene("sec2").evolve(A0=1e-8, N=5, kappa=0.002, f=frequency)
     true = Engine(base, setting, 16).record(16).displacement
     worst = 0.0
@@ -29,7 +29,7 @@ def scaled_difference(frequency: float, setting: MethodSetting, times: tuple[flo
 
 
 def statics_error(frequency: float) -> float:
-    """How far a slowly driven, precompressed chain is from statics over one period, in drive amplitudes.
+    """Distance of a slowly driven, precompressed chain from statics over one period, in drive amplitudes.
 
     All contacts carry the same force F, and their overlaps add up: Σ(F/K_c)^{2/3} = Σ(F0/K_c)^{2/3} + u_0.
     """
@@ -43,7 +43,7 @@ def statics_error(frequency: float) -> float:
 
 
 def lattice_error(ratio: float) -> float:
-    """How far a weakly driven, precompressed chain above its cut-off is from the linear lattice, in drive amplitudes.
+    """Distance of a weakly driven, precompressed chain above its cut-off from the linear lattice, in drive amplitudes.
 
     The answer of the linear lattice is Im(U e^{iωt}) with U from a complex tridiagonal system.
     """
@@ -165,7 +165,7 @@ def sizes(quick: bool) -> list[Measurement]:
 
 
 def sizes_picture() -> Picture:
-    """A bead of a thousandth of the mass between two others: ours, and plain RK4 with one step for all of them."""
+    """A bead of a thousandth of the mass between two others: ours, and plain RK4 with one step for all beads."""
     chosen, samples, stride, light = unequal({2: 1e-3}, 3), 200, 10, 1
     ours = run(chosen, periods=0, record=1, samples=samples).displacement / chosen.A0
     chain = PlainChain.of(chosen)

@@ -13,7 +13,7 @@ _SAMPLES = 8
 
 
 def cut_and_gone_on(method: str, periods: int, cuts: int, seed: int = 1) -> float:
-    """How many numbers of the final state and of the samples random cuts change.
+    """Count of numbers in the final state and the samples that change if the run is cut at random places.
 
     Each cut takes a checkpoint through its bytes into a new engine. Methods with fixed steps are cut at any sample,
     those with error control at whole periods.
@@ -41,7 +41,7 @@ def whole_part(engine: Engine, count: int) -> np.ndarray:
 
 
 def uninterrupted(method: str, periods: int, cuts: int) -> float:
-    """How many numbers of the final state differ between one call over all periods and many cut ones."""
+    """Count of numbers in the final state that differ between one call over all periods and many calls."""
     chosen = scene("sec2").evolve(f=1130.0, N=5)
     setting = MethodSetting(method, 1.0, 1e-9 if METHODS[method].error_control else 0.0)
     uncut, pieces = Engine(chosen, setting, 1), Engine(chosen, setting, 1)
@@ -54,7 +54,7 @@ def uninterrupted(method: str, periods: int, cuts: int) -> float:
 
 
 def phase_error(periods: int) -> tuple[float, float]:
-    """How far the driver is from sin 2πft after `periods` periods and one more, in amplitudes; periods miscounted."""
+    """Distance of the driver from sin 2πft after `periods` + 1 periods, in amplitudes; and periods miscounted."""
     engine = Engine(scene("sec2").evolve(N=1, f=3000.0), fixed_step_setting(), _SAMPLES)
     left = periods
     while left > 0:

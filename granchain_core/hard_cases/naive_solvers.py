@@ -79,7 +79,7 @@ def one_after_another(velocity: np.ndarray, damping: float, step: float, count: 
 def observed_apart(chain: PlainChain, start: np.ndarray, periods: int, rtol: float) -> np.ndarray:
     """Largest difference (periods + 1,) between a chain and its observer, each a run of SciPy's solve_ivp of its own.
 
-    Both start in `start`. The observer's first bead is pushed by the force that the driver had in the first run, read
+    Both start in `start`. The observer's first bead is driven by the force that the driver had in the first run, read
     from a record of it.
     """
     from scipy.integrate import solve_ivp

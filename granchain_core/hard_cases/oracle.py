@@ -59,7 +59,7 @@ class PlainChain:
         return bodies[:-1] - bodies[1:] + self.static
 
     def rates(self, t: float, state: np.ndarray) -> np.ndarray:
-        """How fast the overlaps grow, (N+1,)."""
+        """Rates of the overlaps (N + 1,)."""
         bodies = np.concatenate([[self.beta * np.cos(self.beta * t)], state[len(self.masses) :], [0.0]])
         return bodies[:-1] - bodies[1:]
 
@@ -73,7 +73,7 @@ class PlainChain:
 
 def solved(chain: PlainChain, start: np.ndarray, times: np.ndarray, method: str = "DOP853",
            rtol: float = 1e-12) -> np.ndarray:
-    """States (T, 2N) of displacements and velocities at scaled `times` (T,), from `start` (2N,) at the first of them.
+    """States (T, 2N) of displacements and velocities at scaled `times` (T,), from `start` (2N,) at the first time.
 
     Raises `ComputationError` where SciPy gives up.
     """

@@ -66,7 +66,7 @@ def distance(state: np.ndarray, orbit: np.ndarray, scale: np.ndarray) -> float:
 
 
 def claims(count: int, seed: int) -> tuple[int, int, int]:
-    """How often `count` maps near a bifurcation are called settled, how often wrongly, and how many slow ones are.
+    """Of `count` maps near a bifurcation: how many are called settled, how many of these wrongly, how many are slow.
 
     Wrong is a bound or a period. A slow map has a multiplier so near 1 that it cannot have settled within its strobes.
     """
@@ -139,9 +139,9 @@ def near_bifurcation_picture() -> Picture:
 
 #: A frequency at which the chain of `sec2` has orbits of period 1 and of period 3, both stable [Hz].
 _SHARED = 885.7627
-#: Where the sweep up to it begins [Hz].
+#: Frequency at which the sweep up begins [Hz].
 _BELOW = 800.0
-#: Where the sweep down to it begins [Hz].
+#: Frequency at which the sweep down begins [Hz].
 _ABOVE = 1000.0
 
 

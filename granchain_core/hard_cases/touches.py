@@ -108,7 +108,7 @@ def missed(cases: np.ndarray, results: np.ndarray) -> np.ndarray:
 
 
 def moved(cases: np.ndarray) -> np.ndarray:
-    """How much later than at π − asin(gap) a touch by the driver ends, as a part of the period, to order depth².
+    """Delay after π − asin(gap) with which a touch by the driver ends, as a part of the period, to order depth².
 
     The bead has moved by half the touch's length 2√(2·depth)/β times its velocity (3π√2/8)·depth²/β, over the driver's
     speed.

@@ -19,7 +19,7 @@ from .seal import is_sealed
 
 #: Version of the layout of granchain's files.
 SCHEMA = 1
-#: What h5py, HDF5, json and NumPy raise for bytes that are not what they should be. RuntimeError includes
+#: Exceptions of h5py, HDF5, json and NumPy for damaged bytes. RuntimeError includes
 #: RecursionError, ArithmeticError OverflowError, LookupError KeyError and IndexError.
 _LIBRARIES = (OSError, RuntimeError, ArithmeticError, LookupError, ValueError, TypeError, AttributeError, MemoryError,
               AssertionError, EOFError)

@@ -82,7 +82,7 @@ class Plain:
                                             h5py.Dataset(item))[name], called)
 
     def stored(self, path: str) -> Stored | None:
-        """What a dataset is, without reading it; None where there is none. Raises `Refused` where it is not plain."""
+        """Type and shape of a dataset, unread; None where there is none. Raises `Refused` where it is not plain."""
         if path not in self._stored:
             self._stored[path] = self._look(path)
         return self._stored[path]

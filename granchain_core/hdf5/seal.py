@@ -20,7 +20,7 @@ from .plain import Refused
 
 #: Bounds of the HDF5 version whose superblock (version 2) tells sealed files from older ones; since HDF5 1.8 (2008).
 VERSIONS = ("v108", "v108")
-#: What every HDF5 file, and so every netCDF-4 file, begins with.
+#: First bytes of every HDF5 file, and so of every netCDF-4 file.
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
 _LINE = "\ngranchain: SHA-256 of the {:020d} bytes before this line is {}\n"
 _PATTERN = re.compile(rb"\ngranchain: SHA-256 of the (\d{20}) bytes before this line is ([0-9a-f]{64})\n")

@@ -1,4 +1,4 @@
-"""Gaps in a series of samples: what counts as one, and what may be done with it."""
+"""Gaps in a series of samples: what counts as a gap, and the ways to treat it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ..errors import BadInput
 
 #: A spacing of more than this factor times the median one is a gap.
 GAP = 1.5
-#: What may be done with gaps: refuse them, take the quantity as zero in them, or draw a curve across.
+#: Ways to treat gaps: refuse them, take the quantity as zero in them, or draw a curve across.
 GAPS = ("refuse", "zero", "interpolate")
 #: Zeros that are put into a gap begin and end at most this part of the gap beside its neighbours.
 _PART_OF_GAP = 0.4

@@ -117,7 +117,7 @@ _EMPTY = IS_NEIGHBOUR
 
 
 def _no_check(*arguments: object) -> None:
-    """What stands for a check of types until the kernel is known."""
+    """Stands for a check of types until the kernel is known."""
 
 
 class Batch:
@@ -250,9 +250,9 @@ class Batch:
         return self.state.search.fine_record[member, FINE_FORCES : FINE_FORCES + 3].copy()
 
     def settled_maxima(self, member: int, period: int) -> np.ndarray:
-        """Largest forces on the orbit a coarse member has settled on: from before it was disturbed, if it was."""
-        disturbed = self.state.search.slowest_contraction[member] > 0.0
-        return self.coarse_maxima(member) if disturbed else self.maxima(member, period)[0]
+        """Largest forces on the orbit of a settled coarse member; of a perturbed one, from before the perturbation."""
+        perturbed = self.state.search.slowest_contraction[member] > 0.0
+        return self.coarse_maxima(member) if perturbed else self.maxima(member, period)[0]
 
     def maxima(self, member: int, periods: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Largest input, output and elastic output force (3,) of the last `periods` periods, and of input and output

@@ -11,7 +11,7 @@ from ..kernels.status import EVALUATIONS, EVENTS, STEPS
 
 @dataclass
 class Counts:
-    """What a computation cost: accepted steps, evaluations of the equations, contact events, rejected steps."""
+    """Counters of a computation: accepted steps, evaluations of the equations, contact events, rejected steps."""
 
     array: np.ndarray = field(default_factory=lambda: np.zeros(4, dtype=np.int64))
 

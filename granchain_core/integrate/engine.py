@@ -209,12 +209,12 @@ class Engine:
 
     @property
     def unresolved(self) -> int:
-        """How many of them were touches within a step, by a method that does not locate events."""
+        """Number of touches shorter than a step that a method without located events has noticed."""
         return int(self.log.counts[UNRESOLVED])
 
     @property
     def closings_missing(self) -> int:
-        """How many further jumps there were, for which there was no place."""
+        """Number of further jumps, for which there was no place."""
         return max(0, int(self.log.counts[CLOSED]) - len(self.log.closings))
 
     def advance_and_find_largest(self, periods: int) -> np.ndarray:

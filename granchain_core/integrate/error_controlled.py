@@ -1,4 +1,4 @@
-"""What methods with error control have in common: steps in (u, w) from one grid point to the next."""
+"""Common part of the methods with error control: steps in (u, w) from one grid point to the next."""
 
 from __future__ import annotations
 

@@ -240,7 +240,7 @@ def _half_steps(grid: int) -> tuple[np.ndarray, np.ndarray]:
 
 def chain_width(scaled: ScaledChain) -> int:
     """Numbers in the vector that a chain's bodies fit into, 0 where there is none."""
-    return next((lanes for lanes in CHAIN_WIDTHS if scaled.bodies <= lanes), 0)
+    return next((width for width in CHAIN_WIDTHS if scaled.bodies <= width), 0)
 
 
 def short_chain_workspace(scaled: ScaledChain, width: int) -> ShortChain:

@@ -33,7 +33,7 @@ _FIXED_STEP_ERROR = 7e-6
 _ERROR_SPREAD = 8.0
 #: dop853's first tolerance per step, as a part of the accuracy asked for: errors of steps add up.
 _TOLERANCE_PER_ACCURACY = 0.1
-#: Its largest first tolerance per step, whatever accuracy is asked for.
+#: dop853's largest first tolerance per step, whatever accuracy is asked for.
 _LARGEST_TOLERANCE = 1e-3
 #: The next finer tolerance is not below this, except as an eighth of the present one.
 _SMALLEST_TOLERANCE = 1e-15
@@ -161,19 +161,19 @@ class Method:
 
 
 def _fixed(kind: Any, simd: bool = False) -> Callable[[MethodSetting, ScaledChain, int], Stepper]:
-    """What makes the stepper of a method with fixed steps in (u, w)."""
+    """A function that makes the stepper of a method with fixed steps in (u, w)."""
     return lambda setting, scaled, samples: FixedStep(kind(setting.steps_per_period(scaled, samples)), scaled,
                                                        samples, simd)
 
 
 def _in_velocity(kind: Any) -> Callable[[MethodSetting, ScaledChain, int], Stepper]:
-    """What makes the stepper of a method with fixed steps in (u, v)."""
+    """A function that makes the stepper of a method with fixed steps in (u, v)."""
     return lambda setting, scaled, samples: FixedStepInVelocity(kind(setting.steps_per_period(scaled, samples)),
                                                                  scaled, samples)
 
 
 def _error_controlled(kind: Any) -> Callable[[MethodSetting, ScaledChain, int], Stepper]:
-    """What makes the stepper of a method with error control."""
+    """A function that makes the stepper of a method with error control."""
     return lambda setting, scaled, samples: kind(setting.tolerance, scaled, samples)
 
 
@@ -284,7 +284,7 @@ def typical_error(setting: MethodSetting) -> float:
 
 def jump_errors(setting: MethodSetting, scaled: ScaledChain, step: float, jumps: np.ndarray,
                 maxima: np.ndarray) -> np.ndarray:
-    """What the stated relative errors (3,) of the largest forces must be at least where these are at jumps (2,).
+    """Lower limits (3,) of the stated relative errors of the largest forces where these are at jumps (2,).
 
     All in scaled units.
 

@@ -24,7 +24,7 @@ _WORK_OF_CALL = 1 << 19
 
 
 class InParts(Protocol):
-    """A method with fixed steps, `grid` of them in a period."""
+    """A method with `grid` fixed steps in a period."""
 
     scaled: ScaledChain
     grid: int
@@ -102,6 +102,6 @@ def _stride(stepper: InParts, y: np.ndarray, first: int, stride: int, part: int,
 
 
 def _rows(samples: Samples, first: int, end: int) -> Samples:
-    """These rows, not copied."""
+    """The rows as views, not copies."""
     energy = None if samples.energy is None else samples.energy[first:end]
     return Samples(samples.displacement[first:end], samples.velocity[first:end], samples.force[first:end], energy)

@@ -26,6 +26,6 @@ RUN_FORCES_THAT_JUMP = 3.0
 #: [safety factor] Largest forces on a periodic orbit, in place of both other factors. Only two computations are
 #: compared, and their change is enlarged by 1/(1 − the contraction factor) as well (`errors_of_map`).
 ORBIT_FORCES = 2.0
-#: [safety factor] What the samples of a driver's measured motion leave out. It stands on top of the larger of the
-#: differences from every second sample over 2^p − 1, with an order p of 1 to 2. Found by trial.
+#: [safety factor] Errors by the interpolation between samples of a driver's measured motion. The factor multiplies the
+#: larger of the differences from every second sample over 2^p − 1, with an order p of 1 to 2. Found by trial.
 SAMPLED_DRIVE = 2.5

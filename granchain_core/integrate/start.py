@@ -14,7 +14,7 @@ from .methods import following_setting
 
 #: A phase must be k/n with n at most this: the steps of a period are a multiple of n.
 _MOST_PARTS = 10_000
-#: How far a phase may be from k/n [periods]: rounding.
+#: Largest distance of a phase from k/n [periods]: rounding.
 _ROUNDING = 1e-9
 
 

@@ -19,7 +19,7 @@ _ROUNDING_FACTOR = 32.0
 _ROUNDING_NEGLIGIBLE_ABOVE = 1e-10
 #: Stated relative error above which the result is worth nothing.
 _LARGEST_USEFUL_ERROR = 0.05
-#: What is stated then, relative to the largest displacement: two motions that have parted differ by at most twice it.
+#: Stated error of motions that have parted, relative to the largest displacement: they differ by at most twice that.
 _WHOLE_MOTION = 2.0
 #: Order assumed where tension is cut and the method's order there is not measured: the lowest that was measured.
 _ORDER_WITH_CUT = 1.0
@@ -109,7 +109,7 @@ class Computations:
         return bool(self.stated[0] <= self.rounding)
 
     def final(self, done: bool) -> np.ndarray:
-        """What is stated where no finer computation follows."""
+        """The errors that are stated where no finer computation follows."""
         return self.stated if done else or_whole_motion(self.stated)
 
     def _see_growth(self, coarser: MethodSetting, difference: float) -> None:

@@ -12,12 +12,12 @@ from ..kernels.equations.motion import Trajectory
 from ..kernels.samples import KernelIO, Samples
 from .scaling import ScaledChain
 
-#: Where a call began: state and slope (M,), and the grid index.
+#: Beginning of a call: state and slope (M,), and the grid index.
 CallStart = tuple[np.ndarray, np.ndarray, int]
 
 
 class ErrorControl(Protocol):
-    """What a checkpoint keeps of the workspace of a method with error control.
+    """The part of the workspace of a method with error control that a checkpoint keeps.
 
     `next_step` (1,) is the step that it tries next; `scale` (2,) the displacement and the w to which its tolerance is
     relative.

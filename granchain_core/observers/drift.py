@@ -1,6 +1,6 @@
 """Drift of an observer: without a foundation it may move away as a whole.
 
-The observer of model (4), Zhang et al. 2016, is pushed by a given force; without a foundation its beads are held by the
+The observer of model (4), Zhang et al. 2016, is driven by a given force; without a foundation its beads are held by the
 wall alone, and only while they touch it. If the leading multiplier is real and not inside the unit circle, and its mode
 is nearly a common shift of all beads, the exponential instability along that shift is called a drift: the observer
 keeps its shape and moves to one side if the multiplier is positive, or alternates between the sides if it is negative

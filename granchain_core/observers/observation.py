@@ -8,8 +8,9 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from ..experiment import Misfit
+from ..results.forces import RUN_ERRORS, ForceErrors, force_sentences
 from ..results.recorded_motion import RecordedMotion, motion_columns, time_axis
-from ..results.run import RUN_ERRORS, Cost, ForceErrors, said_forces
+from ..results.run import Cost
 from ..scene import Scene
 from ..tables import MAXIMA, Column, Table, bead_axis, contact_axis, provenance
 from ..tables.provenance import Attribute
@@ -121,7 +122,7 @@ class Observation(RecordedMotion):
     def summary(self) -> list[str]:
         """Largest forces, errors, and the difference from what was measured."""
         duration, status = self.time[-1] - self.time[0], self.status.replace("-", " ")
-        sentences = [f"{len(self.time)} samples over {duration:.4g} s; {status}", *said_forces(self)[:2],
+        sentences = [f"{len(self.time)} samples over {duration:.4g} s; {status}", *force_sentences(self)[:2],
                      f"relative error of displacements {self.integration_error:.1e} by steps, "
                      f"{self.interpolation_error:.1e} between samples"]
         if self.residual is not None:

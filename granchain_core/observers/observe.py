@@ -23,8 +23,9 @@ from ..integrate.chain_in_pieces import MOST_HALVINGS, Refined, refined
 from ..integrate.methods import RK4_SPLIT
 from ..integrate.safety_factors import IRREGULAR
 from ..integrate.stated import relative_changes, relative_difference
+from ..results.forces import ForceErrors
 from ..results.recorded_motion import MOST_RECORDED, elastic_output
-from ..results.run import Cost, ForceErrors
+from ..results.run import Cost
 from ..scene import Scene
 from ..scene.state import State, checked_start, rest
 from .force_driven_chain import ForceDrivenChain

@@ -1,4 +1,4 @@
-"""A chain and its observer in one integration: model (4), Zhang et al. 2016.
+"""A pair: a chain and its observer in one integration, a drive–response pair. Model (4), Zhang et al. 2016.
 
 The observer is a second chain of the same beads and the same wall whose first bead feels F_in, the force of the first
 chain's driver contact, in place of a contact of its own. Bodies of the pair are those of the chain, 0..N+1, then the
@@ -43,8 +43,8 @@ def scale_pair(scene: Scene) -> ScaledChain:
 class Pair:
     """A chain and its observer, carried through time together at `samples` samples a period by dop853.
 
-    Both go through the same arithmetic, so an observer that starts where its chain is stays there, to rounding: the
-    compiler may sum the terms of one bead in another order than those of its twin.
+    Both go through the same arithmetic, so an observer that starts in its chain's state stays in it, to rounding: the
+    compiler may sum the terms of a bead in another order than those of the observer's bead.
     """
 
     def __init__(self, scene: Scene, samples: int, stop: Stop | None = None) -> None:

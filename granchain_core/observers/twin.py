@@ -1,8 +1,10 @@
-"""A twin: chain and observer from slightly different starts, and whether they converge (model (4), Zhang et al. 2016).
+"""A twin: a drive–response pair of a chain and its observer. Do they synchronise? Model (4), Zhang et al. 2016.
+
+The chain drives the observer, a copy that starts from a slightly different state, by its input force alone.
 
 The distance between observer and chain, in scaled units |(Δu/A0, Δv/(A0 φ))|, changes by the observer's leading
-multiplier every period of the orbit as long as it is small. Here it is followed in time, where nothing is linearised,
-and the multiplier is obtained from it: successive differences obey d_{k+1} = a d_k where one real multiplier leads, and
+multiplier every period of the orbit as long as it is small. Here it is followed in time without linearisation, and
+the multiplier is obtained from it: successive differences obey d_{k+1} = a d_k where one real multiplier leads, and
 d_{k+2} = a d_{k+1} + b d_k where two do, which then solve z² = a z + b.
 """
 
@@ -31,23 +33,23 @@ LINEAR = 0.03
 #: Smallest distance that the fit of the multipliers uses: below it rounding is a part of the distance.
 LEAST_DISTANCE = 1e-11
 #: The observer is in step, and is followed no further, once all entries of the difference are below this for a period.
-#: It is a tenth of `LEAST_DISTANCE`, so that no distance of the fit is missing.
+#: A tenth of `LEAST_DISTANCE`, so that no distance of the fit is missing.
 SYNCHRONISED = 1e-12
-#: Most periods of one twin: a minute or so.
+#: Most drive periods of a twin: a minute or so.
 MOST_TWIN_PERIODS = 20_000
 #: Fraction of the usable periods after which fast multipliers count as decayed.
 _TRANSIENT = 1.0 / 3.0
 #: Fewest strobes from which a rate is taken.
 _FEWEST = 4
-#: Standard errors within which a rate is not told from 1 where no multiplier is known.
+#: Standard errors within which a rate is not distinguished from 1 where no multiplier is known.
 _UNCERTAIN = 3.0
-#: Part that a fit by one multiplier may leave unexplained before two are fitted.
+#: Part of the differences that a fit by one multiplier may leave unexplained before two are fitted.
 _ONE_IS_ENOUGH = 0.03
 
 
 @dataclass(frozen=True, eq=False)
 class Twin:
-    """A chain x and its observer y in time: T samples of N beads in SI.
+    """A chain and its observer, a drive–response pair, over time: T samples of N beads in SI.
 
     Attributes
     ----------
@@ -115,7 +117,7 @@ class Twin:
 
     @property
     def offset(self) -> np.ndarray:
-        """Mean displacement of the observer's beads over that of the chain's (T,) [m]."""
+        """Mean displacement of the observer's beads less that of the chain's (T,) [m]."""
         return (self.observer - self.chain).mean(axis=1)
 
     @property
@@ -176,11 +178,12 @@ class Twin:
 
 def twin(scene: Scene, perturbation: float | State = 1e-6, periods: int = 60, samples: int = 48,
          stop: Stop | None = None) -> Twin:
-    """Chain and observer of `scene` over `periods` drive periods, `samples` samples each, or until they are in step.
+    """The drive–response pair of a chain and its observer over `periods` drive periods, or until they are in step.
 
-    The chain starts on its settled orbit. `perturbation` is the observer's first distance: a number moves its beads at
-    random (always the same) by that fraction of A0, root mean square; a `State` is where it starts, `rest(scene)` for
-    one without any knowledge of the chain. Raises `BadInput`, `ComputationError`, `Cancelled`.
+    `samples` is the number of samples per period. The chain starts on its settled orbit. `perturbation` is how far from
+    the chain the observer starts: a number moves all its beads at random (always the same) by that fraction of A0, root
+    mean square; a `State` is the observer's own start, such as `rest(scene)`. Raises `BadInput`, `ComputationError`,
+    `Cancelled`.
     """
     require_scene(scene)
     periods = whole_number("periods =", periods, 1, MOST_TWIN_PERIODS)

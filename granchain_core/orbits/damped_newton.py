@@ -1,7 +1,7 @@
 """Damped Newton's method for a fixed point of the exact stroboscopic map, with its derivative at each step.
 
 It serves an orbit at given knobs (find_orbit.py), where z is the state, and a point of a bifurcation curve
-(bifurcation_continuation/continuation.py), where z is the state with a knob, in a plane across the branch. Branches
+(bifurcation_continuation/point.py), where z is the state with a knob, in a plane across the branch. Branches
 (branch/newton.py) and settling chains (steady/settling/finite_difference_map.py) have methods of their own, because
 they save derivatives.
 
@@ -27,7 +27,7 @@ _MOST_SIZES = 6
 
 @dataclass(frozen=True, eq=False)
 class Iterated:
-    """Where the iteration ended: the point z, the map from there with its derivative, and the residuals of all points.
+    """The end of an iteration: the point z, the map from z with its derivative, and the residuals of all points.
 
     It has `converged` where the last residual is accepted.
     """

@@ -25,7 +25,7 @@ from .stroboscopic_map import Flow, StroboscopicMap, refuse_cut
 
 #: Why an orbit has period 1 where a start was given.
 NO_PERIOD_GIVEN = "period 1 was taken, because a start was given without a period"
-#: The same where an orbit is sought near a motion, and the caller gives no start.
+#: Why an orbit has period 1 where it is sought near a motion.
 NO_PERIOD_OF_SEARCH = "period 1 was taken, because none was given"
 
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 #: Multipliers computed for a long chain.
 LEADING = 24
-#: Their error, relative to the largest.
+#: Error of these multipliers, relative to the largest.
 _EIGENVALUE_ERROR = 1e-9
 #: Relative tolerance of GMRES; the error of Newton's step is this times the residual.
 _GMRES_TOLERANCE = 1e-6

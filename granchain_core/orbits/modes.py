@@ -1,6 +1,6 @@
 """Floquet modes: eigenvectors of the monodromy matrix as motions of the chain over one orbit.
 
-A disturbance δx of an orbit of n drive periods obeys δx(n/f) = M δx(0). With M v = μ v it comes back as μ times
+A perturbation δx of an orbit of n drive periods obeys δx(n/f) = M δx(0). With M v = μ v it comes back as μ times
 itself, and in between it is the difference of two neighbouring motions, by dop853:
 
     δu(t) = [u(t; x0 + ε v) − u(t; x0 − ε v)] / 2ε
@@ -24,8 +24,8 @@ from .krylov import arnoldi
 from .orbit import Orbit
 from .stroboscopic_map import TOLERANCE, StroboscopicMap
 
-#: Size of the carried disturbance relative to the motion.
-_DISTURBANCE = 1e-5
+#: Size of the carried perturbation relative to the motion.
+_PERTURBATION = 1e-5
 #: Fewest eigenpairs that Arnoldi iteration computes.
 _FEWEST_EIGENPAIRS = 6
 
@@ -48,7 +48,7 @@ class Mode:
 def mode(orbit: Orbit, rank: int = 0, samples: int = 48, stop: Stop | None = None) -> Mode:
     """The mode of the multiplier at place `rank` by modulus; of a complex pair the one with positive imaginary part.
 
-    Raises `BadInput` for a rank that is not there, `ComputationError`, `Cancelled`.
+    Raises `BadInput` for a rank beyond the last multiplier, `ComputationError`, `Cancelled`.
     """
     rank = whole_number("mode", rank, 0, len(orbit.multipliers) - 1)
     stroboscopic_map = StroboscopicMap(orbit.scene, orbit.period, stop)
@@ -58,20 +58,20 @@ def mode(orbit: Orbit, rank: int = 0, samples: int = 48, stop: Stop | None = Non
         value, vector = value.conjugate(), vector.conj()
     beads = len(x) // 2
     vector = vector / vector[np.argmax(np.abs(vector))]
-    size = _DISTURBANCE * max(1e-300, float(np.abs(x[:beads]).max()))
-    moved, end = _carried(orbit, x, vector.real, size, samples, stop)
+    size = _PERTURBATION * max(1e-300, float(np.abs(x[:beads]).max()))
+    displacement, end = _carried(orbit, x, vector.real, size, samples, stop)
     if value.imag != 0.0:
-        other, other_end = _carried(orbit, x, vector.imag, size, samples, stop)
-        moved, end = moved + 1j * other, end + 1j * other_end
+        imaginary, imaginary_end = _carried(orbit, x, vector.imag, size, samples, stop)
+        displacement, end = displacement + 1j * imaginary, end + 1j * imaginary_end
     closure = float(np.abs(end - value * vector).max() / np.abs(vector).max())
-    return Mode(complex(value), orbit.period, samples, moved / np.abs(moved).max(), closure)
+    return Mode(complex(value), orbit.period, samples, displacement / np.abs(displacement).max(), closure)
 
 
 def eigenpair(stroboscopic_map: StroboscopicMap, x: np.ndarray, rank: int,
               observer: bool = False) -> tuple[complex, np.ndarray]:
     """The multiplier at place `rank` by modulus with its eigenvector; of a long chain by Arnoldi iteration.
 
-    With `observer`, those of the observer of model (4), Zhang et al. 2016.
+    With `observer`, the multiplier and eigenvector of the observer of model (4), Zhang et al. 2016.
     """
     if len(x) <= 2 * MOST_BEADS_WITH_MULTIPLIERS:
         values, vectors = np.linalg.eig(stroboscopic_map(x, observer=observer).derivative)
@@ -83,14 +83,17 @@ def eigenpair(stroboscopic_map: StroboscopicMap, x: np.ndarray, rank: int,
 
 def _carried(orbit: Orbit, x: np.ndarray, direction: np.ndarray, size: float, samples: int,
              stop: Stop | None) -> tuple[np.ndarray, np.ndarray]:
-    """δu (n·samples + 1, N), and δx (2N,) at the end, from the start `direction`, by a central difference."""
+    """The perturbation that starts as `direction`: δu (n·samples + 1, N), and δx (2N,) at the end.
+
+    It is computed as a central difference of two motions.
+    """
     engine = Engine(orbit.scene, dop853_setting(TOLERANCE), samples, stop=stop)
-    ways = []
+    sides = []
     for sign in (1.0, -1.0):
         engine.start_scaled(x + sign * size * direction)
         record = engine.record(orbit.period * samples)
-        ways.append((record.displacement, engine.scaled.beads_of(engine.y)))
-    (u_plus, x_plus), (u_minus, x_minus) = ways
+        sides.append((record.displacement, engine.scaled.beads_of(engine.y)))
+    (u_plus, x_plus), (u_minus, x_minus) = sides
     return (u_plus - u_minus) / (2.0 * size), (x_plus - x_minus) / (2.0 * size)
 
 

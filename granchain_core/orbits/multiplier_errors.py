@@ -19,7 +19,7 @@ from ..scene import Scene
 from ..scene.state import State
 from .stroboscopic_map import TOLERANCE, StroboscopicMap
 
-#: Tolerance of the coarser map over that of the map.
+#: Tolerance of the coarser map over the tolerance of the map.
 _COARSER_FACTOR = 10.0
 #: Factor of caution on the change that is seen.
 _CAUTION_FACTOR = 2.0

@@ -1,8 +1,8 @@
-"""A periodic orbit with its Floquet multipliers, and what is said of its stability.
+"""A periodic orbit with its Floquet multipliers, and its stability.
 
-A fixed point of the n-period map is an orbit, stable or not: that is decided by its multipliers, the eigenvalues of
-the map's derivative. A forced orbit has no trivial multiplier 1. The observer of model (4), Zhang et al. 2016, is a
-second chain pushed by the first one's input force. Linearised about the first chain's motion, its tangents are those of
+A fixed point of the n-period map is an orbit; its multipliers, the eigenvalues of the map's derivative, decide whether
+it is stable. A forced orbit has no trivial multiplier 1. The observer of model (4), Zhang et al. 2016, is a
+second chain driven by the first one's input force. Linearised about the first chain's motion, its tangents are those of
 the first chain without the driver's contact, so its multipliers come from the same orbit.
 """
 
@@ -183,7 +183,7 @@ class Orbit(Labelled):
                 *([self.period_note] if self.period_note else [])]
 
     def distance_words(self) -> str:
-        """How near the motion comes to an orbit that was sought from it; empty where it was not."""
+        """Distance of the motion from an orbit that was sought near it, in words; empty for any other orbit."""
         if self.distance_of_motion is None:
             return ""
         return f"the motion comes within {self.distance_of_motion:.2g} of it, relative to its own size"

@@ -100,7 +100,7 @@ class StroboscopicMap:
     def __call__(self, x: np.ndarray, observer: bool = False, directions: np.ndarray | None = None) -> Flow:
         """The flow from x with the derivative, or its product with the columns of `directions` (2N, columns).
 
-        With `observer` the tangents are those of a chain pushed by the recorded input force.
+        With `observer` the tangents are those of a chain driven by the recorded input force.
         """
         start = np.eye(len(x)) if directions is None else directions
         tangent = new_tangent(start, self.engine.scaled.bodies, 1 if observer else 0)

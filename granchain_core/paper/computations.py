@@ -118,7 +118,8 @@ def observers(stop: Stop | None, frequencies: Sequence[float] = (COUPLED_FREQUEN
     all multipliers lie inside and (e, f) both first beads move alike.
     """
     chains = [scene(name).evolve(f=f) for f in frequencies for name in ("fig11-free", "fig11-founded")]
-    return Observers(tuple(CoupledRow(one.f, one.kappa, twin(one, distance, periods, stop=stop)) for one in chains))
+    return Observers(tuple(CoupledRow(chain.f, chain.kappa, twin(chain, distance, periods, stop=stop))
+                           for chain in chains))
 
 
 def column(named: float, series: Series | None, observed: bool, stop: Stop | None) -> Column:
@@ -142,7 +143,7 @@ def _observer(chain: Scene, series: Series | None, delay: float,
         rows = min(len(pair.time), round(SHOWN * chain.f) * _TRAIN_SAMPLES + 1)
         return pair.time[:rows], pair.observer_output_force[-rows:], "fed with model (5)'s input force, from rest"
     if series.input_force is None:
-        raise BadInput("Model (3) is pushed by the measured input force; the series has no column input_force_N.")
+        raise BadInput("Model (3) is driven by the measured input force; the series has no column input_force_N.")
     observed = observe(chain.evolve(accuracy=_OBSERVER_ACCURACY), force_record(series.time, series.input_force),
                        stop=stop)
     time = series.time - delay
@@ -155,7 +156,7 @@ def _state(name: str, stop: Stop | None) -> Settled:
 
 
 def _within(progress: Progress, begin: float, part: float) -> Progress:
-    """Progress of a part of a computation as that of the whole."""
+    """Progress of a part of a computation as progress of the whole."""
     return lambda done: progress(begin + part * done)
 
 

@@ -123,7 +123,7 @@ FIGURES: dict[str, PaperFigure] = {one.number: one for one in _TABLE}
 def figure_of(number: str) -> PaperFigure:
     """The figure with this number; `BadInput` names the nearest one."""
     if number not in FIGURES:
-        numbers = [int(one) for one in FIGURES if one.isdigit()]
+        numbers = [int(number) for number in FIGURES if number.isdigit()]
         is_whole = number.isascii() and number.isdigit()
         near = min(max(int(number[:9]), numbers[0]), numbers[-1]) if is_whole else numbers[0]
         raise BadInput(f"There is no figure {number[:20]!r}; there are {numbers[0]} to {numbers[-1]}, 3a and 3b, the "

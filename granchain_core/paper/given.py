@@ -23,7 +23,7 @@ class Given:
 
     @property
     def sentences(self) -> list[str]:
-        """How every file was understood."""
+        """A sentence for each file: how it was understood."""
         parts = [measurement.understood for measurement in (self.curve, self.shaker) if measurement is not None]
         return parts + [f"at {f:g} Hz {measurement.understood}" for f, measurement in sorted(self.series.items())]
 
@@ -32,7 +32,7 @@ class Given:
 _LEAST_AMPLITUDE = 1e-3
 #: The field of `Given` that a file's content belongs to.
 _KINDS = {Measured: "curve", Shaker: "shaker", Series: "series"}
-#: The same in words, with the columns of such a file.
+#: Contents of the files in words, with their columns.
 _WORDS = {"curve": "a resonance curve (frequency_Hz, force_N)",
           "shaker": "the shaker's amplitude (frequency_Hz, velocity_m_s or displacement_m)",
           "series": "time series (time_s and velocity_m_s, input_force_N, output_force_N)"}
@@ -52,7 +52,7 @@ def read_given(number: str, takes: Sequence[str], frequencies: Sequence[float], 
         measurement = read_experiment(path, answers)
         kind = _KINDS[type(measurement)]
         if kind not in takes:
-            raise BadInput(f"Figure {number} takes {' and '.join(_WORDS[one] for one in takes)}; "
+            raise BadInput(f"Figure {number} takes {' and '.join(_WORDS[kind] for kind in takes)}; "
                            f"{path} is {_WORDS[kind]}.")
         if isinstance(measurement, Series):
             at = _frequency(hertz, frequencies, path, number)

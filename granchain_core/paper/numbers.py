@@ -74,9 +74,9 @@ def _stop_band() -> Numbers:
 
 def _energy() -> Numbers:
     states = [settle(scene(name), samples=_FINE) for name in ("fig3a", "fig3b")]
-    ratios = [pushes(one.run) or (0, 0) for one in states]
+    ratios = [pushes(state.run) or (0, 0) for state in states]
     return [*(f"{strong}:{periods}" for strong, periods in ratios),
-            *(1e6 * float(one.run.kinetic_energy.max()) for one in states)]
+            *(1e6 * float(state.run.kinetic_energy.max()) for state in states)]
 
 
 def _mass() -> Numbers:
@@ -174,7 +174,7 @@ _NUMBERS: dict[str, Callable[[], Numbers]] = {
 
 
 def numbers_of(key: str) -> Numbers:
-    """What is bold in the row with this key, computed: numbers in the row's units, and words."""
+    """The bold entries of the row with this key, computed: numbers in the row's units, and words."""
     if key not in _NUMBERS:
         raise unknown_name("row", key, _NUMBERS)
     return _NUMBERS[key]()

@@ -205,7 +205,7 @@ class CoupledRow:
 
     @property
     def outside(self) -> np.ndarray:
-        """Those of them outside the unit circle."""
+        """The multipliers outside the unit circle."""
         return self.multipliers[np.abs(self.multipliers) > 1.0]
 
     @property

@@ -24,11 +24,11 @@ class Statement:
 
     @property
     def computed(self) -> list[str]:
-        """What is bold, in order."""
+        """The bold numbers and words, in order."""
         return re.findall(r"\*\*(.+?)\*\*", self.ours)
 
     def wrong(self, numbers: Sequence[float | str]) -> list[str]:
-        """Where the row does not say what was found: another word, or a number off by more than its last digit."""
+        """Entries that disagree with the computed ones: another word, or a number off by more than its last digit."""
         if len(numbers) != len(self.computed):
             return [f"{self.key}: {len(numbers)} values for {len(self.computed)} in bold"]
         return [f"{self.key}: {shown} is {value}" for shown, value in zip(self.computed, numbers, strict=True)

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..results.forces import ForceErrors
 from ..results.regime import NAMES, Regime
 from ..results.regime_columns import EVIDENCE
-from ..results.run import ForceErrors
 from ..scene import Scene
 from ..scene.quantities import QUANTITIES
 from ..steady.batch.starts import settling_methods
@@ -113,8 +113,8 @@ class ParameterMap(Labelled):
         """One table, `map`, over both knobs; regimes are numbers with CF's flag_values and flag_meanings."""
         both = (self.grid.y.knob, self.grid.x.knob)
         axes: dict[str, Column] = {}
-        for one in (self.grid.y, self.grid.x):
-            axes |= axis(one.knob, one.array, QUANTITIES[one.knob].unit, QUANTITIES[one.knob].label)
+        for side in (self.grid.y, self.grid.x):
+            axes |= axis(side.knob, side.array, QUANTITIES[side.knob].unit, QUANTITIES[side.knob].label)
         flags = {"flag_values": np.array([-1, *range(len(CELL_REGIMES))], dtype=np.int8),
                  "flag_meanings": " ".join(["not_computed", *CELL_REGIMES])}
         forces, errors = (np.stack([self.column(name) for name in names], axis=-1) for names in (MAXIMA, ERRORS))
@@ -127,7 +127,7 @@ class ParameterMap(Labelled):
         return (Table("map", axes, columns, both),)
 
     def attributes(self) -> dict[str, Attribute]:
-        """Both knobs, cost, and where it comes from; `accuracy_reached` is the largest error of an output force.
+        """Both knobs, cost and provenance; `accuracy_reached` is the largest error of an output force.
 
         Only cells that were settled alone were computed to `accuracy_asked`, and at best to `CURVE_ACCURACY`.
         """
@@ -140,8 +140,8 @@ class ParameterMap(Labelled):
 
     def summary(self) -> list[str]:
         """The ranges of both knobs, and how many cells are of each regime."""
-        sides = (f"{one.knob} {one.values[0]:g} to {one.values[-1]:g} {QUANTITIES[one.knob].unit}"
-                 for one in (self.grid.x, self.grid.y))
+        sides = (f"{side.knob} {side.values[0]:g} to {side.values[-1]:g} {QUANTITIES[side.knob].unit}"
+                 for side in (self.grid.x, self.grid.y))
         counts = {name: int((self.cells["regime"] == code).sum()) for code, name in enumerate(CELL_REGIMES)}
         missing = int((self.cells["regime"] < 0).sum())
         return [f"{self.grid.shape[1]} × {self.grid.shape[0]} cells: {', '.join(sides)}",

@@ -3,14 +3,14 @@
 The module imports nothing: commands name pieces before they load the compiler.
 """
 
-#: What follows any steady state: the period of its strobes, and a state in SI.
+#: Kernels that follow any steady state: the period of its strobes, and a state in SI.
 REGIME_KERNELS = "regime"
 #: Checks of a batch, the same for every structure.
 CHECK_KERNELS = "checks"
 CURVE_KERNELS = "curve"
 DOP853_KERNELS = "dop853"
 FIXED_STEP_KERNELS = "fixed step"
-#: What any motion needs.
+#: Kernels that any motion needs.
 MOTION_KERNELS = (FIXED_STEP_KERNELS, DOP853_KERNELS)
 ORBIT_KERNELS = "orbit"
 BRANCH_KERNELS = "branch"

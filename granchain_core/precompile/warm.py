@@ -57,12 +57,12 @@ from .pieces import (
 def structure(shown: Scene) -> str:
     """Name of a scene's structure."""
     scaled = scale_chain(shown)
-    bodies = chain_width(scaled)
-    width = f"vector of {bodies}" if bodies else "long"
+    width = chain_width(scaled)
+    length = f"vector of {width}" if width else "long"
     effects = [effect.key(shown) for effect in effects_of(shown)]
     law = [] if shown.has_dissipation else ["none"]
     beads = [] if is_uniform(scaled) else ["unequal beads"]
-    return "+".join([*law, *effects, *beads]) + f", {width}"
+    return "+".join([*law, *effects, *beads]) + f", {length}"
 
 
 def _engine(setting: MethodSetting) -> Callable[[Scene], None]:

@@ -21,8 +21,9 @@ from ..integrate.chain_in_pieces import MOST_HALVINGS, Refined, refined
 from ..integrate.methods import RK4_SPLIT
 from ..integrate.safety_factors import SAMPLED_DRIVE
 from ..integrate.stated import or_whole_motion, relative_changes, relative_difference
+from ..results.forces import RUN_ERRORS, ForceErrors, force_sentences
 from ..results.recorded_motion import MOST_RECORDED, RecordedMotion, motion_columns, time_axis
-from ..results.run import RUN_ERRORS, Cost, ForceErrors, residual, said_forces
+from ..results.run import Cost, residual
 from ..scene import Scene
 from ..scene.hertz import EXPONENT, OVERLAP_POWER
 from ..scene.laws import LAWS
@@ -121,7 +122,7 @@ class Driven(RecordedMotion):
     def summary(self) -> list[str]:
         """The signal, largest forces and errors."""
         between = f", {self.interpolation_error:.1e} of it between samples" if self.signal.coarser else ""
-        return [f"driver: {self.signal.words}", *said_forces(self),
+        return [f"driver: {self.signal.words}", *force_sentences(self),
                 f"{len(self.time)} knots; displacements: relative error {self.displacement_error:.1e}{between}; "
                 f"{self.status.replace('-', ' ')}"]
 
@@ -214,7 +215,7 @@ def _driven(chain: MovedChain, signal: Signal, finest: Refined, between: np.ndar
 
 
 def formula_errors(scene: Scene, signal: Signal, growth: float, displacement: float, maxima: np.ndarray) -> np.ndarray:
-    """What the signal's difference from its formula adds to the relative errors (4,): of displacements, then of forces.
+    """Relative errors (4,) of displacements and largest forces that come from the signal's difference from its formula.
 
     `growth` is that of the errors in this motion, `displacement` the largest of a bead [m], `maxima` are the largest
     input, output and elastic output force [N].

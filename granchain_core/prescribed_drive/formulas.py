@@ -45,7 +45,7 @@ class Formula:
 
     @property
     def needed(self) -> int:
-        """How many numbers must be given."""
+        """Number of values that must be given."""
         return len(self.numbers) - self.optional
 
     @property
@@ -100,7 +100,7 @@ def formula_signal(text: str, amplitude: float) -> Signal | None:
         raise unknown_name("drive", name, FORMULAS)
     formula = FORMULAS[name]
     numbers = [number_in(part) for part in values.split(":")]
-    given = [one for one in numbers if one is not None]
+    given = [number for number in numbers if number is not None]
     if (not formula.needed <= len(numbers) <= len(formula.numbers) or len(given) < len(numbers)
             or min(given[: formula.needed]) <= 0.0):
         raise BadInput(f"--drive {text[:60]!r} must have the form {name}={formula.form}, in Hz and s, with numbers "

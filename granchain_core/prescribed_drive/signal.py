@@ -240,12 +240,12 @@ class Signal:
         return np.asarray(constant + since * (linear + since * quadratic))
 
     def shifted(self, start: float) -> Signal:
-        """The same motion, further into the chain by `start` [m] throughout."""
+        """The motion moved into the chain by `start` [m] at all times."""
         return replace(self, displacement=self.displacement + start,
                        coarser=tuple(signal.shifted(start) for signal in self.coarser))
 
     def finer(self, spacing: float) -> Signal:
-        """The same motion with knots at most `spacing` [s] apart, at which `drive` then states the forces.
+        """The motion with knots at most `spacing` [s] apart, at which `drive` then states the forces.
 
         Each interval is divided into the same number of equal parts, so the given knots are among the new ones.
         """
@@ -271,7 +271,7 @@ def _of_samples(count: int, put_in: np.ndarray, of: Callable[[np.ndarray], Signa
     full, measured = of(np.arange(count)), np.delete(np.arange(count), put_in)
 
     def by_every(nth: int) -> tuple[tuple[Signal, ...], float]:
-        """Signals by every nth sample, and how far the displacement of one of them is from the full signal's."""
+        """Signals by every nth sample, and the largest distance of their displacements from the full signal's."""
         signals = tuple(of(np.unique(np.concatenate([measured[first::nth], measured[[0, -1]], put_in])))
                         for first in range(nth))
         return signals, max(float(np.abs(signal.displacement_at(full.time) - full.displacement).max())

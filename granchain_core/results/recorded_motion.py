@@ -73,7 +73,7 @@ class RecordedMotion(Labelled):
 
 
 def motion_columns(motion: RecordedMotion) -> dict[str, Column]:
-    """The columns over time that a motion has: a run all of them, an observation those without a driver."""
+    """The columns over time of a motion: of a run all columns, of an observation those without a driver."""
     return {name: Column(values, axes, unit, meaning) for name, (axes, unit, meaning) in _COLUMNS.items()
             if (values := getattr(motion, name, None)) is not None}
 

@@ -10,11 +10,11 @@ from typing import Any
 from ..former_names import with_former_names
 from ..kernels.strobes.periodicity import assumed_contraction
 
-#: What a motion can be called.
+#: Names of regimes.
 NAMES = ("periodic", "quasi-periodic", "chaotic", "unsettled")
-#: Those of steady states that never repeat; their errors are not stated.
+#: Names of steady states that never repeat, for which no errors are stated.
 NEVER_REPEATING = ("quasi-periodic", "chaotic")
-#: How the orbit of a periodic motion was found: the motion settled on it, or was still approaching it.
+#: Ways in which the orbit of a periodic motion was found: the motion settled on it, or was still approaching it.
 FOUND_BY = ("settling", "Newton", "extrapolation")
 #: [all] A distance is taken to shrink by |μ| per orbit, at most 1 less this (`Regime.assumed_contraction`).
 LEAST_BELOW_1 = 1e-6

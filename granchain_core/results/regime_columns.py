@@ -12,9 +12,9 @@ from .regime import FOUND_BY, Regime
 
 def regime_columns(regimes: Sequence[Regime], along: str) -> dict[str, Column]:
     """Regime and period along an axis."""
-    return {"regime": Column(np.array([one.name for one in regimes], dtype=object), (along,), "",
+    return {"regime": Column(np.array([regime.name for regime in regimes], dtype=object), (along,), "",
                              "periodic, quasi-periodic, chaotic or unsettled"),
-            "period": Column(np.array([one.period or 0 for one in regimes], dtype=np.int64), (along,), "1",
+            "period": Column(np.array([regime.period or 0 for regime in regimes], dtype=np.int64), (along,), "1",
                              "period in drive periods, 0 where not periodic")}
 
 
@@ -26,7 +26,7 @@ EVIDENCE = {
     "lyapunov_error": "standard error of the Lyapunov exponent",
     "lyapunov_periods": "drive periods over which the Lyapunov exponent was measured, NaN where not measured",
 }
-#: The rest of it, which a map's cells do not keep.
+#: The rest of the evidence, which a map's cells do not keep.
 MORE_EVIDENCE = {
     "distance": "bound on the relative distance to the orbit, NaN where not periodic",
     "return_distance": "median distance of late strobes from the nearest early one, NaN where not measured",
@@ -43,16 +43,17 @@ def evidence_columns(regimes: Sequence[Regime], along: str) -> dict[str, Column]
         return Column(np.array(values, dtype=np.int64), (along,), "1", meaning)
 
     meanings = EVIDENCE | MORE_EVIDENCE
-    numbers = np.array([_evidence(one) for one in regimes], dtype=float).reshape(-1, len(meanings))
+    numbers = np.array([_evidence(regime) for regime in regimes], dtype=float).reshape(-1, len(meanings))
     return {
-        "periods_run": whole([one.periods_run for one in regimes], "drive periods run until that was decided"),
-        "followed": whole([one.followed for one in regimes],
+        "periods_run": whole([regime.periods_run for regime in regimes], "drive periods run until that was decided"),
+        "followed": whole([regime.followed for regime in regimes],
                           "1 where Newton's method or extrapolation found the orbit of a motion still approaching it"),
-        "approaches": whole([one.approaches or 0 for one in regimes],
+        "approaches": whole([regime.approaches or 0 for regime in regimes],
                             "period of an orbit that an unsettled motion approaches, 0 where none is known"),
         **{name: Column(values, (along,), "1", meaning)
            for (name, meaning), values in zip(meanings.items(), numbers.T, strict=True)},
-        "orbit_found_by": Column(np.array([one.orbit_found_by or "" for one in regimes], dtype=object), (along,), "",
+        "orbit_found_by": Column(np.array([regime.orbit_found_by or "" for regime in regimes], dtype=object),
+                                 (along,), "",
                                  f"how the orbit was found: {', '.join(FOUND_BY[:-1])} or {FOUND_BY[-1]}; empty where "
                                  "not periodic")}
 

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import json
-import math
 from dataclasses import asdict, dataclass, field
-from typing import Protocol
 
 import numpy as np
 
@@ -18,16 +16,17 @@ from ..scene.state import State
 from ..scene.validity import overlap_warnings
 from ..tables import MAXIMA, Column, Table, axis, bead_axis, contact_axis, force_columns, or_nan, provenance
 from ..tables.provenance import Attribute
+from .forces import RUN_ERRORS, ForceErrors, force_sentences
 from .recorded_motion import RecordedMotion, motion_columns, time_axis
 from .regime import Regime
 
-#: Where a run can have begun, its `start`: at rest, with the initial velocities of its scene, or in a given state.
+#: Starts of runs, the values of `start`: at rest, with the initial velocities of its scene, or in a given state.
 AT_REST, INITIAL_VELOCITY, GIVEN_STATE = "rest", "initial velocity", "given state"
 RUN_STARTS = (AT_REST, INITIAL_VELOCITY, GIVEN_STATE)
 
 
 def start_words(scene: Scene, start: State | None) -> str:
-    """Where a motion of `scene` from `start` begins, one of `RUN_STARTS`; without a start it is the scene's own."""
+    """The start of a motion of `scene` from `start`, one of `RUN_STARTS`; without `start`, the scene's own."""
     if start is not None:
         return GIVEN_STATE
     return INITIAL_VELOCITY if scene.moves_at_start else AT_REST
@@ -35,7 +34,7 @@ def start_words(scene: Scene, start: State | None) -> str:
 
 @dataclass(frozen=True)
 class Cost:
-    """What a computation took.
+    """The cost of a computation.
 
     Attributes
     ----------
@@ -102,44 +101,6 @@ class Jumps:
         return {"jump_time": Column(self.time, ("jump",), "s", "time at which a contact closes in motion", more),
                 "jump_contact": Column(self.contact, ("jump",), "1", "contact that closes"),
                 "jump_force": Column(self.force, ("jump",), "N", "its force just after, where it was 0 before")}
-
-
-@dataclass(frozen=True)
-class ForceErrors:
-    """Relative errors of the largest input, output and elastic output force; None where none is stated."""
-
-    input: float | None = None
-    output: float | None = None
-    elastic: float | None = None
-
-    @classmethod
-    def of(cls, errors: np.ndarray | None) -> ForceErrors:
-        """From an array (3,) in that order; a force that is zero has no relative error."""
-        return cls() if errors is None else cls(*(e if math.isfinite(e) else None for e in errors.tolist()))
-
-    @property
-    def row(self) -> tuple[float, float, float]:
-        """The errors of input, output and elastic force as numbers, NaN where none is stated."""
-        values = (self.input, self.output, self.elastic)
-        return tuple(np.nan if e is None else e for e in values)  # type: ignore[return-value]
-
-
-class LargestForces(Protocol):
-    """What has largest forces [N]: a run, a driven motion, an observation, a point of a curve, an attractor."""
-
-    @property
-    def max_input_force(self) -> float: ...
-    @property
-    def max_output_force(self) -> float: ...
-    @property
-    def max_output_force_elastic(self) -> float: ...
-
-
-class HasForces(LargestForces, Protocol):
-    """Largest forces with their relative errors."""
-
-    @property
-    def force_errors(self) -> ForceErrors: ...
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -216,7 +177,7 @@ class Run(RecordedMotion):
     energy_residual: float | None
     cost: Cost
     start: str = AT_REST
-    force_errors: ForceErrors = ForceErrors()
+    force_errors: ForceErrors = field(default_factory=ForceErrors)
     jumps: Jumps = field(default_factory=Jumps)
 
     @property
@@ -260,20 +221,8 @@ class Run(RecordedMotion):
         """Regime, largest forces and errors."""
         error = self.displacement_error
         reached = "no error stated" if error is None else f"relative error {error:.1e}"
-        return [self.regime.sentence, *said_forces(self),
+        return [self.regime.sentence, *force_sentences(self),
                 f"{len(self.time)} samples; displacements: {reached}; {self.status.replace('-', ' ')}"]
-
-
-#: Attributes with the relative errors of a run's largest forces.
-RUN_ERRORS = ("error_estimate_input", "error_estimate_output", "error_estimate_elastic")
-
-
-def said_forces(motion: HasForces) -> list[str]:
-    """The largest forces in words, with their errors."""
-    errors = (motion.force_errors.output, motion.force_errors.elastic, motion.force_errors.input)
-    forces = (motion.max_output_force, motion.max_output_force_elastic, motion.max_input_force)
-    return [f"largest {name} force {force:.6g} N" + (", no error stated" if e is None else f", relative error {e:.1e}")
-            for name, force, e in zip(("output", "elastic output", "input"), forces, errors, strict=True)]
 
 
 def require_run(value: object) -> None:

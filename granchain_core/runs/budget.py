@@ -20,7 +20,7 @@ from ..integrate.scaling import ScaledChain, scale_chain
 from ..scene import Scene
 from ..scene.quantities import QUANTITIES
 
-#: The accuracy that is offered if the run would fit with it.
+#: Accuracy that is offered if the run would then fit the budget.
 _COARSE_ACCURACY = "1e-4"
 #: Default budget of a run [s].
 BUDGET = 86_400.0
@@ -75,7 +75,7 @@ def _estimate(scaled: ScaledChain, setting: MethodSetting, periods: int, samples
 
 
 def picture_seconds(scene: Scene, periods: int, samples: int) -> float:
-    """What `periods` of the fixed-step method take, with `samples` kept of each [s]."""
+    """Time of `periods` of the fixed-step method, with `samples` kept of each [s]."""
     setting, scaled = fixed_step_setting(), scale_chain(scene)
     cost = METHODS[setting.method].cost
     steps = float(periods * setting.steps_per_period(scaled, samples))

@@ -83,7 +83,7 @@ class LiveChain:
 
     @property
     def state(self) -> State:
-        """Where the chain is now."""
+        """The present state of the chain."""
         return self._engine.state
 
     def change(self, scene: Scene) -> None:

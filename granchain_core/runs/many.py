@@ -59,10 +59,10 @@ class Runs(list[Any], Labelled):
     def tables(self) -> tuple[Table, ...]:
         """One table, `runs`: each scene's knobs and what failed; of motions regime and largest forces with errors."""
         along = ("run",)
-        columns = {"scene": _words([one.name for one in self.scenes], "name of the scene"),
-                   "scene_digest": _words([one.digest for one in self.scenes], "hash of everything in the scene")}
+        columns = {"scene": _words([scene.name for scene in self.scenes], "name of the scene"),
+                   "scene_digest": _words([scene.digest for scene in self.scenes], "hash of everything in the scene")}
         for name, quantity in QUANTITIES.items():
-            values = [getattr(one, name) for one in self.scenes]
+            values = [getattr(scene, name) for scene in self.scenes]
             if any(isinstance(value, str) for value in values):
                 columns[name] = _words([str(value) for value in values], quantity.label)
             else:
@@ -73,12 +73,13 @@ class Runs(list[Any], Labelled):
 
     def _of_motions(self) -> dict[str, Column]:
         """Forces, errors and regimes where all results are motions."""
-        along, runs = ("run",), [one.run if isinstance(one, Settled) else one for one in self]
-        if not all(one is None or isinstance(one, Run) for one in runs):
+        along, runs = ("run",), [motion.run if isinstance(motion, Settled) else motion for motion in self]
+        if not all(motion is None or isinstance(motion, Run) for motion in runs):
             return {}
-        regimes = [Regime.unsettled(0) if one is None else one.regime for one in self]
-        forces = np.array([[np.nan] * 3 if one is None else [getattr(one, name) for name in MAXIMA] for one in runs])
-        errors = np.array([[np.nan] * 3 if one is None else one.force_errors.row for one in runs])
+        regimes = [Regime.unsettled(0) if motion is None else motion.regime for motion in self]
+        forces = np.array([[np.nan] * 3 if motion is None else [getattr(motion, name) for name in MAXIMA]
+                           for motion in runs])
+        errors = np.array([[np.nan] * 3 if motion is None else motion.force_errors.row for motion in runs])
         return {**force_columns(forces.reshape(-1, 3), along, "over the recorded time"),
                 **error_columns(errors.reshape(-1, 3), along), **regime_columns(regimes, "run")}
 
@@ -87,11 +88,11 @@ class Runs(list[Any], Labelled):
         return made()
 
     def heading(self) -> str:
-        """How many of which scenes."""
-        return f"{len(self)} runs of {', '.join(sorted({one.name for one in self.scenes}))}"
+        """Number and names of the scenes."""
+        return f"{len(self)} runs of {', '.join(sorted({scene.name for scene in self.scenes}))}"
 
     def summary(self) -> list[str]:
-        """How many of which regime, and what failed."""
+        """Number of results by regime, and the failures."""
         kinds: dict[str, int] = {}
         for result in self:
             regime = getattr(result, "regime", None)
@@ -180,7 +181,7 @@ def run_many(scenes: Iterable[Scene], work: Callable[..., Any] = run,
 
 
 def attempted(work: Callable[..., Any], chain: Scene, options: dict[str, Any]) -> Outcome:
-    """What `work` makes of a chain, or the sentence with which its computation failed."""
+    """The result of `work` for a chain, or the sentence with which the computation failed."""
     try:
         return work(chain, **options), ""
     except (ComputationError, OverBudget) as problem:

@@ -22,7 +22,7 @@ from ..scene import Scene
 
 @dataclass(eq=False)
 class Reached:
-    """Where one computation has come: its engine, the discarded periods done, and its latest strobes (P + 1, 2, N)."""
+    """The progress of one computation: its engine, the discarded periods done, and its latest strobes (P + 1, 2, N)."""
 
     engine: Engine
     done: int
@@ -50,7 +50,7 @@ class RunCheckpoints:
                 self._there = dict(kept)
 
     def begin(self, computation: int, engine: Engine) -> Reached | None:
-        """Where a computation by such an engine had come; None where it has to be begun."""
+        """The kept progress of a computation by such an engine; None where there is none."""
         self.computation, self.done = computation, 0
         name = f"{computation} checkpoint"
         if name not in self._there:

@@ -35,10 +35,10 @@ from .run_checkpoints import Reached, RunCheckpoints
 MOST_RUN_PERIODS = 10_000_000
 #: [no threshold] Stated error above which a motion may be chaotic: finer computations do not help then.
 _CHAOS_SUSPECTED_ABOVE = 0.3
-#: [no threshold] Such a motion is refined until its energy residual is below this factor times the accuracy: energies
-#: are quadratic.
+#: [no threshold] A motion that may be chaotic is refined until its energy residual is below this factor times the
+#: accuracy: energies are quadratic.
 _RESIDUAL_PER_ACCURACY = 10.0
-#: [no threshold] Time of the next finer computation over that of the last.
+#: [no threshold] Time of the next finer computation over the time of the last.
 _REFINED_COST_RATIO = 2.0
 #: [all] `run`: fewest drive periods after which multipliers or a Lyapunov exponent are computed. A shorter run is
 #: judged by its strobes alone.

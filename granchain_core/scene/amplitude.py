@@ -100,13 +100,13 @@ class Amplitude:
 
     @classmethod
     def from_json(cls, data: Any) -> Amplitude:
-        """What `to_json` gave. Raises `BadInput` for anything else."""
+        """The amplitude that `to_json` wrote. Raises `BadInput` for anything else."""
         if not isinstance(data, dict) or set(data) != {"formula", "values", "frequencies", "source"}:
             raise BadInput("A drive amplitude has formula, values, frequencies and source.")
         rows = [data["values"], data["frequencies"]]
         listed = all(isinstance(row, list) for row in rows)
-        numbers = listed and all(isinstance(one, (int, float)) and not isinstance(one, bool)
-                                 for row in rows for one in row)
+        numbers = listed and all(isinstance(value, (int, float)) and not isinstance(value, bool)
+                                 for row in rows for value in row)
         if not isinstance(data["formula"], str) or not isinstance(data["source"], str) or not numbers:
             raise BadInput("A drive amplitude has a formula, numbers, and a source in words.")
         return cls(data["formula"], tuple(map(float, rows[0])), tuple(map(float, rows[1])), data["source"])

@@ -31,11 +31,12 @@ def _least(quantity: Quantity) -> float:
 #: The knobs that are fields of a scene; κ is computed. The wall, which may be named or a number, is checked by itself.
 _KNOBS = tuple(quantity for name, quantity in QUANTITIES.items()
                if name in {field.name for field in fields(Description)} and name != "wall")
-#: Those that are numbers, by what they must be at least: above 0, 0 or above, or any finite number.
+#: Knobs that are numbers, with their lower limits: above 0, 0 or above, or any finite number.
 _NUMBERS = (*((quantity.name, _least(quantity)) for quantity in _KNOBS if quantity.numeric and not quantity.whole),
             ("reference_overlap", _TINIEST))
-#: Those that count, and those that are words, with their choices.
+#: Knobs that are whole numbers.
 _COUNTS = tuple(quantity.name for quantity in _KNOBS if quantity.whole)
+#: Knobs that are words, with their choices.
 _WORDS = tuple((quantity.name, frozenset(quantity.choices)) for quantity in _KNOBS if not quantity.numeric)
 
 

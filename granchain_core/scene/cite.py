@@ -1,4 +1,4 @@
-"""What to cite for a scene: the software, the paper of the model, and the sources of its damping law and effects."""
+"""Sources to cite for a scene: the software, the paper of the model, and the sources of its damping law and effects."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _BREATHERS = ("C. Chong, F. Li, J. Yang, M. O. Williams, I. G. Kevrekidis, P. G.
 
 
 def citations(scene: Description) -> list[tuple[str, str]]:
-    """What for, and what to cite, for the model and the effects of a scene."""
+    """Subjects and the sources to cite for them: the model and the effects of a scene."""
     sources = [("software", _SOFTWARE), ("model", _PAPER), ("contact", _HERTZ)]
     if scene.has_dissipation and LAWS[scene.dissipation].source:
         sources.append((f"{scene.dissipation} damping", LAWS[scene.dissipation].source))

@@ -16,11 +16,12 @@ from .quantities import QUANTITIES, WALL_FACTORS
 
 
 def is_number(value: object) -> bool:
-    """Whether it is a real number, one of NumPy too, and not a truth value."""
+    """Whether a value is a real number, one of NumPy too, and not a truth value."""
     return isinstance(value, (float, int, np.floating, np.integer)) and not isinstance(value, bool)
 
 
-#: What a bead's values must be above, and may be at most. Poisson's ratio of a stable material is from −1 to 0.5.
+#: Limits of a bead's values: above the first, at most the second. Poisson's ratio of a stable material is from −1 to
+#: 0.5.
 BEAD_LIMITS = {"mass": (0.0, math.inf), "radius": (0.0, math.inf), "young": (0.0, math.inf), "poisson": (-1.0, 0.5)}
 
 
@@ -196,7 +197,7 @@ class Description:
 
     @property
     def drive_amplitude(self) -> float:
-        """How far the driver moves from its middle position [m]: A0, or 0 for one at rest."""
+        """Largest distance of the driver from its middle position [m]: A0, or 0 for a driver at rest."""
         return self.A0 if self.is_driven else 0.0
 
     @property

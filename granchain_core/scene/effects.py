@@ -62,11 +62,11 @@ class Effect:
                             "and `usual`, their values with it.")
 
     def label(self, scene: Description) -> str:
-        """What it is called in a scene."""
+        """Name of the effect in a scene."""
         return self.title if self.label_of is None else self.label_of(scene)
 
     def key(self, scene: Description) -> str:
-        """What it is called in the name of a compiled kernel."""
+        """Name of the effect in the name of a compiled kernel."""
         return self.name if self.key_of is None else self.key_of(scene)
 
 

@@ -21,7 +21,7 @@ MOST_BYTES = 100_000
 #: Sections of a scene file that are tables, with the names each may hold.
 TABLES = {"chain": ("pattern", "impurities", "start_velocity", "reference_overlap"), "knobs": tuple(QUANTITIES),
           "ranges": tuple(QUANTITIES)}
-#: What else a scene file may hold: texts, and its place in the list of scenes.
+#: Further entries of a scene file: texts, and its place in the list of scenes.
 WORDS = ("parent", "title", "look_at", "question", "paper", "order")
 _BEAD = tuple(field.name for field in fields(Bead))
 
@@ -79,8 +79,8 @@ def built(name: str, data: dict[str, Any]) -> Scene:
         "k": 0.0, "F0": 0.0, "wall": "bead", "dissipation": "linear", "tension": "allowed", "accuracy": 1e-6, **knobs,
         "name": name, "title": data.get("title", name), "look_at": data.get("look_at", ""),
         "paper": data.get("paper", ""), "reference_overlap": chain["reference_overlap"], "pattern": beads,
-        "impurities": [_impurity(one, beads) for one in _list(chain.get("impurities", ()), "impurities")],
-        "start_velocity": [_start(one) for one in _list(chain.get("start_velocity", ()), "start_velocity")],
+        "impurities": [_impurity(entry, beads) for entry in _list(chain.get("impurities", ()), "impurities")],
+        "start_velocity": [_start(entry) for entry in _list(chain.get("start_velocity", ()), "start_velocity")],
         "ranges": [_range(knob, ends) for knob, ends in data.get("ranges", {}).items()]})
     ranges = tuple((knob, float(low), float(high)) for knob, low, high in fields["ranges"])
     new = Scene(**{**fields, "ranges": ranges})
@@ -125,7 +125,7 @@ def _place(entry: dict[str, Any], name: str) -> int:
 
 
 def _impurity(entry: Any, beads: list[dict[str, Any]]) -> list[Any]:
-    """Place and bead; what the entry does not name is that of the pattern's bead there."""
+    """Place and bead; a value that the entry does not name is taken from the pattern's bead at that place."""
     values = _table(entry, "impurities", ("place", *_BEAD))
     place = _place(values, "impurities")
     own = {name: value for name, value in values.items() if name != "place"}

@@ -14,10 +14,10 @@ OVERLAP_POWER = 1.0 / EXPONENT
 RATE_POWER = (EXPONENT - 1.0) / 2.0
 #: Duration of a collision at relative velocity v, in units of (m*/K)^{2/5} v^{-1/5}.
 HERTZ_DURATION = 3.2180655
-#: Its peak force, (5/4)^{3/5}, in units of K^{2/5} (m* v²)^{3/5}.
+#: Peak force of a collision, (5/4)^{3/5}, in units of K^{2/5} (m* v²)^{3/5}.
 HERTZ_FORCE = 1.1432626
 #: Speed of the solitary wave with the largest force F, in units of K^{1/3} F^{1/6} / √m beads per unit of time.
 SOLITARY_BY_FORCE = 0.9055158
-#: The same with the largest velocity v of a bead, in units of (K/m)^{2/5} v^{1/5}. In Nesterenko's continuum it is
-#: (16/25)^{1/5}, since there F = K (5mV²/4K)³ and v = V (5mV²/4K)².
+#: Speed of the solitary wave with the largest bead velocity v, in units of (K/m)^{2/5} v^{1/5}. In Nesterenko's
+#: continuum it is (16/25)^{1/5}, since there F = K (5mV²/4K)³ and v = V (5mV²/4K)².
 SOLITARY_BY_VELOCITY = 0.9074701

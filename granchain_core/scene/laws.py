@@ -27,8 +27,8 @@ class Law:
 
     @property
     def slot(self) -> Any:
-        """Its slot class, loaded at first use because it imports the compiler."""
-        slots = {one.__name__: one for one in _dissipation().LAWS}
+        """The slot class of the law, loaded at first use because it imports the compiler."""
+        slots = {law.__name__: law for law in _dissipation().LAWS}
         if self.slot_class not in slots:
             raise TypeError(f"damping law {self.name!r}: {self.slot_class} has no `exponent` and no `power` in "
                             "kernels/effects/dissipation.py.")

@@ -54,7 +54,7 @@ class Quantity:
 
     @property
     def is_axis(self) -> bool:
-        """Whether it can be an axis of a map: a number that changes the motion and need not be whole."""
+        """Whether the quantity can be an axis of a map: a number that changes the motion and need not be whole."""
         return self.numeric and not self.whole and self.changes_motion
 
     @property
@@ -86,7 +86,7 @@ class Quantity:
 
     @property
     def _called(self) -> str:
-        """Its label and its name, once where they are the same word."""
+        """Label and name of the quantity, once where they are the same word."""
         return self.name if self.label == self.name else f"{self.label} {self.name}"
 
     def _number(self, value: object) -> float:

@@ -1,4 +1,4 @@
-"""What users are told of a scene: limits of the model, an impurity that is missing, a κ that has changed.
+"""Warnings about a scene: limits of the model, an impurity that is missing, a κ that has changed.
 
 Hertz contact needs small overlaps and elastic steel.
 """

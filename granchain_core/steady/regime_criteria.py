@@ -125,7 +125,7 @@ def mean_and_error(exponents: np.ndarray) -> tuple[float, float]:
     """Mean of the exponents of overlapping blocks, and its standard error."""
     values = exponents.tolist()  # ten numbers: an array would take longer
     mean = math.fsum(values) / len(values)
-    variance = math.fsum((one - mean) ** 2 for one in values) / (len(values) - 1)
+    variance = math.fsum((value - mean) ** 2 for value in values) / (len(values) - 1)
     return mean, math.sqrt(OVERLAP_FACTOR * variance / len(values))
 
 

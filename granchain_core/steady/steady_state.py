@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..results.forces import ForceErrors
 from ..results.regime import Regime
-from ..results.run import ForceErrors
 from ..scene import Scene
 from ..scene.state import State
 

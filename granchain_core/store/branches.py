@@ -34,7 +34,7 @@ from ..steady.regime_criteria import LONGEST_LOCKED_PERIOD
 from ..tables import MAXIMA
 from .writing import write_file, write_result
 
-#: How a half-branch can have ended.
+#: Ends of half-branches.
 _ENDS = ("", "reached", "returned", "closed", "merged", "lost")
 #: The interval that a contact gains, by its word in files.
 _GAINED = {event: gained for gained, event in EVENTS.items()}

@@ -21,9 +21,9 @@ from ..errors import FAILURES
 from ..hdf5 import File, opened
 from ..hdf5.border import one_of, within
 from ..hdf5.plain import Refused
+from ..results.forces import ForceErrors
 from ..results.regime import FOUND_BY, NAMES, Regime
 from ..results.regime_columns import EVIDENCE, MORE_EVIDENCE
-from ..results.run import ForceErrors
 from ..scene import Amplitude, Scene
 from ..scene.state import rest
 from ..steady.curve.curve import Curve, CurvePoint
@@ -33,7 +33,7 @@ from ..tables.words import ERRORS
 from .writing import or_none, write_file, write_result
 
 _NUMBERS = ("frequency", *MAXIMA, *ERRORS)
-#: How the computation of a point can have ended.
+#: Values of the `status` of a point.
 _OUTCOMES = ("done", *FAILURES)
 
 
@@ -69,7 +69,7 @@ def _read(file: File) -> Curve:
 
 
 def _evidence(file: File, shape: tuple[int, ...]) -> list[dict[str, Any]]:
-    """What is known of each point's regime; what a file from before it was kept does not have is not known."""
+    """Regime and evidence of each point; evidence that an older file does not have is not known."""
     numbers = {name: file.numbers(f"curve/{name}", shape, "any") if file.has(f"curve/{name}")
                else np.full(shape, np.nan) for name in EVIDENCE | MORE_EVIDENCE}
     run, followed, approaches = (_whole(file, name, shape, most) for name, most in (

@@ -17,16 +17,17 @@ from ..errors import BadInput
 from ..hdf5 import File, opened
 from ..hdf5.border import entries, finite, one_of, within
 from ..hdf5.plain import Refused
+from ..results.forces import RUN_ERRORS, ForceErrors
 from ..results.recorded_motion import motion_units
 from ..results.regime import FOUND_BY, NAMES, Regime
-from ..results.run import AT_REST, GIVEN_STATE, RUN_ERRORS, RUN_STARTS, Cost, ForceErrors, Jumps, Run
+from ..results.run import AT_REST, GIVEN_STATE, RUN_STARTS, Cost, Jumps, Run
 from ..tables import MAXIMA
 from ..tables.table import units_by_path
 from .writing import or_none
 
-#: What a run's `status` can be.
+#: Values of a run's `status`.
 STATUSES = ("done", "accuracy-not-reached", "over-budget")
-#: What older files of a steady state say for `GIVEN_STATE`.
+#: Spelling of `GIVEN_STATE` in older files of a steady state.
 _PREVIOUS_STATE = "previous state"
 #: Functions of granchain_core.store that read other results, by a table of the file.
 _LOADED = {"curve": "load_curve", "branch": "load_branch"}
@@ -99,7 +100,7 @@ def _read(file: File) -> Run:
 
 
 def _start(file: File) -> str:
-    """Where a run began; files written before it was kept are of runs from rest."""
+    """The start of a run; files without this entry, from older versions, are of runs from rest."""
     if not file.stated("start"):
         return AT_REST
     text = file.text("start")
@@ -107,7 +108,7 @@ def _start(file: File) -> str:
 
 
 def _rows(file: File) -> int:
-    """How many samples a run has, at least one."""
+    """Number of samples of a run, at least one."""
     shape = file.shape("run/time")
     if len(shape) != 1 or shape[0] < 1:
         raise Refused(f"/run/time has shape {shape}, expected one row of samples")

@@ -59,17 +59,18 @@ def _pieces(table: Table, name: str, column: Column, rows: tuple[str, ...]) -> l
 
     One that does not depend on every axis of the rows is repeated along the others.
     """
-    others = [one for one in column.axes if one not in rows]
-    along = [one for one in rows if one in column.axes]
-    values = column.words().transpose([column.axes.index(one) for one in (*others, *along)])
+    others = [axis_name for axis_name in column.axes if axis_name not in rows]
+    along = [axis_name for axis_name in rows if axis_name in column.axes]
+    values = column.words().transpose([column.axes.index(axis_name) for axis_name in (*others, *along)])
     count = values.shape[:len(others)]
-    sizes = [len(table.axes[one].values) for one in rows]
-    values = np.broadcast_to(values.reshape(*count, *(size if one in along else 1 for one, size in
+    sizes = [len(table.axes[axis_name].values) for axis_name in rows]
+    values = np.broadcast_to(values.reshape(*count, *(size if axis_name in along else 1 for axis_name, size in
                                                       zip(rows, sizes, strict=True))), (*count, *sizes))
     flat = values.reshape(*count, -1)
     if not others:
         return [(name, flat)]
-    return [("_".join([name, *(str(table.axes[one].values[i]) for one, i in zip(others, place, strict=True))]),
+    return [("_".join([name, *(str(table.axes[axis_name].values[i])
+                               for axis_name, i in zip(others, place, strict=True))]),
              flat[place]) for place in itertools.product(*map(range, count))]
 
 

@@ -36,11 +36,11 @@ class Labelled:
         raise NotImplementedError
 
     def attributes(self) -> dict[str, Attribute]:
-        """What the result has one of, and where it comes from: the attributes of its file's root."""
+        """Single numbers and words of the result, and its provenance: the attributes of its file's root."""
         raise NotImplementedError
 
     def summary(self) -> Sequence[str]:
-        """What is worth reading first, in short sentences with units and errors."""
+        """The main results in short sentences with units and errors."""
         raise NotImplementedError
 
     @property
@@ -49,7 +49,7 @@ class Labelled:
         return ()
 
     def heading(self) -> str:
-        """What it is, and of which scene, without the knobs that it varies."""
+        """The kind of result and its scene, without the knobs that it varies."""
         return f"{type(self).__name__} of {scene_in_words(self.scene, self.varied)}"
 
     def to_xarray(self, table: str = "") -> xarray.Dataset:
@@ -77,7 +77,7 @@ class Labelled:
         return frame(chosen, (rows,) if rows else chosen.rows, self.attributes())
 
     def _table(self, name: str) -> Table:
-        tables = {one.name: one for one in self.tables()}
+        tables = {table.name: table for table in self.tables()}
         if not tables:
             raise BadInput("There is nothing in this result yet.")
         if name and name not in tables:
@@ -85,11 +85,11 @@ class Labelled:
         return tables[name or next(iter(tables))]
 
     def __repr__(self) -> str:
-        """What `print` shows: heading and summary, where a dataclass would show whole arrays."""
+        """Heading and summary, which `print` shows; a dataclass would show whole arrays."""
         return as_text(self.heading(), self.summary())
 
     def _repr_html_(self) -> str:
-        """What a notebook shows."""
+        """The result as HTML, which a notebook shows."""
         return as_html(self.heading(), self.summary(), self.tables())
 
     def _repr_mimebundle_(self, include: object = None, exclude: object = None) -> dict[str, Any]:

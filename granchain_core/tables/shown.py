@@ -14,12 +14,12 @@ _ROW = "text-align:left;background:none"
 
 def as_text(heading: str, sentences: Sequence[str]) -> str:
     """For a terminal."""
-    return "\n".join([heading, *(f"  {one}" for one in sentences)])
+    return "\n".join([heading, *(f"  {sentence}" for sentence in sentences)])
 
 
 def as_html(heading: str, sentences: Sequence[str], tables: Sequence[Table]) -> str:
     """For a notebook: no more than fits a cell, in its own colours; what it holds is folded away."""
-    lines = "".join(f"<div>{html.escape(one)}</div>" for one in sentences)
+    lines = "".join(f"<div>{html.escape(sentence)}</div>" for sentence in sentences)
     listed = "".join(_held(table) for table in tables)
     return (f"<div style='line-height:1.5'><b>{html.escape(heading)}</b>{lines}"
             f"<details><summary>names and units</summary>{listed}</details></div>")

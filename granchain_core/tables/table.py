@@ -66,7 +66,7 @@ class Table:
         if not self.rows:
             object.__setattr__(self, "rows", (next(iter(self.axes)),))
         for name, column in self.columns.items():
-            shape = tuple(len(self.axes[one].values) for one in column.axes)
+            shape = tuple(len(self.axes[axis_name].values) for axis_name in column.axes)
             if column.values.shape != shape:
                 raise ValueError(f"{self.name}/{name} has shape {column.values.shape}, and its axes {shape}")
 

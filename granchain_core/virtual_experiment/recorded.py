@@ -49,7 +49,7 @@ MOST_RECORDS = 10_000
 MOST_VALUES = 20_000_000
 #: Most drive periods of a record.
 MOST_RECORD_PERIODS = 10_000
-#: Where a series may begin.
+#: Possible beginnings of a series.
 STARTS = ("settled", "rest")
 #: Largest seed.
 _LARGEST_SEED = 2**63 - 1
@@ -57,7 +57,7 @@ _LARGEST_SEED = 2**63 - 1
 
 def virtual_series_csv(scene: Scene, periods: int, sensors: Sensors, seed: int = 0, stop: Stop | None = None,
                        start: str = "settled") -> str:
-    """What the sensors record over some drive periods: time, velocity, input and output force.
+    """The sensors' record over some drive periods: time, velocity, input and output force.
 
     Parameters
     ----------

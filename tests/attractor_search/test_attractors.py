@@ -12,7 +12,7 @@ from granchain_core.attractor_search import Attractor, attractors, listing
 from granchain_core.attractor_search.attractor import Origin
 from granchain_core.attractor_search.attractors import _locks, share
 from granchain_core.attractor_search.attractors import _regime as irregular_regime
-from granchain_core.attractor_search.sameness import Found
+from granchain_core.attractor_search.sameness import Candidate
 from granchain_core.results.regime import Regime
 from granchain_core.scene.state import State, rest
 from granchain_core.steady.steady_state import SteadyState
@@ -105,7 +105,7 @@ def test_what_was_called_irregular_and_comes_to_an_orbit_is_noticed(chain: Scene
     """A chain that settles within a few periods, and one without damping, which has no attractor."""
     regime = Regime("quasi-periodic", None, None, None, 400, (1e-4, 1e-4), lyapunov_periods=400)
     result = SteadyState(chain, np.ones(3), regime, None, rest(chain))
-    assert _locks(Found(result, np.zeros((1, 2, chain.N))), None) is comes
+    assert _locks(Candidate(result, np.zeros((1, 2, chain.N))), None) is comes
 
 
 @pytest.mark.parametrize(("mean", "error", "name"), [

@@ -9,7 +9,7 @@ import pytest
 
 import granchain_core
 from granchain_core import Scene, scene
-from granchain_core.attractor_search.sameness import Found, found, merged
+from granchain_core.attractor_search.sameness import Candidate, merged, with_section
 from granchain_core.execution.stop import Stop
 from granchain_core.integrate import Engine, dop853_setting
 from granchain_core.results.regime import Regime
@@ -22,10 +22,10 @@ CUT = scene("sec2").evolve(tension="cut")
 SECTION = np.random.default_rng(1).uniform(-1.0, 1.0, (2, 2, CUT.N))
 
 
-def result(section: np.ndarray, error: float) -> Found:
+def result(section: np.ndarray, error: float) -> Candidate:
     """A motion of period 2 with these strobes, and this relative error of its forces."""
     regime = Regime("periodic", 2, 0.5, 1e-7, 100)
-    return Found(SteadyState(CUT, np.ones(3), regime, np.full(3, error), rest(CUT)), section)
+    return Candidate(SteadyState(CUT, np.ones(3), regime, np.full(3, error), rest(CUT)), section)
 
 
 def test_the_two_copies_of_a_period_two_orbit_are_one() -> None:
@@ -48,11 +48,11 @@ def closed_curve(states: int, turns: float, first: float, radius: float = 1.0) -
     return radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)[:, :, None] * np.ones(CUT.N)
 
 
-def quasi_periodic(turns: float, first: float, radius: float = 1.0) -> Found:
+def quasi_periodic(turns: float, first: float, radius: float = 1.0) -> Candidate:
     """A motion on that circle, with its longer sections."""
     regime = Regime("quasi-periodic", None, None, None, 400, (1e-4, 1e-4))
     shortest, *longer = (closed_curve(states, turns, first, radius) for states in (400, 1600, 6400))
-    return Found(SteadyState(CUT, np.ones(3), regime, None, rest(CUT)), shortest,
+    return Candidate(SteadyState(CUT, np.ones(3), regime, None, rest(CUT)), shortest,
                  longer={len(section): section for section in longer})
 
 
@@ -70,7 +70,7 @@ def test_an_orbit_is_found_from_states_that_are_known_less_well_than_their_force
     orbit = granchain_core.orbit(chain)
     regime = Regime("periodic", 1, 0.5, 1e-7, 100)
     results = [SteadyState(chain, np.ones(3), regime, np.full(3, 1e-9), orbit.state, number=number) for number in (0, 1)]
-    near = [replace(found(one), section=found(one).section * factor) for one, factor in zip(
+    near = [replace(with_section(one), section=with_section(one).section * factor) for one, factor in zip(
         results, (1.0 + 2e-4, 1.0 - 2e-4), strict=True)]
     assert len(merged(near)) == 1
 
@@ -88,4 +88,4 @@ def test_copies_of_one_cut_orbit_that_begin_in_other_periods_are_one(chain: Scen
     engine.periods(1)
     later = settle_to_forces(chain, engine.state, Stop())
     assert first.regime.period == later.regime.period == period
-    assert [len(group) for group in merged([found(first), found(later)])] == [2]
+    assert [len(group) for group in merged([with_section(first), with_section(later)])] == [2]

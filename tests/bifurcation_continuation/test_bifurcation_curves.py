@@ -11,7 +11,8 @@ import pytest
 import granchain_core
 from granchain_core import BadInput, ComputationError, Scene, State, scene, settle
 from granchain_core.bifurcation_continuation import bifurcation_curves
-from granchain_core.bifurcation_continuation.continuation import BifurcationPoint, bifurcation_point, points_of_curve
+from granchain_core.bifurcation_continuation.continuation import points_of_curve
+from granchain_core.bifurcation_continuation.point import BifurcationPoint, bifurcation_point
 from granchain_core.parameter_maps import parameter_map
 
 pytestmark = pytest.mark.quick

@@ -27,8 +27,8 @@ from granchain_core import BadInput, CurvePoint, Scene, scene, settle, settling
 from granchain_core.experiment import Measured, Series, answers_of, compared, read_data
 from granchain_core.experiment.formats import FORMATS
 from granchain_core.hdf5 import VERSIONS, seal
+from granchain_core.results.forces import ForceErrors
 from granchain_core.results.regime import Regime
-from granchain_core.results.run import ForceErrors
 from granchain_core.scene.state import rest
 from granchain_core.virtual_experiment import Sensors, virtual_series_csv
 

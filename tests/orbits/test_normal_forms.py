@@ -10,8 +10,8 @@ import pytest
 from granchain_core.orbits.branch.normal_forms import (
     ANOTHER_MULTIPLIER,
     DISAGREE,
-    GENERIC,
     NO_MULTIPLIER,
+    NONDEGENERATE,
     NOT_DECIDED,
     RESONANCE,
     SEQUENCE_NEAR,
@@ -139,9 +139,9 @@ def folding(quadratic: float, beta: float) -> Callable[[float], MapNear]:
     return lambda side: near(lambda x: np.array([[1.0 - 2.0 * quadratic * x[0]]]), [np.sign(side) * beta / np.sqrt(quadratic)])
 
 
-def test_a_fold_is_generic_where_its_quadratic_coefficient_is_not_zero() -> None:
+def test_a_fold_is_nondegenerate_where_its_quadratic_coefficient_is_not_zero() -> None:
     form = found("fold", 1.0, folding(2.5, 1e-3))
-    assert form.criticality == GENERIC and form.coefficient == pytest.approx(2.5, rel=1e-6)
+    assert form.criticality == NONDEGENERATE and form.coefficient == pytest.approx(2.5, rel=1e-6)
     form = found("fold", 1.0, linear_and(-1.0, 1.0))  # a pitchfork
     assert (form.criticality, form.reason) == (NOT_DECIDED, DISAGREE)
 

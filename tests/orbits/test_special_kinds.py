@@ -10,7 +10,8 @@ import pytest
 
 from granchain_core import scene
 from granchain_core.orbits import BranchPoint, KnobAxis
-from granchain_core.orbits.branch.special import SpecialPoint, special_between
+from granchain_core.orbits.branch.special import SpecialPoint
+from granchain_core.orbits.branch.special_search import special_between
 
 pytestmark = pytest.mark.quick
 

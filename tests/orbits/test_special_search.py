@@ -7,7 +7,7 @@ import pytest
 
 from granchain_core import ComputationError, branch, scene
 from granchain_core.orbits import Branch, BranchPoint, SpecialPoint, check_branch
-from granchain_core.orbits.branch import special
+from granchain_core.orbits.branch import special_search
 from granchain_core.orbits.branch.between import Between
 from granchain_core.orbits.branch.equations import BranchEquations
 
@@ -78,7 +78,7 @@ def test_the_ends_of_every_interval_are_exact(fast: Branch) -> None:
 def test_a_map_that_is_used_again_is_a_new_one_to_the_last_bit(knob: str) -> None:
     shown = scene("sec2").evolve(N=3, f=700.0, F0=1.0 if knob == "F0" else 0.0)
     start = {"f": 700.0, "D": 100.0, "F0": 1.0, "k": 0.0}[knob]
-    axis = special.KnobAxis.of(shown, knob, start, 1.1 * start if start else 1e4)
+    axis = special_search.KnobAxis.of(shown, knob, start, 1.1 * start if start else 1e4)
     equations = BranchEquations(axis, 1)
     x = np.linspace(0.9, -0.4, 6)
     equations.reused_map(axis.end, 1e-9)(x)
@@ -93,4 +93,4 @@ def test_a_map_that_is_used_again_is_a_new_one_to_the_last_bit(knob: str) -> Non
 
 def test_nothing_is_searched_between_orbits_that_are_alike(fast: Branch) -> None:
     same = fast.points[0]
-    assert special._brackets(fast.axis, same, same, None) == []  # type: ignore[arg-type]  # it is not asked
+    assert special_search._brackets(fast.axis, same, same, None) == []  # type: ignore[arg-type]  # it is not asked

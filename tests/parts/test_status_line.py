@@ -8,7 +8,8 @@ import pytest
 
 from app.parts.status.status_line import accuracy_words, multiplier_words, regime_hint, settled_entries
 from granchain_core import Settled, scene, settle
-from granchain_core.results.run import GIVEN_STATE, ForceErrors
+from granchain_core.results.forces import ForceErrors
+from granchain_core.results.run import GIVEN_STATE
 from granchain_core.steady.curve.resonance import Place
 
 

@@ -12,8 +12,8 @@ from app.plots.curve import KEY, SWEEPS, curve
 from app.plots.theme import THEMES
 from granchain_core import Curve, CurvePoint, scene
 from granchain_core.experiment import read_data
+from granchain_core.results.forces import ForceErrors
 from granchain_core.results.regime import Regime
-from granchain_core.results.run import ForceErrors
 from granchain_core.scene.state import rest
 
 CHAIN = scene("sec2")

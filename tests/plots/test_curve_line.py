@@ -11,8 +11,8 @@ from app.curve.view import CurveFigure
 from app.plots.branches import BranchRows
 from app.plots.curve import curve_columns, line_pieces
 from granchain_core import CurvePoint, scene
+from granchain_core.results.forces import ForceErrors
 from granchain_core.results.regime import Regime
-from granchain_core.results.run import ForceErrors
 from granchain_core.scene.state import rest
 
 REGIMES = {

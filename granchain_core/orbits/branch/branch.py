@@ -117,10 +117,10 @@ class Branch(Labelled):
     def summary(self) -> list[str]:
         """Number of orbits, the reasons why it ended, and the special points."""
         ends = [half.reason or half.ended for half in self.half_branches if half.ended]
-        kinds = [f"{one.kind_words} at {self.axis.text(one.knob)}"
-                 + (f", {one.criticality_words()}" if one.normal_form and one.kind != "fold" else "")
-                 for one in self.special if one.kind != "grazing"]
-        grazings = sum(one.kind == "grazing" for one in self.special)
+        kinds = [f"{point.kind_words} at {self.axis.text(point.knob)}"
+                 + (f", {point.criticality_words()}" if point.normal_form and point.kind != "fold" else "")
+                 for point in self.special if point.kind != "grazing"]
+        grazings = sum(point.kind == "grazing" for point in self.special)
         undamped = [] if all(p.damped for p in self.points) else [
             "without damping stable orbits have their multipliers on the unit circle: a modulus up to "
             f"1 + {ON_CIRCLE:g} counts as on it, and nothing attracts"]
@@ -147,8 +147,8 @@ class Continuation(Iterator[BranchPoint]):
                        for half in branch.half_branches]
 
     def __next__(self) -> BranchPoint:
-        while left := [one for one in self._continuations if self._grows(one)]:
-            shorter: HalfContinuation = min(left, key=lambda one: len(one.half.points))
+        while left := [continuation for continuation in self._continuations if self._grows(continuation)]:
+            shorter: HalfContinuation = min(left, key=lambda continuation: len(continuation.half.points))
             point = next(shorter, None)
             if point is not None:
                 self._drop_double()
@@ -165,7 +165,7 @@ class Continuation(Iterator[BranchPoint]):
                     on_point(continuation.half)
 
         with ThreadPoolExecutor(len(self._continuations)) as pool:
-            for future in [pool.submit(follow, one) for one in self._continuations]:
+            for future in [pool.submit(follow, continuation) for continuation in self._continuations]:
                 future.result()
         self._drop_double()
         return self.branch
@@ -177,12 +177,12 @@ class Continuation(Iterator[BranchPoint]):
 
     @property
     def _closed(self) -> list[list[BranchPoint]]:
-        return [one.half.points for one in self._continuations if one.half.ended == "closed"]
+        return [continuation.half.points for continuation in self._continuations if continuation.half.ended == "closed"]
 
     def _drop_double(self) -> None:
         """Keep the half-branch that has closed with the fewest orbits, the first of two, once no other can do so."""
         closed = [half for half in self.branch.half_branches if half.ended == "closed"]
-        if closed and not any(self._grows(one) for one in self._continuations):
+        if closed and not any(self._grows(continuation) for continuation in self._continuations):
             self.branch = replace(self.branch, half_branches=(min(closed, key=lambda half: len(half.points)),))
 
 

@@ -40,8 +40,8 @@ def with_normal_forms(special: list[SpecialPoint], between: Between,
 
     `amplitudes` are those of the differences (`normal_form`), `tolerance` that of the map beside an orbit.
     """
-    return [replace(one, normal_form=_normal_form(one, between, amplitudes, tolerance)) if one.kind in BIFURCATIONS
-            else one for one in special]
+    return [replace(point, normal_form=_normal_form(point, between, amplitudes, tolerance))
+            if point.kind in BIFURCATIONS else point for point in special]
 
 
 def _normal_form(special: SpecialPoint, between: Between, amplitudes: Mapping[str, tuple[float, ...]],

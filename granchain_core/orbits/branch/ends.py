@@ -58,8 +58,9 @@ class Ends:
         """Index of the passage through +1 at which the difference of the orbit's halves changes sign: a merging."""
         if self.equations.period % 2:
             return None
-        for place, one in enumerate(special):
-            if one.kind in ("fold", "multiplier_one") and self._halves(one.before) @ self._halves(one.after) < 0.0:
+        for place, point in enumerate(special):
+            if (point.kind in ("fold", "multiplier_one")
+                    and self._halves(point.before) @ self._halves(point.after) < 0.0):
                 return place
         return None
 

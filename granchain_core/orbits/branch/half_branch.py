@@ -25,7 +25,8 @@ from .ends import Ending, Ends
 from .equations import BranchEquations, Solved
 from .newton import Near
 from .point import BranchPoint, recorded, unrecorded
-from .special import SpecialPoint, special_between
+from .special import SpecialPoint
+from .special_search import special_between
 from .steps import FIRST_STEP, LARGEST_CORRECTION, LEAST_COSINE, SHORTEST_STEP, next_step, predicted
 
 #: Points from the starting orbit on before the branch may close on itself.
@@ -118,7 +119,7 @@ class HalfContinuation(Iterator[BranchPoint]):
     @property
     def _last_two(self) -> list[BranchPoint]:
         """The last two orbits, or the starting orbit alone."""
-        return [*self.half.points[-2:], *(one.ending.point for one in self._ahead)][-2:]
+        return [*self.half.points[-2:], *(ahead.ending.point for ahead in self._ahead)][-2:]
 
     def _advance(self) -> None:
         """Compute the next orbit ahead; halve the step where it is too long."""

@@ -122,7 +122,7 @@ class Newton:
         raise self._failure()
 
     def solve_exact(self) -> Flow:
-        """Solve for the orbit itself, from that of the quick map; returns the exact map with its derivative there."""
+        """Solve for the orbit of the exact map from that of the quick one; returns that map with its derivative."""
         quick = self._quick_end() if self._quick_end_here is None else self._quick_end_here
         end, ratio = self._exact_end(TOLERANCE), 1.0
         self._record(end)
@@ -243,7 +243,7 @@ class Newton:
         return orbit_change(end - x, x, self._rate)
 
     def _record(self, end: np.ndarray) -> float:
-        """The same residual, added to `residuals`."""
+        """The residual as before, appended to `residuals`."""
         self.residuals.append(self._residual(end))
         return self.residuals[-1]
 

@@ -15,7 +15,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-SUPERCRITICAL, SUBCRITICAL, GENERIC, NOT_DECIDED = CRITICALITIES = (
+#: Criticalities as JSON and files spell them; a nondegenerate fold has always been "generic" there.
+SUPERCRITICAL, SUBCRITICAL, NONDEGENERATE, NOT_DECIDED = CRITICALITIES = (
     "supercritical", "subcritical", "generic", "not decided")
 
 #: Why a criticality is not decided; results, files and JSON spell these so.
@@ -27,7 +28,7 @@ NO_MULTIPLIER = "no multiplier of this kind is found on both sides"
 RESONANCE = "strong resonance"
 NO_MAP = "the map cannot be computed beside the orbit"
 REASONS = (SEQUENCE_IN_INTERVAL, SEQUENCE_NEAR, DISAGREE, ANOTHER_MULTIPLIER, NO_MULTIPLIER, RESONANCE, NO_MAP)
-#: As earlier versions spelled two of them, and what is read for these.
+#: Earlier spellings of two reasons, and the reasons that are read for them.
 EARLIER_REASONS = {"a contact grazes in the same interval of the knob": SEQUENCE_IN_INTERVAL,
                    "a contact grazes within the smallest amplitude": SEQUENCE_NEAR}
 
@@ -41,7 +42,7 @@ _SMALL_AMPLITUDE = 2e-5
 AMPLITUDES = {"fold": (_SMALL_AMPLITUDE,), "period_doubling": (_AMPLITUDE, _SMALL_AMPLITUDE),
               "neimark_sacker": (_AMPLITUDE, _SMALL_AMPLITUDE)}
 #: [branch] Largest difference of the two values of a coefficient, relative to their mean, at which its sign is decided.
-#: It would take an error of four times the difference to change it.
+#: Only an error of four times the difference would change the sign.
 _LARGEST_ERROR = 0.25
 #: [branch] Another multiplier is at the unit circle if its modulus is this near to 1. The passing one mostly is within
 #: 5e-4.
@@ -62,7 +63,8 @@ class NormalForm:
     Attributes
     ----------
     criticality : str
-        "supercritical" or "subcritical"; "generic" for a fold whose quadratic coefficient is not zero; "not decided".
+        "supercritical" or "subcritical"; "generic", that is nondegenerate, for a fold whose quadratic coefficient is
+        not zero; "not decided".
     coefficient : float
         |a| of a fold, c of a period doubling (supercritical: c > 0), Re d of a Neimark–Sacker point (supercritical:
         Re d < 0), for ξ in units of the scaled state's root mean square. NaN where it was not computed.
@@ -127,7 +129,7 @@ def normal_form(kind: str, multiplier: complex, sides: tuple[MapNear, MapNear],
         critical[1] = _with_sign_of(critical[1], critical[0])
     for amplitude in amplitudes[kind]:
         try:
-            form = _judged(kind, *(_COEFFICIENTS[kind](side, one, size) for side, one, size in
+            form = _judged(kind, *(_COEFFICIENTS[kind](side, vectors, size) for side, vectors, size in
                                     zip(sides, critical, (amplitude, 0.5 * amplitude), strict=True)))
         except NotSmooth as obstacle:
             form = NormalForm(NOT_DECIDED, reason=str(obstacle))
@@ -143,7 +145,7 @@ def _judged(kind: str, one: float, other: float) -> NormalForm:
     if not error < _LARGEST_ERROR * abs(mean):
         return NormalForm(NOT_DECIDED, mean, error, DISAGREE)
     if kind == "fold":
-        return NormalForm(GENERIC, mean, error)
+        return NormalForm(NONDEGENERATE, mean, error)
     return NormalForm(SUPERCRITICAL if (mean > 0.0) == (kind == "period_doubling") else SUBCRITICAL, mean, error)
 
 

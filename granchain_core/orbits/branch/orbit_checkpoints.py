@@ -54,7 +54,7 @@ class OrbitCheckpoints:
         self._written[half.direction] = len(half.points), len(half.special)
         self.kept.add({"period": period, "direction": half.direction, "first": [points, special],
                        "points": [_as_json(point) for point in half.points[points:]],
-                       "special": [special_as_json(one) for one in half.special[special:]],
+                       "special": [special_as_json(point) for point in half.special[special:]],
                        "step": half.step.hex(), "ended": half.ended, "reason": half.reason})
 
     def begin(self, branch: Branch) -> None:
@@ -72,8 +72,8 @@ class OrbitCheckpoints:
             for record in json.loads(content):
                 half = halves.setdefault(record["direction"], HalfBranch(record["direction"], []))
                 if record["first"] == [len(half.points), len(half.special)]:
-                    half.points += [_point(one) for one in record["points"]]
-                    half.special += [special_from_json(one) for one in record["special"]]
+                    half.points += [_point(entry) for entry in record["points"]]
+                    half.special += [special_from_json(entry) for entry in record["special"]]
                     half.step = float.fromhex(record["step"])
                     half.ended, half.reason = record["ended"], record["reason"]
                     period = record["period"]
@@ -89,7 +89,7 @@ def _packed(pieces: list[dict[str, Any]]) -> bytes:
 
 
 def _as_json(point: BranchPoint) -> dict[str, Any]:
-    record = {one.name: getattr(point, one.name) for one in fields(BranchPoint)}
+    record = {entry.name: getattr(point, entry.name) for entry in fields(BranchPoint)}
     for name in _ARRAYS:
         record[name] = np.asarray(record[name])
     record["multipliers"] = np.stack([record["multipliers"].real, record["multipliers"].imag])

@@ -18,9 +18,9 @@ from ...scene.state import State
 from ..orbit import liouville_error, sorted_multipliers
 from .equations import BranchEquations, Solved
 
-#: Tolerance of one step of the run that records forces and contacts: they are then good to about 1e-9.
+#: Tolerance per step of the run that records forces and contacts, with errors of about 1e-9.
 _TOLERANCE = 1e-11
-#: The same of an orbit that only helps to find others: overlaps are then good to about 1e-7.
+#: Tolerance per step of the run along an orbit that only helps to find others; overlaps have errors of about 1e-7.
 _ROUGH_TOLERANCE = 1e-9
 #: Room for turning points of overlaps at first, for each contact and period.
 _FIRST_ROOM = 32

@@ -17,7 +17,7 @@ from ...scene import Scene
 
 #: Steps in place of one default step.
 _REFINEMENT = 8.0
-#: Where a period takes more steps the flow is faster, since its steps are long while contacts are open.
+#: Most steps a period: with more the flow is faster, since its steps are long while contacts are open.
 _MOST_QUICK_STEPS = 30_000
 #: Numbers of steps have this many binary digits, so that orbits nearby share the table of the driver's motion.
 _BINARY_DIGITS = 4

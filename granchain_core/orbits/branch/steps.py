@@ -27,7 +27,7 @@ _GROWTH_FACTOR = 2.0
 _LEAST_STEP_FACTOR = 0.5
 #: [branch] Angle of the turn beyond which a step is rejected [degrees].
 _LARGEST_TURN = 30.0
-#: [no threshold] Its cosine.
+#: [no threshold] Cosine of the largest turn.
 LEAST_COSINE = np.cos(np.radians(_LARGEST_TURN))
 #: [branch] Largest distance from the predicted to the corrected point, as a fraction of the step.
 LARGEST_CORRECTION = 0.3

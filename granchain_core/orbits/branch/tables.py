@@ -16,9 +16,9 @@ from .normal_forms import NormalForm
 from .point import BranchPoint
 from .special import SPECIAL_KINDS, SpecialPoint
 
-#: What is told of a special point without a normal form.
+#: Entries of a special point without a normal form.
 _NO_NORMAL_FORM = NormalForm("")
-#: What the column `arm` holds.
+#: Meaning of the column `arm`.
 _HALF_BRANCH = "half-branch: 0 first, 1 second; direction in the attribute branch"
 #: The contact of a special point that is not a grazing.
 NO_CONTACT = -1
@@ -27,11 +27,11 @@ NO_CONTACT = -1
 def branch_tables(over: KnobAxis, half_branches: Sequence[HalfBranch]) -> tuple[Table, ...]:
     """All tables of a branch. Orbits come half-branch by half-branch, each from the starting orbit."""
     points = [(place, point) for place, half in enumerate(half_branches) for point in half.points]
-    special = [(place, one) for place, half in enumerate(half_branches) for one in half.special]
+    special = [(place, point) for place, half in enumerate(half_branches) for point in half.special]
     return (_orbits("branch", over, [point for _, point in points], [place for place, _ in points]),
-            _special(over, [one for _, one in special], [place for place, _ in special]),
-            _orbits("special_before", over, [one.before for _, one in special]),
-            _orbits("special_after", over, [one.after for _, one in special]))
+            _special(over, [point for _, point in special], [place for place, _ in special]),
+            _orbits("special_before", over, [point.before for _, point in special]),
+            _orbits("special_after", over, [point.after for _, point in special]))
 
 
 def _orbits(name: str, over: KnobAxis, points: Sequence[BranchPoint],
@@ -50,7 +50,7 @@ def _orbits(name: str, over: KnobAxis, points: Sequence[BranchPoint],
     residuals = np.full((len(points), longest), np.nan)
     for row, point in zip(residuals, points, strict=True):
         row[: len(point.residuals)] = point.residuals
-    forces = np.array([[getattr(point, one) for one in MAXIMA] for point in points]).reshape(-1, 3)
+    forces = np.array([[getattr(point, name) for name in MAXIMA] for point in points]).reshape(-1, 3)
     of_state, of_tangent = ("point", "component"), ("point", "coordinate")
     which = {} if half_branches is None else {
         "arm": Column(np.array(half_branches, dtype=np.int64), along, "1", _HALF_BRANCH)}
@@ -103,7 +103,7 @@ def _special(over: KnobAxis, special: Sequence[SpecialPoint], half_branches: Seq
                         "what the contact has once more on one side: touch (a closed interval) or separation (an open "
                         "one)"),
         "criticality": Column(words([form.criticality for form in forms]), along, "",
-                              "supercritical, subcritical, generic (a fold) or not decided"),
+                              "supercritical, subcritical, generic (a nondegenerate fold) or not decided"),
         "coefficient": Column(number([form.coefficient for form in forms]), along, "1",
                               "coefficient of the normal form that decides it, NaN where not computed"),
         "coefficient_error": Column(number([form.error for form in forms]), along, "1",

@@ -59,11 +59,14 @@ class Start:
 
 
 class Stage(Enum):
-    """What a job runs, or waits to run."""
+    """The run that a job is in, or waits for."""
 
-    COARSE = "with coarse steps, until its regime is decided"
-    FINE = "with fine steps, on the periodic orbit of its coarse run"
-    EXPONENT = "with coarse steps, beside a neighbour, so that its Lyapunov exponent is measured"
+    #: The motion with coarse steps, until its regime is decided.
+    COARSE = "coarse"
+    #: The periodic orbit of the coarse run, with fine steps.
+    FINE = "fine"
+    #: The motion with coarse steps beside a neighbouring trajectory, which gives its Lyapunov exponent.
+    EXPONENT = "exponent"
 
 
 @dataclass(eq=False)
@@ -79,7 +82,7 @@ class BatchJob:
     periods_run : int
         Drive periods from the start to `y`.
     stage : Stage
-        What it runs, or waits to run.
+        The run that the job is in, or waits for.
     coarse : tuple of (Regime, np.ndarray) or None
         In the fine stage: regime and scaled largest forces (3,) of the coarse run.
     record : np.ndarray
@@ -204,7 +207,7 @@ def draft_result(job: BatchJob, batch: Batch, member: int) -> SteadyState:
 
 
 def outcome_of_coarse_run(job: BatchJob, batch: Batch, member: int) -> SteadyState | BatchJob | None:
-    """What follows a coarse run without an orbit: a job for the exponent, a result at the end of the budget, or None.
+    """The outcome of a coarse run without an orbit: a job that measures the exponent, or a result if no steps are left.
 
     None means that the member goes on.
     """

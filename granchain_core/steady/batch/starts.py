@@ -44,8 +44,8 @@ def settle_starts(starts: Iterable[Start], stop: Stop) -> Iterator[SteadyState]:
         for result in batch_states(together, stop):
             yield settled_alone(result, stop) if result.undecided or result.failure else result
         return
-    for one in together:
-        yield replace(settle_or_failure(one.scene, one.state, stop), number=one.number)
+    for start in together:
+        yield replace(settle_or_failure(start.scene, start.state, stop), number=start.number)
 
 
 def settle_on_all_cores(starts: Iterable[Start], stop: Stop | None = None,

@@ -41,7 +41,7 @@ class _Shared(Generic[Item]):
 def on_all_cores(work: Callable[[Iterator[Item]], Iterable[Result]], items: Iterable[Item], ended: Stop,
                  stop: Stop | None = None, workers: int | None = None,
                  pause: Callable[[], None] | None = None) -> Iterator[Result]:
-    """What `work` yields from `items`, in one thread for each core, in the order found.
+    """The results that `work` yields from `items`, in one thread for each core, in the order of completion.
 
     `stop` is read between results and ends the iteration, as closing the generator does; `ended`, which the kernels of
     `work` poll, is then set. `pause` is called before an item is drawn and may wait. Whatever exception ends a thread

@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ...results.forces import ForceErrors, force_sentences
 from ...results.regime import Regime
 from ...results.regime_columns import evidence_columns, regime_columns
-from ...results.run import ForceErrors, said_forces
 from ...scene import Amplitude, Scene
 from ...scene.state import State
 from ...tables import (
@@ -163,5 +163,5 @@ class Curve(Labelled):
         top = max(known, key=lambda p: p.max_output_force)
         counts = Counter(f"period {p.regime.period}" if p.regime.period else p.regime.name for p in self.points)
         return [f"{len(self.points)} points, {self.points[0].frequency:g} to {self.points[-1].frequency:g} Hz, "
-                f"start: {self.start}", f"highest at {top.frequency:g} Hz ({top.regime.sentence})", *said_forces(top),
-                ", ".join(f"{count} {name}" for name, count in sorted(counts.items()))]
+                f"start: {self.start}", f"highest at {top.frequency:g} Hz ({top.regime.sentence})",
+                *force_sentences(top), ", ".join(f"{count} {name}" for name, count in sorted(counts.items()))]

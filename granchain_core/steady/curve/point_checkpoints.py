@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ...execution.checkpoints import Kept
-from ...results.run import ForceErrors
+from ...results.forces import ForceErrors
 from ...scene.state import State
 from ..regime_criteria import Regime
 from .curve import CurvePoint

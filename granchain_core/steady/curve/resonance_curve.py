@@ -98,7 +98,7 @@ def _parted(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: str,
 
 def _computed(scene: Scene, left: list[Knobs], before: CurvePoint | None, start: str, stop: Stop | None,
               workers: int | None) -> Iterator[CurvePoint]:
-    """The points that are left; where the state is carried along, from that of the point before."""
+    """The remaining points; where the state is carried along, each starts in the state of the point before."""
     if left and start == "rest":
         yield from _from_rest(scene, left, stop, workers)
     elif left:

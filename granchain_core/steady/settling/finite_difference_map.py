@@ -26,7 +26,8 @@ _REFINEMENT = 4.0
 #: w. The error is its square times the map's third derivative, plus the method's noise divided by it. The noise is
 #: about 1e-10, and seldom up to 5e-9: the map jumps where a contact event passes the end of a step.
 _DIFFERENCE = 1e-5
-#: [no threshold] The same for a one-sided difference, whose error is the difference times the map's second derivative.
+#: [no threshold] Distance of the two states of a one-sided difference, relative to the largest displacement or w. The
+#: error is of the order of this distance times the map's second derivative.
 _ONE_SIDED_DIFFERENCE = 1e-6
 #: [period n, followed] Most iterations of Newton's method.
 _MOST_ITERATIONS = 10

@@ -2,7 +2,7 @@
 
 A motion may stay near an unstable orbit for hundreds of periods, and may need thousands to reach a stable one;
 meanwhile both look alike. So the orbit itself is found by Newton's method, and its multipliers predict the growth of
-small disturbances. The prediction is tested: from its present distance and from smaller and smaller ones, the motion
+small perturbations. The prediction is tested: from its present distance and from smaller and smaller ones, the motion
 must approach the orbit about as fast as the multipliers say. The search for orbits that a motion does not follow, which
 has no limit of the distance, is orbits/search.py.
 """
@@ -77,7 +77,7 @@ class NearbyOrbit:
 
     @property
     def period(self) -> int:
-        """Its period in drive periods."""
+        """The orbit's period in drive periods."""
         return self.stroboscopic_map.periods
 
     @property
@@ -151,7 +151,7 @@ def _lengths(rows: np.ndarray, offsets: np.ndarray) -> np.ndarray:
 
 
 def orbit_of(scene: Scene, period: int, x: np.ndarray, stop: Stop) -> NearbyOrbit | None:
-    """The orbit of `period` drive periods, or of a part of them, that Newton's method finds from x; else None."""
+    """The orbit of `period` drive periods, or of a divisor of them, that Newton's method finds from x; else None."""
     stroboscopic_map = FiniteDifferenceMap(scene, period, stop)
     point = fixed_point(stroboscopic_map, x)
     if point is None:

@@ -35,7 +35,7 @@ def settle_to_forces(scene: Scene, start: State | None, stop: Stop, periods_run:
 
 
 def _on_its_orbit(settling: SettlingRun) -> SteadyState:
-    """Largest forces on the refined orbit, and their errors from a finer computation of it.
+    """Largest forces on the refined orbit, and their errors by a finer computation.
 
     A chain that the finer method does not bring to the orbit is unsettled.
     """

@@ -17,7 +17,7 @@ from ...scene.state import State, checked_start, rest
 from ..orbit_errors import errors_between
 from .outcome import Settled
 
-#: Finest steps: how many of them take the place of one default step.
+#: Finest steps: number of steps in place of one default step.
 _FINEST_REFINEMENT = 64
 
 
