@@ -62,7 +62,8 @@ class NormalForm:
     Attributes
     ----------
     criticality : str
-        "supercritical" or "subcritical"; "generic" for a fold whose quadratic coefficient is not zero; "not decided".
+        "supercritical" or "subcritical"; "generic" for a nondegenerate
+        fold, whose quadratic coefficient is not zero; "not decided".
     coefficient : float
         |a| of a fold, c of a period doubling (supercritical: c > 0), Re d of a Neimark–Sacker point (supercritical:
         Re d < 0), for ξ in units of the scaled state's root mean square. NaN where it was not computed.

@@ -120,7 +120,7 @@ class SpecialPoint:
         form = self.normal_form
         if form is None or form.criticality != NOT_DECIDED:
             return self.criticality or ""
-        return f"{'not known to be generic' if self.kind == 'fold' else 'criticality not decided'}: {form.reason}"
+        return f"{'not known to be nondegenerate' if self.kind == 'fold' else 'criticality not decided'}: {form.reason}"
 
     @property
     def angle(self) -> float | None:
