@@ -37,6 +37,7 @@ from tools.lists import (
     table_of_orders,
     table_of_scenes,
     table_of_worker_pools,
+    test_command,
 )
 from tools.map_of_code import table_of_folders, table_of_pages
 from tools.marks import (
@@ -79,6 +80,7 @@ _TABLES = (
     ("docs/model.md", "knobs", table_of_knobs),
     ("README.md", "equations", equations),
     ("README.md", "scenes", table_of_scenes),
+    ("README.md", "test command", test_command),
     ("README.md", "commands", table_of_commands),
     ("docs/command-line.md", "commands", table_of_json),
     ("README.md", "commands with pictures", commands_with_pictures),
