@@ -13,7 +13,7 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 from .errors import BadInput, Cancelled, ComputationError, OverBudget
-from .former_names import present
+from .former_names import NAMES, present
 from .scene import Amplitude, Bead, Scene, scene, scene_names
 from .version import __version__
 
@@ -82,6 +82,8 @@ __all__ = [
     "pulse", "resonance_curve", "rotation_number", "run", "run_many", "save", "scene", "scene_names", "settle",
     "settling", "spectrum", "transfer", "work_precision",
 ]
+# `import *` gives former names too.
+__all__ += [row.former for row in NAMES if row.name in __all__]
 
 
 def __getattr__(name: str) -> Any:

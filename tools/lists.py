@@ -1,6 +1,7 @@
-"""Lists that follow from tables in the code: knobs (docs/model.md), methods (docs/method.md), equations and
-scenes (README.md), drives by a formula (docs/scenes.md), what is used of libraries (docs/libraries.md), metrics
-(docs/deployment.md), worker pools and the times of the connection (docs/dashboard.md).
+"""Lists that follow from tables in the code: knobs (docs/model.md), methods (docs/method.md), equations, scenes and the
+command that runs all tests (README.md), drives by a formula (docs/scenes.md), what is used of libraries
+(docs/libraries.md), metrics (docs/deployment.md), former names (docs/python.md), worker pools and the times of the
+connection (docs/dashboard.md).
 """
 
 from __future__ import annotations
@@ -127,6 +128,11 @@ def _also(former: FormerMetric) -> str:
     changed = "".join(f", where `{now}` is `{then}`" for now, then in former.values.items())
     label = f", with the label `{former.label}`{changed}" if former.label else ""
     return f" Also under its former name `{former.former}`{label}."
+
+
+def test_command() -> str:
+    """The command of README.md that runs all tests: the two lines of .ci/test-command as one."""
+    return f"```sh\n{' && '.join((ROOT / '.ci' / 'test-command').read_text(encoding='utf-8').splitlines())}\n```"
 
 
 def table_of_former_names() -> str:

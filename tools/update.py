@@ -8,6 +8,7 @@
   their names in AUTO and MatCont (docs/branches.md, glossary.md), uses of libraries (docs/libraries.md), metrics
   (docs/deployment.md), the map of the code (docs/design.md), the dashboard's messages and worker pools
   (docs/dashboard.md);
+- the table of steps in each recipe docs/add-….md;
 - numbers of the code in sentences of the docs (tools/numbers.py);
 - a row for every new scene in the test of share links (tools/links.py);
 - for every new or changed scene the largest values that its pictures are drawn to (tools/scales.py) and its picture in
@@ -20,7 +21,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tools import gallery, links, scales
+from tools import gallery, links, recipes, scales
 from tools.command_tables import commands_with_pictures, table_of_commands, table_of_json
 from tools.dashboard_tables import table_of_messages_of_the_browser, table_of_messages_of_the_server
 from tools.generated import with_part
@@ -37,6 +38,7 @@ from tools.lists import (
     table_of_picture_stages,
     table_of_scenes,
     table_of_worker_pools,
+    test_command,
 )
 from tools.map_of_code import table_of_folders, table_of_pages
 from tools.marks import (
@@ -79,6 +81,7 @@ _TABLES = (
     ("docs/model.md", "knobs", table_of_knobs),
     ("README.md", "equations", equations),
     ("README.md", "scenes", table_of_scenes),
+    ("README.md", "test command", test_command),
     ("README.md", "commands", table_of_commands),
     ("docs/command-line.md", "commands", table_of_json),
     ("README.md", "commands with pictures", commands_with_pictures),
@@ -97,6 +100,7 @@ _TABLES = (
     ("docs/dashboard.md", "messages of the server", table_of_messages_of_the_server),
     ("docs/dashboard.md", "worker pools", table_of_worker_pools),
     ("docs/dashboard.md", "times of the connection", table_of_connection_times),
+    *recipes.tables(),
 )
 
 

@@ -20,7 +20,7 @@ _MOST_LINES = 10
 #: [rotation] Distance in units of 1/P within which two peaks of the spectrum are one line: the width of the window's
 #: main lobe.
 _WIDTH = 8
-#: [rotation] Length of a record with the zeros that are appended, over that of the record.
+#: [rotation] Length of a record with the zeros that are appended, over its length without them.
 _PADDED = 2
 #: [rotation] Most curves that are visited in turn, before lines at several fractions are combined.
 MOST_CURVES = 16

@@ -33,12 +33,12 @@ LARGEST_DENOMINATOR = 60
 #: [rotation] Fewest passes, P |qρ − p|, of the states near a fraction from one of the places of a locked motion to the
 #: next.
 _FEWEST_PASSES = 4.0
-#: [rotation] Fewest such passes near a fraction of a denominator up to `_SMALL`. It is two widths of a line (`_WIDTH`
+#: [rotation] Fewest passes near a fraction whose denominator is at most `_SMALL`. It is two widths of a line (`_WIDTH`
 #: in strobe_lines.py). With fewer the line of one turn may lie within the width of a stronger multiple of it, or be
 #: left out as a drift; what is left are multiples of 2ρ. Of 240 curves with 0.5 to 30 passes, 4, 8, 12 and 16 left 12,
 #: 11, 3, 0 wrong.
 _FEWEST_PASSES_IF_SMALL = 16.0
-#: [rotation] Largest denominator that is small.
+#: [rotation] Largest denominator of a fraction that needs more passes.
 _SMALL = 5
 #: [rotation] Stated error of the average over the largest difference of averages. A few of them may all be small by
 #: chance.

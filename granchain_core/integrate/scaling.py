@@ -39,17 +39,19 @@ from ..scene.state import State
 _STEP = 0.2
 #: [step size] Fixed steps: longest step of the oscillation of a bead on its foundation, in radians of phase.
 _FOUNDATION_STEP = 0.1
-#: [step size] Fixed steps: half of RK4's stability limit on the negative real axis, 2.78, for the fastest damped mode:
-#: 4λ/m of the dashpots plus −∂P/∂v/m of forces from outside the chain.
+#: [step size] Fixed steps: largest product of the step and the rate of the fastest damped mode. It is half of RK4's
+#: stability limit on the negative real axis, 2.78; the rate is 4λ/m of the dashpots plus −∂P/∂v/m of forces from
+#: outside the chain.
 _DAMPING_LIMIT = 1.39
-#: [step size] Fixed steps: largest speed of a bead over that of what pushes it: a light bead leaves a heavy one twice
-#: as fast.
+#: [step size] Fixed steps: largest speed of a bead over the speed of the body that pushes it. A light bead leaves a
+#: heavy one twice as fast.
 _FASTEST = 2.0
 #: Called for every point of a curve.
 _EVALUATE_AT_PHASE = Entries(evaluate_at_phase)
-#: [step size] Fixed steps: fewest in one drive period, however slowly the chain moves.
+#: [step size] Fixed steps: fewest steps in a drive period, however slowly the chain moves.
 _FEWEST_STEPS_PER_PERIOD = 16
-#: [step size] Fixed steps: more in one drive period are refused. One period would take a good part of a minute.
+#: [step size] Fixed steps: most steps in a drive period; more are refused. One period would take a good part of a
+#: minute.
 MOST_STEPS_PER_PERIOD = 50_000_000
 
 

@@ -1,9 +1,7 @@
 """The table of what can be compiled ahead of time.
 
-The kernels of a new *structure* are compiled once per machine. A structure is the effects of a scene and their law,
-whether its beads are alike, and the vector that its bodies fit into. A slider changes it only where it turns an effect
-on or off (k, D, F0), makes beads unequal, or takes the bodies, N + 2, over a width of `CHAIN_WIDTHS`. The kernels come
-in pieces, each of which can be compiled in its own process.
+The kernels of a new *structure* (docs/design.md, "A structure selects the kernels") are compiled once per machine, in
+pieces, each of which can be compiled in its own process.
 """
 
 from __future__ import annotations

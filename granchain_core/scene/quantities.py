@@ -147,10 +147,10 @@ _TABLE = (
              "Force at rest in every contact; the wall stays in place. 0 is the sonic vacuum.",
              0.0, 1e4, "linear", 0.1, at_zero="nothing presses the beads"),
     Quantity("dimer", "m₂/m₁", "1", "m_2/m_1", "mass of every second bead",
-             "Mass of beads 2, 4, … over that of the others; of the same material, so the radius goes with its cube "
-             "root. 1 is a chain of equal beads.", 1e-3, 1e3, "log", short="dimer", main_if_set=True),
+             "Mass of beads 2, 4, … over the mass of the others. All are of one material, so the radius goes with its "
+             "cube root. 1 is a chain of equal beads.", 1e-3, 1e3, "log", short="dimer", main_if_set=True),
     Quantity("taper", "R_N/R₁", "1", "R_N/R_1", "taper",
-             "Radius of the last bead over that of the first; the radii form a geometric sequence.",
+             "Radius of the last bead over the radius of the first; the radii form a geometric sequence.",
              0.01, 100.0, "log", main_if_set=True),
     Quantity("striker", "mₛ/m", "1", "m_s/m", "mass of bead 1",
              "Mass of bead 1 (the striker) relative to a regular bead at its place.",

@@ -37,8 +37,8 @@ _LARGEST_NEUTRAL_EXPONENT = 0.01
 _LONGEST_COMPARISON = 1760
 #: [quasi-periodic] Drive periods in one of the three windows in which a slow approach must show.
 _SLOW_WINDOW = 100
-#: [quasi-periodic] Changes shrink if a window has less than this fraction of those of the window before. A closed curve
-#: sampled a hundred times shows its extent to about a per cent.
+#: [quasi-periodic] Changes shrink if a window has less than this fraction of the changes in the window before. A closed
+#: curve sampled a hundred times shows its extent to about a per cent.
 _SHRINK_FACTOR = 0.98
 #: [quasi-periodic] Changes of a departure are small below this, relative to the largest displacement and velocity.
 _LARGEST_DEPARTURE = 0.1

@@ -12,7 +12,7 @@ from forked import python
 
 from granchain_core.kernels.compiling.cache_folder import CACHE_FOLDER
 
-_PARTS = ("granchain_core", "app", "assets", "tests/chains.py", "tests/conftest.py", "pyproject.toml", "README.md", "docs/model.md",
+_PARTS = ("granchain_core", "app", "assets", "tests/chains.py", "tests/conftest.py", "pyproject.toml", "README.md", ".ci/test-command", "docs/model.md",
           "tests/numerics/test_orders.py", "docs/command-line.md",
           "tests/cli/test_json_keys.py", "tests/cli/test_command_lists.py", "tools/__init__.py", "tools/fuzzing", "tools/hostile",
           "tests/kernels/equations", "tests/reference/reference.npz")

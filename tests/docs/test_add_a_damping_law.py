@@ -25,7 +25,6 @@ def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_the_page_edits_three_files_and_writes_none() -> None:
     edits, new = files_of(PAGE)
     assert (len(edits), len(new)) == (3, 0)
-    assert PAGE.read_text(encoding="utf-8").splitlines()[0] == "# Add a damping law: edit 3 files, mention it in 4"
     mentioned = PAGE.read_text(encoding="utf-8").partition("\n## 4. ")[2]
     assert len(set(re.findall(r"\]\(([\w-]+\.md)\)", mentioned))) == 4  # CHANGELOG.md, not linked, is not counted
 

@@ -23,7 +23,6 @@ def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_the_page_edits_three_files_and_writes_two() -> None:
     edits, new = files_of(PAGE)
     assert (len(edits), len(new)) == (3, 2)
-    assert PAGE.read_text(encoding="utf-8").splitlines()[0].endswith(": edit 3 files, write 2")
 
 
 def test_the_figure_is_drawn_in_a_notebook_in_a_file_and_on_the_page(tree: Path) -> None:

@@ -22,7 +22,6 @@ def test_the_page_edits_two_files_and_writes_one() -> None:
     edits, new = files_of(PAGE, until=ERROR_CONTROL)
     assert (len(edits), len(new)) == (2, 1)
     assert len(files_of(PAGE)[0]) == 2 and len(files_of(PAGE)[1]) == 3  # with error control: two more
-    assert PAGE.read_text(encoding="utf-8").splitlines()[0] == "# Add a method of integration: edit 2 files, write 1 or 2"
 
 
 def test_the_new_method_has_its_order_and_its_row(tree: Path) -> None:

@@ -30,14 +30,12 @@ def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_the_page_edits_one_file_and_writes_five() -> None:
     edits, new = files_of(PAGE, PLOT)
     assert (len(edits - new), len(new)) == (1, 5)
-    assert PAGE.read_text(encoding="utf-8").splitlines()[0] == "# Add a page: edit 1 file, write 5"
 
 
 def test_a_plot_edits_four_files_and_writes_one() -> None:
     (edits, new), (_, of_the_page) = files_of(PAGE), files_of(PAGE, PLOT)
     plot = {block.path for block in blocks(PAGE)[len(blocks(PAGE, PLOT)):]}
     assert (len(plot & edits), len(new - of_the_page)) == (4, 1)
-    assert "edit 4 files, write one." in PAGE.read_text(encoding="utf-8").partition(PLOT)[2]
 
 
 def test_the_new_page_has_its_overlay_its_tab_and_its_hooks(tree: Path) -> None:

@@ -14,10 +14,9 @@ from granchain_core.kernels.effects.registry import in_simd_kernels
 PAGE = ROOT / "docs" / "add-an-effect.md"
 QUADRATIC = ROOT / "docs" / "add-a-quadratic-drag.md"
 #: The headings under which the effect is mentioned.
-MENTIONED = {PAGE: "## 5. Mention it: edit 1, and let a tool write the rest", QUADRATIC: "## 5. Mention it"}
-#: The first line of each page, and how many files it edits, writes, and edits to mention the effect.
-TITLES = {PAGE: ("# Add an effect: edit 6 files, write 3, mention it in 1", (6, 3, 1)),
-          QUADRATIC: ("# Add a drag that is quadratic in the velocity: edit 6 files, write 3, mention it in 1", (6, 3, 1))}
+MENTIONED = {PAGE: "## 5. Mention it, and let a tool write the rest", QUADRATIC: "## 5. Mention it"}
+#: How many files each page edits, writes, and edits to mention the effect.
+COUNTS = {PAGE: (6, 3, 1), QUADRATIC: (6, 3, 1)}
 
 
 def written_tests(page: Path) -> set[str]:
@@ -44,12 +43,10 @@ def quadratic(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.parametrize("page", [PAGE, QUADRATIC], ids=lambda page: page.stem)
-def test_the_page_edits_and_writes_as_many_files_as_it_says(page: Path) -> None:
+def test_the_page_edits_and_writes_few_files(page: Path) -> None:
     edits, new = files_of(page, MENTIONED[page])
     mentions = files_of(page)[0] - edits
-    title, counts = TITLES[page]
-    assert (len(edits), len(new), len(mentions)) == counts and files_of(page)[1] == new
-    assert page.read_text(encoding="utf-8").splitlines()[0] == title
+    assert (len(edits), len(new), len(mentions)) == COUNTS[page] and files_of(page)[1] == new
 
 
 def test_a_force_that_is_not_linear_in_the_velocity_passes_the_tests_the_page_writes(quadratic: Path) -> None:

@@ -179,12 +179,14 @@ def test_a_transformed_time_is_s_in_the_flow_and_xi_in_dop853_root():
     assert [path.name for path, text in texts.items() if former.search(text)] == []
 
 
-def test_ci_runs_the_second_command_of_the_readme():
-    """.ci/run takes the second sh block; it must be one line that runs pytest and makes its own environment."""
+def test_the_commands_of_the_readme_make_their_own_environment():
+    """One opens the dashboard, and one runs all tests, as .ci/run does; each is one line to copy."""
     shells = [block.text for block in blocks(ROOT / "README.md") if block.language == "sh"]
     assert len(shells) == 2
     assert all(text.count("\n") == 1 and text.startswith("python3 -m venv .venv && ") for text in shells)
     assert "granchain serve" in shells[0] and "-m pytest" in shells[1]
+    assert len((ROOT / ".ci" / "test-command").read_text("utf-8").splitlines()) == 2
+    assert "<.ci/test-command" in (ROOT / ".ci" / "run").read_text("utf-8")
 
 
 def test_every_scene_is_in_the_readme_and_every_knob_in_the_model():

@@ -42,8 +42,8 @@ _LOCATED_SETTING = fixed_step_setting(8)
 #: [period n] A batch: an orbit found by extrapolation needs multipliers if its contraction factor per orbit is above
 #: this.
 _SLOW_CONTRACTION = 0.998
-#: [period n] A batch: such an orbit, or one near which changes grew in the fine run, is accepted if its largest |μ|,
-#: by one-sided differences, is below this, else settled alone.
+#: [period n] A batch: an orbit that needs multipliers is accepted if its largest |μ|, by one-sided differences, is
+#: below this, else settled alone. An orbit near which changes grew in the fine run needs them too.
 _LARGEST_SURE_MULTIPLIER = 0.995
 #: [no threshold] Typical relative error of the fine run.
 _FINE_ERROR = typical_error(fixed_step_setting(FINE_STEPS_PER_COARSE))

@@ -34,8 +34,9 @@ PROMINENCE = 0.2
 #: valley. Only the border between peak and flank moves with it: for 3 % of the states at most from 0.15 to 0.25, for
 #: 7 % from 0.1 to 0.3.
 _PEAK_FRACTION = 0.2
-#: [response] A state is in a valley if its force is above the valley by less than this part of that height. States in
-#: between are on a flank. From 0.05 to 0.15 at most 1 % of the words for states change in `sec2`, 3 % in `rig`.
+#: [response] A state is in a valley if its force is above the valley by less than this part of the height of the next
+#: peak above it. States in between are on a flank. From 0.05 to 0.15 at most 1 % of the words for states change in
+#: `sec2`, 3 % in `rig`.
 _VALLEY_FRACTION = 0.1
 #: [response] A state is not on the curve if its force differs from the curve's at its frequency by this part. States
 #: from rest are on it for any value from 0.001 on. Of 590 states of `sec2` in sweeps up and down 544 are within 0.001,

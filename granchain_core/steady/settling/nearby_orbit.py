@@ -35,8 +35,8 @@ NEAR_AN_ORBIT = 0.1
 #: orbit near it is examined. On closed curves of section 2 and of the rig the least change was 1.8e-3 or more, on slow
 #: approaches 2.2e-4 or less.
 _ALMOST_PERIODIC = 1e-3
-#: [quasi-periodic] Last changes that must be below this: on a closed curve a motion may hardly move for some
-#: periods, and then goes on.
+#: [quasi-periodic] A batch: number of last changes that must all be below `_ALMOST_PERIODIC`. On a closed curve a
+#: motion may hardly move for some periods, and then goes on.
 _ALMOST_PERIODIC_CHANGES = 32
 #: [followed] The period tried is the shortest over which the motion changes by at most this many times the least
 #: change.
