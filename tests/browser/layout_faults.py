@@ -53,7 +53,8 @@ FAULTS = """() => {
     if (part.top > box.top + slack || part.bottom < box.bottom - slack) return "is cut";
     return "";
   };
-  const elements = [...all(document.body)].filter(seen).filter((one) => !inside(one, document.getElementById("lost")) && !one.closest(".unseen"));
+  const lost = document.getElementById("lost");
+  const elements = [...all(document.body)].filter(seen).filter((one) => !inside(one, lost) && !one.closest(".unseen"));
   const bars = ["bar", "foot", "side"].map((id) => document.getElementById(id)); // on a phone what scrolls passes under them
   const passes = (a, b) => scrolling && bars.some((bar) => inside(a, bar) !== inside(b, bar));
   const controls = elements.filter((one) => one.matches("button, input, select, summary, a[href]"));
@@ -100,7 +101,9 @@ FAULTS = """() => {
     }
   }
   for (const [i, [a, p]] of texts.entries()) for (const [b, q] of texts.slice(i + 1))
-    if (a !== b && Math.min(p.right, q.right) - Math.max(p.left, q.left) > 1 && Math.min(p.bottom, q.bottom) - Math.max(p.top, q.top) > 0.22 * p.height) // the box of a line is higher than its words
+    const wide = Math.min(p.right, q.right) - Math.max(p.left, q.left);
+    const high = Math.min(p.bottom, q.bottom) - Math.max(p.top, q.top);
+    if (a !== b && wide > 1 && high > 0.22 * p.height) // the box of a line is higher than its words
       faults.push(`${words(a)} and ${words(b)} are written over one another`);
   return [...new Set(faults)];
 }"""

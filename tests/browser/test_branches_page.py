@@ -50,7 +50,10 @@ def grows_without_being_made_anew(page: Page) -> None:
     page.wait_for_function(grown % (before + 5), polling=100)
     assert page.evaluate("kept === granchain.pages.get('branches').figures[0].document")
     page.evaluate("granchain.theme.next()")
-    page.wait_for_function("granchain.pages.get('branches').figures[0].document && kept !== granchain.pages.get('branches').figures[0].document")
+    page.wait_for_function("""() => {
+      const { document } = granchain.pages.get("branches").figures[0];
+      return document && kept !== document;
+    }""")
     page.wait_for_function(grown % (before + 5), polling=100)
 
 

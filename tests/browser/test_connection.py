@@ -132,7 +132,8 @@ def restarted(chromium: Browser, tmp_path_factory: pytest.TempPathFactory, reque
         page.get_by_role("tab", name="data").click()
         data = b"frequency_Hz,force_N\n40,5.5\n60,12.1\n"
         page.locator('input[type="file"]').set_input_files({"name": "mine.csv", "mimeType": "text/csv", "buffer": data})
-        page.wait_for_function("!granchain.connection.carried.playing && granchain.connection.carried.uploaded && granchain.address.url().search.includes('speed=5')")
+        page.wait_for_function("!granchain.connection.carried.playing && granchain.connection.carried.uploaded")
+        page.wait_for_function("granchain.address.url().search.includes('speed=5')")
         server.kill()
         looks_lost(page)
         drag_slider(page)
@@ -219,7 +220,8 @@ def test_what_the_server_never_heard_of_comes_back_too(chromium: Browser, tmp_pa
         page.wait_for_function(BELONGS, arg=float(value(page)))
 
 
-def test_a_page_that_has_lost_its_place_before_it_connects_comes_back(chromium: Browser, living: Server, request: pytest.FixtureRequest) -> None:
+def test_a_page_that_has_lost_its_place_before_it_connects_comes_back(chromium: Browser, living: Server,
+                                                                      request: pytest.FixtureRequest) -> None:
     """Its token is used up here, so its websocket is refused as that of a page that made room for a newer one."""
     context = chromium.new_context(viewport={"width": 1280, "height": 800})
     page = context.new_page()

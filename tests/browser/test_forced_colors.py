@@ -39,5 +39,6 @@ def test_controls_and_pictures_can_be_seen(page: Page) -> None:
     for name in ("#stage", "#curve"):
         assert style(page.locator(name), "forcedColorAdjust") == "none"
         assert style(page.locator(name), "backgroundColor") == page.evaluate(
-            "(one) => { const made = document.body.appendChild(document.createElement('i')); made.style.cssText = `forced-color-adjust: none; color: ${one}`;"
+            "(one) => { const made = document.body.appendChild(document.createElement('i'));"
+            " made.style.cssText = `forced-color-adjust: none; color: ${one}`;"
             " const found = getComputedStyle(made).color; made.remove(); return found }", paper), "dark marks on the ground of their theme"

@@ -10,7 +10,8 @@ from server import until
 from app.dashboard.table import PAGES
 
 #: The button of each popover, and what has the focus in the popover.
-POPOVERS = {"Help and keys (?)": ".popover.help", "Export: pictures, tables, a program": ".popover .export-menu :is(button, select) >> nth=0",
+POPOVERS = {"Help and keys (?)": ".popover.help",
+            "Export: pictures, tables, a program": ".popover .export-menu :is(button, select) >> nth=0",
             "Link to this picture": "input[aria-label='link to this picture']"}
 
 

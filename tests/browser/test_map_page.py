@@ -60,7 +60,8 @@ def page(filled: Page, request: pytest.FixtureRequest, log: Path) -> Page:
 def cell(page: Page) -> dict[str, Any]:
     """A cell of the finest size in the middle of the map."""
     cells = source(page, "map", "cells")
-    row = max(range(len(cells["x"])), key=lambda i: (1900 < cells["x"][i] < 2300) * (cells["spacing"][i] == 1) * cells["y"][i] * (cells["y"][i] < 5))
+    fine = [i for i in range(len(cells["x"])) if 1900 < cells["x"][i] < 2300 and cells["spacing"][i] == 1 and cells["y"][i] < 5]
+    row = max(fine, key=lambda i: cells["y"][i])
     return {name: cells[name][row] for name in ("x", "y", "tooltip")}
 
 

@@ -105,7 +105,8 @@ def ports(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[int, int, 
     (folder / "nginx.conf").write_text(AROUND.format(folder=folder, configuration=adapted(outside, plain, processes),
                                                       below_a_path=below_a_path(below, cookies.server_port)))
     commands = [[sys.executable, "-m", "app.cli", "serve", "--port", str(one), "--behind-proxy", "--allow-websocket-origin",
-                 f"127.0.0.1:{outside}", "--allow-websocket-origin", f"127.0.0.1:{below}", "--secret-file", str(folder / "secret")] for one in processes]
+                 f"127.0.0.1:{outside}", "--allow-websocket-origin", f"127.0.0.1:{below}", "--secret-file",
+                 str(folder / "secret")] for one in processes]
     commands.append([str(NGINX), "-c", str(folder / "nginx.conf"), "-e", str(folder / "error.log")])
     with ExitStack() as stack, (folder / "log").open("wb") as log:
         stack.callback(cookies.server_close)

@@ -45,7 +45,8 @@ def opened(page: Page) -> Locator:
 def test_it_breaks_without_foundation_synchronises_with_it_and_rests_unseen(visit: Visit) -> None:
     page = visit(reduced_motion="no-preference")
     sheet = opened(page)
-    expect(sheet).to_contain_text("it drifts: a common shift of all its beads grows exponentially, an instability, because nothing pulls them back", timeout=COMPILED)
+    expect(sheet).to_contain_text("it drifts: a common shift of all its beads grows exponentially, an instability, "
+                                  "because nothing pulls them back", timeout=COMPILED)
     expect(sheet).to_contain_text("predicted × 4.418")  # docs/observers.md: one multiplier outside
     page.wait_for_function(f"{LAST}?.[1] > 0.5")
     # as the main picture, which is the same chain

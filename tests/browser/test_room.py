@@ -81,7 +81,8 @@ def test_dark_differs_from_light_in_colours_only() -> None:
     dark = next(rule for rule in style_sheet().splitlines() if "data-theme=dark" in rule)
     values = re.findall(r"--[\w-]+: ([^;}]+)", dark)
     assert len(values) > 5 and all(re.fullmatch(r"#[0-9a-f]{6}", value.strip()) for value in values), dark
-    sheets = [path for path in (ROOT / "app").rglob("*.css") if re.search(r"data-theme\W+dark|prefers-color-scheme", path.read_text(encoding="utf-8"))]
+    sheets = [path for path in (ROOT / "app").rglob("*.css")
+              if re.search(r"data-theme\W+dark|prefers-color-scheme", path.read_text(encoding="utf-8"))]
     assert sheets == []
 
 

@@ -46,7 +46,8 @@ class Answers:
             route.fulfill(path=APP / path, content_type="text/javascript")
         else:
             self.opened.append(route.request.url)
-            scripts = f"window.pageConstants = {page_constants()};" + "".join(FILES[name].read_text(encoding="utf-8") for name in INLINE_SCRIPTS)
+            scripts = f"window.pageConstants = {page_constants()};" + "".join(
+                FILES[name].read_text(encoding="utf-8") for name in INLINE_SCRIPTS)
             route.fulfill(body=f"{BLANK}<script>{scripts}</script>", content_type="text/html")
 
 
@@ -82,7 +83,8 @@ def test_a_slider_goes_from_place_to_value_and_back(blank: Page, scale: str, low
 
 #: A value in SI, the factor of its unit, and what stands in the field.
 WRITTEN = [(340.0, 1.0, "340"), (0.0, 1.0, "0"), (5e-7, 1e-6, "0.5"), (1.23456789, 1.0, "1.23457"), (1e-4, 1.0, "1e-4"),
-           (-2.5e-4, 1.0, "-2.5e-4"), (1234567.0, 1.0, "1.23457e6"), (193e9, 1e9, "193"), (0.1 + 0.2, 1.0, "0.3"), (999999.0, 1.0, "999999")]
+           (-2.5e-4, 1.0, "-2.5e-4"), (1234567.0, 1.0, "1.23457e6"), (193e9, 1e9, "193"),
+           (0.1 + 0.2, 1.0, "0.3"), (999999.0, 1.0, "999999")]
 
 
 def test_a_number_in_a_knobs_field_has_six_figures(blank: Page) -> None:
@@ -91,9 +93,11 @@ def test_a_number_in_a_knobs_field_has_six_figures(blank: Page) -> None:
 
 
 def test_ticks_are_round_and_inside(blank: Page) -> None:
-    assert called(blank, "parts/toolkit/round_numbers.js", "ticks", [[0, 10, 5], [-1, 1, 4], [0.13, 0.47, 3], [0, 1e-9, 2], [20, 160, 5]]) == [
+    assert called(blank, "parts/toolkit/round_numbers.js", "ticks",
+                  [[0, 10, 5], [-1, 1, 4], [0.13, 0.47, 3], [0, 1e-9, 2], [20, 160, 5]]) == [
         [0, 2, 4, 6, 8, 10], [-1, -0.5, 0, 0.5, 1], [0.2, 0.4], [0, 5e-10, 1e-9], [50, 100, 150]]
-    assert called(blank, "parts/toolkit/round_numbers.js", "stepBelow", [[1], [7], [0.03], [9.99], [10], [450]]) == pytest.approx([1, 5, 0.02, 5, 10, 200])
+    assert called(blank, "parts/toolkit/round_numbers.js", "stepBelow",
+                  [[1], [7], [0.03], [9.99], [10], [450]]) == pytest.approx([1, 5, 0.02, 5, 10, 200])
 
 
 def test_the_browser_takes_the_prefixes_that_the_server_takes(blank: Page) -> None:
@@ -209,7 +213,10 @@ def test_an_event_that_is_not_declared_is_an_error(page: Page) -> None:
 def test_what_the_page_before_a_reload_kept_is_taken_once(page: Page) -> None:
     page.evaluate("sessionStorage.setItem('granchain-again', JSON.stringify({ playing: false }))")
     page.reload()
-    taken = page.evaluate("[granchain.connection.resumeState, granchain.connection.takeResumeState(), granchain.connection.takeResumeState()]")
+    taken = page.evaluate("""() => {
+      const { connection } = granchain;
+      return [connection.resumeState, connection.takeResumeState(), connection.takeResumeState()];
+    }""")
     assert taken == [{"playing": False}, {"playing": False}, None] and page.evaluate("granchain.connection.resumeState") is None
 
 

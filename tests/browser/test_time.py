@@ -117,7 +117,8 @@ def test_live_frames_advance_stop_when_paused_and_step_by_one_period(visit: Visi
 def test_a_line_with_values_goes_through_all_pictures_and_a_tape_measures_speed(visit: Visit) -> None:
     page = visit("?v=1&scene=sec2&f=340")
     settled(page)
-    area = page.evaluate("""() => { const box = document.getElementById("map").getBoundingClientRect(), style = getComputedStyle(document.getElementById("stage"));
+    area = page.evaluate("""() => { const box = document.getElementById("map").getBoundingClientRect();
+        const style = getComputedStyle(document.getElementById("stage"));
       const [top, bottom, gap] = ["--frame-top", "--frame-bottom", "--gap"].map((name) => parseFloat(style.getPropertyValue(name)));
       return [box.left + gap, box.top + top, box.width - 2 * gap, box.height - top - bottom]; }""")
 

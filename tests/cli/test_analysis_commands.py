@@ -24,7 +24,8 @@ COMMANDS = {
     "pulse": ["impact", "--set", "N=5"], "bands": ["precompressed"],
 }
 #: A source in the picture of each, where it has one.
-SOURCES = {"spectrum": "lines", "lyapunov": "exponents", "rotation": "convergence", "bifurcation-diagram": "strobes", "attractors": "period 1", "basins": "basin 1"}
+SOURCES = {"spectrum": "lines", "lyapunov": "exponents", "rotation": "convergence", "bifurcation-diagram": "strobes",
+           "attractors": "period 1", "basins": "basin 1"}
 #: A group of the file of each that has `--out`.
 GROUPS = {"spectrum": "spectrum", "lyapunov": "lyapunov", "rotation": "rotation", "bifurcation-diagram": "strobes", "basins": "basins",
           "pulse": "pulse", "orbit": "multipliers"}
@@ -52,7 +53,8 @@ def test_the_file_has_the_result(command: str, tmp_path: Path, capsys: pytest.Ca
 
 @pytest.mark.parametrize(("command", "words"), [
     ("spectrum", "Fourier series of a motion of period 1"), ("lyapunov", "of 4 exponents resolved"),
-    ("rotation", "rotation number 0.22181"), ("bifurcation-diagram", "settled within"), ("basins", "100%"), ("attractors", "100 ± 19 %             2.30266     yes       5  period 1"),
+    ("rotation", "rotation number 0.22181"), ("bifurcation-diagram", "settled within"), ("basins", "100%"),
+    ("attractors", "100 ± 19 %             2.30266     yes       5  period 1"),
     ("pulse", "energy closes to"), ("pulse", "by sampling of forces "), ("pulse", ", speeds "), ("bands", "cut-off 7200.22 Hz"),
 ])
 def test_the_result_in_words(command: str, words: str, capsys: pytest.CaptureFixture[str]) -> None:

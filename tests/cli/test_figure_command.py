@@ -80,7 +80,8 @@ def test_what_is_wrong_is_said_before_anything_is_computed(words: list[str], sai
     assert said in told and told.count("\n") == 1
 
 
-def test_without_a_browser_one_sentence_says_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_without_a_browser_one_sentence_says_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+                                                  capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.setattr(shutil, "which", lambda _: None)
     assert main(["figure", "1", "--out", str(tmp_path / "a.png")]) == 2
     told = capsys.readouterr().err

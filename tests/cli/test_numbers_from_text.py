@@ -100,7 +100,8 @@ def test_a_scene_in_a_file_goes_through_the_same_border(value: object, tmp_path:
 def test_no_other_value_of_a_scene_is_taken_unchecked(field: str, value: object) -> None:
     plain = scene("sec2").evolve(N=2).to_json()
     assert Scene.from_json(plain) == scene("sec2").evolve(N=2)
-    refused = {"self": "Unknown field of a scene 'self'", "ranges": "scene's ranges|Unknown knob 'self'", "preset": "scene's f must be a number"}
+    refused = {"self": "Unknown field of a scene 'self'", "ranges": "scene's ranges|Unknown knob 'self'",
+               "preset": "scene's f must be a number"}
     with pytest.raises(BadInput, match=refused.get(field, rf"(The scene's {field}|{field} =|beads N) ")):
         Scene.from_json({**plain, field: value})
     with pytest.raises(BadInput, match="no field f"):

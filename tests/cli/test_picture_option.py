@@ -33,7 +33,8 @@ COMMANDS = {
     "map": [*SHORT, "--x", "f=1900:2000:2", "--y", "A0=5e-7:6e-7:2", "--out", "map.h5"],
 }
 #: A source of each figure that must have rows.
-SOURCES = {"run": "input force", "run --drive": "input force", "pulse": "output force", "curve": "rest", "curve --data": "measured", "orbit": "within", "branch": "orbits", "map": "cells"}
+SOURCES = {"run": "input force", "run --drive": "input force", "pulse": "output force", "curve": "rest", "curve --data": "measured",
+           "orbit": "within", "branch": "orbits", "map": "cells"}
 
 
 def document(page: str) -> dict[str, object]:

@@ -204,7 +204,7 @@ def with_series(dashboard: Dashboard, chain: Scene) -> str:
     text = virtual_series_csv(chain, 12, Sensors(rate=256.0 * chain.f, noise=0.005)).encode()
     show(dashboard)
     dashboard.received({"do": "measurement", "name": "mine.csv", "content": base64.b64encode(text).decode()})
-    dashboard.run_callbacks_until(lambda: "series" in str(dashboard.views.tabs.state.get("misfit")) or "rms" in str(dashboard.views.tabs.state.get("misfit")))
+    dashboard.run_callbacks_until(lambda: any(word in str(dashboard.views.tabs.state.get("misfit")) for word in ("series", "rms")))
     return str(dashboard.views.tabs.state["misfit"]["sentence"])
 
 

@@ -39,7 +39,9 @@ def test_the_page_has_the_colours_of_its_pictures(name: str) -> None:
     style, theme = properties(name), THEMES[name]
     assert style.pop("color-scheme") == theme.scheme
     for role in ("text_size", "small_text_size"):
-        smallest, largest = re.fullmatch(r"clamp\((\d+)px, .+, (\d+)px\)", style.pop(f"--{role.replace('_', '-')}")).groups()  # type: ignore[union-attr]
+        clamped = re.fullmatch(r"clamp\((\d+)px, .+, (\d+)px\)", style.pop(f"--{role.replace('_', '-')}"))
+        assert clamped is not None
+        smallest, largest = clamped.groups()
         assert (int(smallest), int(largest)) == (getattr(theme, role), getattr(theme, f"largest_{role}"))
     assert style.pop("--phone-text-size") == "13px" and style.pop("--roomy", "") == ("none" if theme.text_size > 15 else "")
     assert style == {f"--{field.name.replace('_', '-')}": str(getattr(theme, field.name)) for field in fields(Theme)

@@ -58,7 +58,8 @@ def test_a_stable_orbit_is_told_by_what_is_left_of_a_disturbance() -> None:
 
 
 @pytest.mark.parametrize(("leading", "words"), [
-    ((1.8,), "1.80-fold in one period of the orbit (1 drive period, 2.94 ms) and leaves to one side: a multiplier above +1, as beyond a fold."),
+    ((1.8,), "1.80-fold in one period of the orbit (1 drive period, 2.94 ms) "
+     "and leaves to one side: a multiplier above +1, as beyond a fold."),
     ((-1.5,), "changes sides in each orbit: a multiplier below −1, as beyond a period doubling."),
     ((1.2j, -1.2j), "turns while it grows: a complex pair outside the circle, as beyond a Neimark–Sacker bifurcation."),
     ((-1.5, 1.2j, -1.2j), "3 multipliers are outside the circle."),
@@ -80,7 +81,8 @@ def test_the_observer_is_told_where_it_was_asked_for() -> None:
     assert verdict(orbit).endswith("Its observer is unstable, |μ| 4.20.")
 
 
-@pytest.mark.parametrize(("value", "words"), [(0.361, "0.36"), (0.0995, "0.10"), (0.0123, "0.012"), (3.2e-5, "3e-5"), (0.9939, "0.9939"), (1.00002, "1.000020"), (1.57, "1.57")])
+@pytest.mark.parametrize(("value", "words"), [
+    (0.361, "0.36"), (0.0995, "0.10"), (0.0123, "0.012"), (3.2e-5, "3e-5"), (0.9939, "0.9939"), (1.00002, "1.000020"), (1.57, "1.57")])
 def test_moduli_are_told_from_one_and_from_zero(value: float, words: str) -> None:
     assert modulus_words(value) == words
 
@@ -113,7 +115,9 @@ def test_the_evidence_has_a_row_for_what_was_computed_only() -> None:
     assert names == ["regime", "distance to the orbit", "|μ| largest", "Newton's residual", "settled state", "product of all μ",
                      "disturbance followed", "multipliers by", "settled by"]
     rows = {row["name"]: row["value"] for row in evidence(picture(), analysis(), None)}
-    size, error, decay = re.fullmatch(r"(\S+) ± (\S+); (\S+) per orbit seen while it settled", rows["|μ| largest"]).groups()
+    largest = re.fullmatch(r"(\S+) ± (\S+); (\S+) per orbit seen while it settled", rows["|μ| largest"])
+    assert largest is not None
+    size, error, decay = largest.groups()
     assert re.fullmatch(r"0\.36\d{4}", size) and 1e-12 < float(error) < 1e-7 and decay.startswith("0.4")
     assert " → " in rows["Newton's residual"] and float(rows["product of all μ"].removesuffix(" off")) < 1e-6
     chaotic = replace(picture(), regime=Regime("chaotic", None, None, None, 620, (0.265, 0.023)))
@@ -285,7 +289,8 @@ def test_a_live_run_has_no_multipliers() -> None:
 
 
 @pytest.mark.parametrize(("action", "message"), [
-    ("stability-search", {"value": 99}), ("stability-search", {"value": 1.5}), ("stability-search", {"value": "one"}), ("stability-mode", {"value": True}),
+    ("stability-search", {"value": 99}), ("stability-search", {"value": 1.5}), ("stability-search", {"value": "one"}),
+    ("stability-mode", {"value": True}),
     ("stability-section", {"bead": 0, "phase": 0}), ("stability-section", {"bead": 1, "phase": 48}), ("stability-section", {}),
 ])
 def test_wrong_requests_get_their_sentence(page: Page, action: str, message: dict[str, Any]) -> None:

@@ -108,11 +108,13 @@ def test_measured_points_are_drawn_hollow_and_in_front() -> None:
     found = [one.data for one in shaker.select({"type": ColumnDataSource}) if one.name == "measured"]
     assert sorted(list(one["y"]) for one in found) == [pytest.approx([2.0, 4.0]), pytest.approx([5.305, 7.074], abs=1e-3)]
     curve = result("2")
-    with_data = type(curve)(curve.curve, Measured(frequency, np.array([0.1, 0.2]), np.array([0.01, 0.01]), ""))  # type: ignore[attr-defined,call-arg]
+    data = Measured(frequency, np.array([0.1, 0.2]), np.array([0.01, 0.01]), "")
+    with_data = type(curve)(curve.curve, data)  # type: ignore[attr-defined,call-arg]
     drawn = paper_figure(with_data, THEMES["light"])
     assert list(source(drawn, "measured")["high"]) == pytest.approx([0.11, 0.21])
     assert drawn.y_range.end > 1.2
-    high = paper_figure(type(curve)(curve.curve, Measured(frequency, np.array([0.1, 9.0]), None, "")), THEMES["light"])  # type: ignore[attr-defined,call-arg]
+    higher = Measured(frequency, np.array([0.1, 9.0]), None, "")
+    high = paper_figure(type(curve)(curve.curve, higher), THEMES["light"])  # type: ignore[attr-defined,call-arg]
     assert high.y_range.end > 9.0  # no measured point is outside
     drawings = {type(one.glyph).__name__: one for one in drawn.renderers if one.data_source.name == "measured"}
     assert drawings["Segment"].glyph.line_color == THEMES["light"].ink

@@ -57,7 +57,8 @@ def test_bifurcation_curves_are_drawn_over_the_map_in_its_units() -> None:
 def test_the_marks_on_bifurcation_curves_say_of_which_kind_they_are() -> None:
     """By the marks of the special points of a branch, with a key; a long curve has few of them."""
     points = [BifurcationPoint(1920.0 + i, 1e-6, -1.0 + 0.0j, np.zeros(4)) for i in range(60)]
-    plot = parameter_map(filled(0, 4), THEMES["light"], curves=[BifurcationCurve(kind, 1, points) for kind in ("fold", "neimark_sacker", "fold")])
+    curves = [BifurcationCurve(kind, 1, points) for kind in ("fold", "neimark_sacker", "fold")]
+    plot = parameter_map(filled(0, 4), THEMES["light"], curves=curves)
     legend = plot.select_one({"name": "bifurcations"})
     assert [item.label.value for item in legend.items] == ["fold", "Neimark–Sacker (torus)"]
     for item, kind in zip(legend.items, ("fold", "neimark_sacker"), strict=True):

@@ -26,7 +26,8 @@ EXPORT = re.compile(r"^export (?:async )?(?:const|let|function|class) (\w+)", re
 
 def served(url: str) -> Path:
     """The file that Panel would send."""
-    return Path(ComponentResourceHandler.parse_url_path(ComponentResourceHandler, url.removeprefix("components/")))  # type: ignore[arg-type]
+    path = url.removeprefix("components/")
+    return Path(ComponentResourceHandler.parse_url_path(ComponentResourceHandler, path))  # type: ignore[arg-type]
 
 
 def imports(name: str) -> dict[str, set[str]]:

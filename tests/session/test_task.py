@@ -92,7 +92,8 @@ def test_a_failure_is_said_and_a_fault_is_told_to_the_host(error: Exception, sen
     assert host.faults == ([(error, "")] if told else []) and host.failures == []
 
 
-def test_a_task_whose_thread_cannot_be_started_fails_and_the_next_one_runs(host: SayingHost, task: Task, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_task_whose_thread_cannot_be_started_fails_and_the_next_one_runs(host: SayingHost, task: Task,
+                                                                           monkeypatch: pytest.MonkeyPatch) -> None:
     def start(_: threading.Thread) -> None:
         raise RuntimeError("can't start new thread")
 

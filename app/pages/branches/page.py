@@ -47,7 +47,8 @@ class BranchesPage(Page):
     def __init__(self, host: PageHost, view: Branches) -> None:
         self._host = host
         self._view = view
-        self._task = Task(host, LONG, self._show_status, "Following the branch")
+        self._task = Task(host, LONG, self._show_status, "Following the branch",
+                          outlives_knobs="it covers all f")
         self._followed: list[Continuation] = []
         self._drawn: list[_Drawn] = []
         self._special: list[tuple[Branch, Any]] = []

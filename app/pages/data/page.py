@@ -72,8 +72,10 @@ class DataPage(Page):
         self._host = host
         self._tabs = tabs
         self._moving = Task(host, ANALYSES, report_nothing, "Moving the series to the picture", report_to_host=True)
-        self._reading = Task(host, FILES, report_nothing, "Reading the measurement", report_to_host=True)
-        self._recording = Task(host, LONG, report_nothing, "The virtual experiment", report_to_host=True)
+        self._reading = Task(host, FILES, report_nothing, "Reading the measurement", report_to_host=True,
+                             outlives_knobs="a measurement belongs to no knobs")
+        self._recording = Task(host, LONG, report_nothing, "The virtual experiment", report_to_host=True,
+                               outlives_knobs="it is of the knobs at its beginning")
         self._name, self._answers = "", Answers()
         #: The sensors of a series, whose low-pass the model's forces pass.
         self._sensors = Sensors()

@@ -36,7 +36,8 @@ class EffectsPage(Page):
     def __init__(self, host: PageHost, view: Component) -> None:
         self._host = host
         self._view = view
-        self._task = Task(host, MEASUREMENTS, self._ended, "The cost measurement")
+        self._task = Task(host, MEASUREMENTS, self._ended, "The cost measurement",
+                          outlives_knobs="the cost of an effect does not depend on the values of knobs")
         self._visible = False
         self._round = 0
         self._quiet = Debounce(host, _QUIET)

@@ -29,7 +29,7 @@ class HardCasesPage(Page):
     def __init__(self, host: PageHost, view: HardCases) -> None:
         self._view = view
         self._process = CaseProcess()
-        self._task = Task(host, MEASUREMENTS, self._end, "The case")
+        self._task = Task(host, MEASUREMENTS, self._end, "The case", outlives_knobs="it has a scene of its own")
         host.on_close(self._give_up)
         self._shown: dict[str, dict[str, Any]] = {}
         self._requested = 0

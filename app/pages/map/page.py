@@ -62,7 +62,7 @@ class MapPage(Page):
         self._host = host
         self._view = view
         self._visible = False
-        self._task = Task(host, LONG, self._show_status, "The map")
+        self._task = Task(host, LONG, self._show_status, "The map", outlives_knobs="it covers all f and A0")
         self._search = Task(host, LONG, self._show_attractors, "The search")
         self._grid: Grid | None = None
         self._cells: np.ndarray[Any, Any] = np.zeros(0)

@@ -34,7 +34,8 @@ class ObserverPage(Page):
     def __init__(self, host: PageHost, view: Observer) -> None:
         self._host = host
         self._view = view
-        self._task = Task(host, PICTURES, self._said, "The observer", report_to_host=True)
+        self._task = Task(host, PICTURES, self._said, "The observer", report_to_host=True,
+                          outlives_knobs="one period under way is the old chain's last, the next the new chain's")
         self._run: ObserverRun | None = None
         self._asked = False
         self._requests: list[str] = []

@@ -42,7 +42,8 @@ PAGE = (TESTS.parent / "docs" / "security.md").read_text(encoding="utf-8")
 #: The limits of the server: a value, and the names of its tests.
 LIMITS = {limit: (value, re.findall(r"`(\w+)`", tests)) for limit, value, tests in re.findall(
     r"^\| ([^|]+) \| ([^|]+) \| ([^|]+) \|$", PAGE.split("| limit | value | tested by |")[1].split("\n\n")[0], re.MULTILINE)}
-STATED_LIMITS = dict(re.findall(r"^\| ([^|]+) \| (\d+) \|$", PAGE.split("| a visitor asks for | at most |")[1].split("\n\n")[0], re.MULTILINE))
+STATED_LIMITS = dict(re.findall(r"^\| ([^|]+) \| (\d+) \|$",
+                                PAGE.split("| a visitor asks for | at most |")[1].split("\n\n")[0], re.MULTILINE))
 
 
 def test_the_limits_of_the_document_are_those_of_the_code() -> None:
@@ -54,9 +55,11 @@ def test_the_limits_of_the_document_are_those_of_the_code() -> None:
         "a websocket that does not answer pings": f"{server.PING_INTERVAL} to {2 * server.PING_INTERVAL} s",
         "a websocket message": f"{server.LARGEST_MESSAGE / 1e6:.1f} MB, for an upload of {LARGEST_UPLOAD / 1e6:g} MB in base64; "
                                f"{LARGEST_PLAIN_CONTENT // 1000} kB without a file",
-        "websocket frames": f"{FRAME_RATE:g} a second, {FRAME_BURST:g} at once, of any kind; one counts once more for every {FRAME_UNIT // 1000} kB "
+        "websocket frames": f"{FRAME_RATE:g} a second, {FRAME_BURST:g} at once, of any kind; "
+                            f"one counts once more for every {FRAME_UNIT // 1000} kB "
                             "of it; beyond that the connection is closed (1008)",
-        "bytes that wait to be sent to a page": f"{guarded_socket.MOST_UNSENT // 1_000_000} MB when another message is to be sent, as two pictures of the longest "
+        "bytes that wait to be sent to a page": f"{guarded_socket.MOST_UNSENT // 1_000_000} MB when another message is to be sent, "
+                                                  f"as two pictures of the longest "
                                          "chain; beyond that the connection is closed",
         "a page that is being loaded": f"{server.UNCONNECTED_MS // 1000} s; at most half of the sessions",
         "a link": f"{LONGEST} characters",

@@ -92,7 +92,8 @@ def test_only_an_upload_is_long() -> None:
     checked_content(HEADER, uploaded(UPLOAD))
     for order in itertools.permutations([["do", UPLOAD], ["name", "mine.csv"], ["content", "A" * 200_000]]):
         checked_content(HEADER, of_a_part(*order))
-    for given in (uploaded("go"), of_a_part(["do", UPLOAD], ["do", UPLOAD], ["content", "A" * 200_000]), of_a_part(["do", UPLOAD], ["name", 5], ["content", "A" * 200_000]),
+    for given in (uploaded("go"), of_a_part(["do", UPLOAD], ["do", UPLOAD], ["content", "A" * 200_000]),
+                  of_a_part(["do", UPLOAD], ["name", 5], ["content", "A" * 200_000]),
                   uploaded(UPLOAD, ["more", "text"]), content("x" * 200_000), changed("tags", "x" * 200_000),
                   json.dumps({"events": [json.loads(uploaded(UPLOAD))["events"][0]] * 2})):
         with pytest.raises(RefusedMessage, match="too long a message"):

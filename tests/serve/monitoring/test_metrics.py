@@ -40,7 +40,8 @@ def test_every_count_of_every_thread_is_kept() -> None:
 
 
 @pytest.mark.parametrize(("value", "written"), [
-    (0, "0"), (1_234_567, "1234567"), (2**53 + 1, str(2**53 + 1)), (123_456_789.0, "123456789"), (0.1, "0.1"), (1234.5678901, "1234.5678901"),
+    (0, "0"), (1_234_567, "1234567"), (2**53 + 1, str(2**53 + 1)), (123_456_789.0, "123456789"),
+    (0.1, "0.1"), (1234.5678901, "1234.5678901"),
     (float("inf"), "+Inf"), (float("nan"), "NaN")])
 def test_numbers_are_written_with_all_digits(value: float, written: str) -> None:
     """A counter rounded to six digits would stand still and then jump."""
