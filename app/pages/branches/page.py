@@ -195,7 +195,7 @@ class BranchesPage(Page):
             self._view.send(type="add", **added)
 
     def _draw(self) -> None:
-        """Send what is new; a special point goes before the orbit that follows it on its half-branch."""
+        """Send the new points; a special point goes before the orbit that follows it on its half-branch."""
         for number, drawn in enumerate(self._drawn):
             points = drawn.half.points[drawn.points :]
             special = drawn.half.special[drawn.special :]

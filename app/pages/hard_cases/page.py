@@ -42,13 +42,13 @@ class HardCasesPage(Page):
 
     @property
     def activity(self) -> Activity:
-        """Name, state and detail for the list of what is computed now."""
+        """Name, state and detail for the list of running computations."""
         if self.waiting:
             return "hard cases", COMPUTING, self.waiting[0]
         return "hard cases", READY if self.rows else OFF, f"{len(self.rows)} of {len(CASES)} run"
 
     def stop(self) -> None:
-        """Stop the case under way and forget those that wait; the results found so far stay."""
+        """Stop the case under way and forget the waiting cases; the results so far stay."""
         self._give_up()
         for name in self.waiting:
             self._put(name, **WORDS.of("stopped"))

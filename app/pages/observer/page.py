@@ -73,7 +73,7 @@ class ObserverPage(Page):
 
     def _next_in_thread(self, scene: Scene, settled: Settled | None, run: ObserverRun | None, requests: list[str],
                         job: Job) -> None:
-        """In a worker thread: compute one more period of this scene's run; `run` is the one so far."""
+        """In a worker thread: compute one more period of this scene; `run` has the periods so far."""
         job.compile(scene, DOP853_KERNELS, OBSERVER_KERNELS)
         mine = settled if settled is not None and settled.run.scene.digest == scene.digest else None
         began = False
