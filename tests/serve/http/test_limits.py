@@ -59,8 +59,7 @@ def test_the_limits_of_the_document_are_those_of_the_code() -> None:
                             f"one counts once more for every {FRAME_UNIT // 1000} kB "
                             "of it; beyond that the connection is closed (1008)",
         "bytes that wait to be sent to a page": f"{guarded_socket.MOST_UNSENT // 1_000_000} MB when another message is to be sent, "
-                                                  f"as two pictures of the longest "
-                                         "chain; beyond that the connection is closed",
+                                                "as two pictures of the longest chain; beyond that the connection is closed",
         "a page that is being loaded": f"{server.UNCONNECTED_MS // 1000} s; at most half of the sessions",
         "a link": f"{LONGEST} characters",
         "sessions at once": f"{Access().max_sessions}",
