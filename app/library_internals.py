@@ -47,7 +47,7 @@ class MissingPart(RuntimeError):
 
 
 def internals(module: str, *rows: Internal) -> tuple[Internal, ...]:
-    """The table of a module, which is checked at the start with those of the others."""
+    """The table of a module; at the start the tables of all imported modules are checked."""
     _TABLES[module] = rows
     return rows
 
@@ -72,7 +72,7 @@ def missing_in_import(problem: ImportError) -> MissingPart | None:
 
 
 def missing(table: Iterable[Internal]) -> list[tuple[Internal, str]]:
-    """The rows of which the installed release lacks something, with the dotted name of the first that it lacks."""
+    """The rows for which the installed release lacks a name, with the first dotted name that it lacks."""
     first_missing = ((row, next(_missing(row), None)) for row in table)
     return [(row, name) for row, name in first_missing if name is not None]
 
@@ -102,7 +102,7 @@ def _find(path: str) -> Any:
 
 @cache
 def _attributes(owner: type) -> frozenset[str]:
-    """The attributes that instances of a class have beside those of the class itself, as far as its code shows them."""
+    """The attributes that instances of a class have besides class attributes, as far as its code shows them."""
     names: set[str] = set()
     for base in owner.__mro__:
         names.update(vars(base).get("__annotations__", ()))

@@ -3,6 +3,9 @@
 Panel takes the module of a component as text, and a text cannot import its neighbours. So that text is one line that
 fetches the real module. Panel's handler for resources of components serves it, under `granchain serve` and under
 `panel serve` alike; it serves the files listed here and no others.
+
+Python asks for a module by its name alone, which two files may not have. The modules are listed and hashed when this
+module is imported: after an edit of a script the server has to be started again.
 """
 
 from __future__ import annotations

@@ -95,7 +95,7 @@ def _normal_form(point: SpecialPoint) -> dict[str, Any] | None:
 
 
 def _followed(arguments: argparse.Namespace) -> Branch:
-    """The branch and its file; of one that was interrupted only what is missing is computed."""
+    """The branch and its file; of an interrupted branch only the missing orbits are computed."""
     from granchain_core.store import save_branch
 
     begun: list[_Begun] = []
@@ -169,7 +169,7 @@ def _begun(arguments: argparse.Namespace, stop: Any) -> _Begun:
 
 
 def _interrupted(arguments: argparse.Namespace, kept: OrbitCheckpoints) -> Branch | None:
-    """The part of the branch that is there already, from its blocks or from --out; None if there is none."""
+    """The orbits that were followed before an interruption, from their blocks or from --out; None if there are none."""
     from granchain_core.store import load_branch
 
     if arguments.resume is None:

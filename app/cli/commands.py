@@ -205,7 +205,7 @@ def _refuse_empty_files(parsed: argparse.Namespace) -> None:
 
 
 def _give_stdout_up() -> None:
-    """Let what is still to be written go nowhere, since Python would try once more when it ends, and complain."""
+    """Discard output that has not been written: at its end Python would try to write it once more, and complain."""
     with suppress(OSError, ValueError):
         nowhere = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nowhere, sys.stdout.fileno())

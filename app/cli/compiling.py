@@ -1,4 +1,4 @@
-"""A first run waits for the compiler: a person at a terminal is told what the wait is, and a second core helps."""
+"""A first run waits for the compiler: a person at a terminal learns why, and a second core helps."""
 
 from __future__ import annotations
 

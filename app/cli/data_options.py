@@ -29,7 +29,7 @@ def add_answers(parser: argparse.ArgumentParser) -> None:
 
 
 def add_bandwidth(parser: argparse.ArgumentParser, use: str) -> None:
-    """Add the bandwidth of the force sensors; `use` says what is done with it."""
+    """Add the bandwidth of the force sensors; `use` says how it is used."""
     parser.add_argument("--bandwidth", type=number, default=math.inf, metavar="HZ",
                         help=f"bandwidth of the force sensors, a low-pass of order 2{use}")
 
@@ -66,6 +66,6 @@ def with_answers(arguments: argparse.Namespace, read: Callable[[Answers], Found]
 
 
 def add_tip_mass(parser: argparse.ArgumentParser, use: str) -> None:
-    """Add the mass of the tip before the input sensor; `use` says what is done with it."""
+    """Add the mass of the tip before the input sensor; `use` says how it is used."""
     parser.add_argument("--tip-mass", type=number, default=0.0, metavar="KG",
                         help=f"mass between the input sensor and bead 1, which moves with the shaker{use}")

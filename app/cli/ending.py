@@ -67,7 +67,7 @@ def _noted(_number: int, _frame: FrameType | None) -> None:
 
 
 def _forget() -> None:
-    """A forked process has no such thread: signals do there what they do by default."""
+    """A forked process has no such thread: it takes signals as any program does by default."""
     signal.set_wakeup_fd(-1)
     for number in _STATUS:
         if signal.getsignal(number) is _noted:

@@ -25,7 +25,7 @@ def add_resume(parser: argparse.ArgumentParser, what: str) -> None:
 
 def finished(arguments: argparse.Namespace, what: str, load: Callable[[str], Result],
              same: Callable[[Result], bool]) -> Result | None:
-    """With --resume, the result in --out if it is there, whole and the one asked for; else None.
+    """With --resume, the result in --out if the file has the complete result of these options; else None.
 
     Its blocks may still stand, if the command was killed between writing the result and removing them. Raises
     `BadInput` for --resume without --out, and for another result where there are no blocks to go on with.

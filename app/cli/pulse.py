@@ -59,7 +59,7 @@ def _json(result: Pulse) -> dict[str, Any]:
 
 
 def _show(result: Pulse) -> None:
-    """One line for each contact; the speed of a solitary wave with the same force stands beside the one found."""
+    """One line for each contact; beside the speed stands that of a solitary wave with the same force."""
     from granchain_core.analysis.pulse import CONTINUUM, solitary_speed
 
     chosen = result.run.scene

@@ -82,7 +82,7 @@ def do(arguments: argparse.Namespace) -> None:
 
 
 def _result(chosen: Scene, arguments: argparse.Namespace) -> Run:
-    """The run and its file; one that was interrupted goes on with the discarded periods it has finished."""
+    """The run and its file; an interrupted run continues after the discarded periods that it has finished."""
     from granchain_core.runs.run_checkpoints import RunCheckpoints
     from granchain_core.runs.to_accuracy import run as run_scene
 
@@ -115,7 +115,7 @@ def _result(chosen: Scene, arguments: argparse.Namespace) -> Run:
 
 
 def _is_asked_for(run: Run, chosen: Scene, arguments: argparse.Namespace) -> bool:
-    """Whether the run in a file is the one that the words ask for."""
+    """Whether the run in a file has the options of the command line."""
     method = arguments.method or method_for(chosen.accuracy, chosen.cuts_tension).method
     rows = arguments.record * arguments.samples + 1
     periods = round(float(run.time[0]) / chosen.period)

@@ -39,7 +39,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def do(arguments: argparse.Namespace) -> None:
-    """Compute the motion and write what the sensors make of it."""
+    """Compute the motion and write the records of the sensors."""
     from granchain_core.store import check_writable
     from granchain_core.virtual_experiment import Sensors, virtual_curve_csv, virtual_series_csv
 

@@ -27,7 +27,7 @@ from .pinned_curves import PinnedCurves
 
 
 class CurveFigure:
-    """The figure with, for every start (`CURVE_STARTS`), the curve being computed and the one before it in grey.
+    """The figure with two curves for every start (`CURVE_STARTS`): the present one and, in grey, the one before it.
 
     Lines and marks that most visitors never see are made when they are first needed.
     """
@@ -189,7 +189,7 @@ class CurveFigure:
         return place_of(*self._ordered, run.scene.f, run.max_output_force, transmission)
 
     def finished(self, start: str) -> None:
-        """Note that all points of the curve of this start are there."""
+        """Note that all points of the curve of this start have been computed."""
         self._whole = self._whole or start == "rest"
         if self._measurement is not None:
             self.measured(self._measurement)
@@ -263,7 +263,7 @@ class CurveFigure:
             self._pinned.draw(scale[0])
             if self._measurement is not None:
                 self.measured(self._measurement)
-        # Room for the names of the peaks, and for those that the paper states above them.
+        # Room for the names of the peaks, and above them for the names that the paper states.
         set_properties(self.figure.y_range, end=(1.3 if self._features.data["top"] else 1.15) * high / scale[0])
         set_properties(self.figure.yaxis[0], axis_label=f"largest output force ({scale[1]}N)")
         top = [self.figure.y_range.end] * len(self._features.data["top"])

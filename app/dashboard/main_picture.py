@@ -86,7 +86,7 @@ class MainPicture:
 
     @property
     def busy(self) -> bool:
-        """Whether a picture is being computed; other work that can wait does so."""
+        """Whether a picture is being computed, for which other work waits if it can."""
         return self._jobs.busy
 
     @property

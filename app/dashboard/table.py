@@ -54,7 +54,7 @@ class PageSpec:
     than usual, and a "tallest" tab also takes the place of the curve, except on a phone. `group` is one of `GROUPS`. A
     page with `works_hidden` goes on while its window is hidden or its tab is scrolled off the screen; any other page is
     then hidden (`Page.visibility_changed`). While an overlay with `needs_curve` is open, the resonance curve is
-    computed as if it were on the screen.
+    computed as if it were on the screen. `label` is the text on the tab, where its row has no room for the name.
     """
 
     name: str
@@ -65,6 +65,7 @@ class PageSpec:
     works_hidden: bool = True
     group: str = "try"
     needs_curve: bool = False
+    label: str = ""
 
 
 #: The groups of tabs; a tab without a group stands apart at the end.
@@ -86,7 +87,7 @@ TABS: tuple[PageSpec | TabSpec, ...] = (
         "Spectrum, bifurcation diagram, basins and Lyapunov exponents of the present scene."),
     PageSpec("observer", ObserverPage, Observer,
         "A copy of the chain that is driven only by its input force.", works_hidden=False),
-    PageSpec("hard-cases", HardCasesPage, HardCases, ABOUT, height="usual", group="check"),
+    PageSpec("hard-cases", HardCasesPage, HardCases, ABOUT, height="usual", group="check", label="hard"),
     PageSpec("paper", PaperPage, Paper,
         "The figures of Zhang et al. (2016), computed from the presets, and where we differ.", height="usual",
         group="learn"),
@@ -112,7 +113,8 @@ check_names(TABS)
 def described_tabs() -> list[dict[str, Any]]:
     """The tabs for the browser, in the order of the groups."""
     order = (*GROUPS, "")
-    return [{"name": row.name, "placeholder": row.placeholder, "height": row.height, "group": row.group}
+    return [{"name": row.name, "placeholder": row.placeholder, "height": row.height, "group": row.group,
+             "label": getattr(row, "label", "") or row.name}
             for row in sorted(TABS, key=lambda row: order.index(row.group))]
 
 

@@ -112,8 +112,8 @@ class Tabs {
     return element("span", { className: "group" }, ...label, ...tabs);
   }
 
-  tab({ name }) {
-    const tab = button(name, () => this.choose(name), { role: "tab" });
+  tab({ name, label }) {
+    const tab = button(label, () => this.choose(name), { role: "tab", ariaLabel: name });
     tab.dataset.tab = name;
     return tab;
   }

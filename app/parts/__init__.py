@@ -1,1 +1,1 @@
-"""What is always on the page, a folder for each part, and what all parts and pages are made of."""
+"""The parts that are always on the page, a folder each, and the elements of which parts and pages are made."""

@@ -1,4 +1,4 @@
-"""Error against processor time for every method, both logarithmic, with what is asked and what is cheapest."""
+"""Error against processor time for every method, both logarithmic, with the accuracy asked for and the cheapest row."""
 
 from __future__ import annotations
 
@@ -68,7 +68,9 @@ def points(rows: Sequence[Row]) -> dict[str, dict[str, list[Any]]]:
 
 
 def marks(annotations: Annotations, rows: Sequence[Row]) -> dict[str, dict[str, Any]]:
-    """Properties of the models that show what is asked, the references' agreement, the cheapest and the present row."""
+    """Properties of the models that mark the accuracy asked for, the references' agreement, the cheapest and the
+    present row.
+    """
     times = [1e3 * row.wall_s for row in rows if row.wall_s > 0.0] or [1.0]
 
     def at(place: tuple[float, float] | None) -> dict[str, Any]:

@@ -134,7 +134,7 @@ _TOGETHER: dict[type, Callable[..., LayoutDOM]] = {Curve: curve, Branch: branche
 
 def bokeh_figure_of(result: Any, theme: str = "light", width: int | None = None, height: int | None = None,
                     kind: str = "", **options: Any) -> LayoutDOM:
-    """The figure of a result with a size of its own; what `granchain.figure` says of it holds."""
+    """The figure of a result with a size of its own; the docstring of `granchain.figure` describes it."""
     drawn, size = _drawn(result, theme, kind, options)
     drawn.update(sizing_mode="fixed", width=width or size[0], height=height or size[1])
     return drawn

@@ -222,7 +222,7 @@ def _marks(plot: figure, sources: dict[str, ColumnDataSource], compact: bool) ->
 
 
 def _tools(plot: figure, targets: Any, items: list[LegendItem]) -> None:
-    """Hover and tap for orbits and special points, and a legend that hides what is clicked in it."""
+    """Hover and tap for orbits and special points, and a legend; a click on an entry hides its marks."""
     marks = {kind: mark for item in items for mark in item.renderers for kind, words in SPECIAL.items()
              if item.label.value == words}
     born, others = ([mark for kind, mark in marks.items() if (kind in _BORN) is wanted] for wanted in (True, False))

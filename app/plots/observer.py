@@ -1,4 +1,4 @@
-"""The distance between an observer and its chain over time, on a logarithmic axis, and what |μ| predicts of it."""
+"""The distance between an observer and its chain over time, on a logarithmic axis, and the rate that |μ| predicts."""
 
 from __future__ import annotations
 

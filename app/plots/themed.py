@@ -1,4 +1,4 @@
-"""Figures in a theme: an empty one, what of it follows the theme, and how a theme is applied."""
+"""Figures in a theme: an empty figure, marks of the glyphs that follow the theme, and the change of theme."""
 
 from __future__ import annotations
 

@@ -95,11 +95,13 @@ class Task:
 
     `report` is called with the document locked: with "done", with "failed" and a sentence, or with a status that the
     work reports. `title` begins the sentence about a fault. With `report_to_host` the dashboard shows errors, because
-    the page has no place for them.
+    the page has no place for them. A page cancels its task when a knob moves, or calls the result out of date;
+    `outlives_knobs` says why this task needs neither.
     """
 
     def __init__(self, host: WorkHost, pool: WorkerPool, report: Report, title: str = "The computation",
-                 report_to_host: bool = False) -> None:
+                 report_to_host: bool = False, outlives_knobs: str = "") -> None:
+        self.outlives_knobs = outlives_knobs
         self._host = host
         self._pool = pool
         self._report = report

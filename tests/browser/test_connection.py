@@ -132,8 +132,8 @@ def restarted(chromium: Browser, tmp_path_factory: pytest.TempPathFactory, reque
         page.get_by_role("tab", name="data").click()
         data = b"frequency_Hz,force_N\n40,5.5\n60,12.1\n"
         page.locator('input[type="file"]').set_input_files({"name": "mine.csv", "mimeType": "text/csv", "buffer": data})
-        page.wait_for_function("!granchain.connection.carried.playing && granchain.connection.carried.uploaded"
-                               " && granchain.address.url().search.includes('speed=5')")
+        page.wait_for_function("!granchain.connection.carried.playing && granchain.connection.carried.uploaded")
+        page.wait_for_function("granchain.address.url().search.includes('speed=5')")
         server.kill()
         looks_lost(page)
         drag_slider(page)

@@ -211,7 +211,7 @@ def test_an_event_that_is_not_declared_is_an_error(page: Page) -> None:
 
 
 def test_what_the_page_before_a_reload_kept_is_taken_once(page: Page) -> None:
-    page.evaluate("sessionStorage.setItem('granchain-again', JSON.stringify({ playing: false }))")
+    page.evaluate("sessionStorage.setItem('granchain-resume', JSON.stringify({ playing: false }))")
     page.reload()
     taken = page.evaluate("[granchain.connection.resumeState, granchain.connection.takeResumeState(),"
                           " granchain.connection.takeResumeState()]")

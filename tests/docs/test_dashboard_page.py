@@ -18,7 +18,7 @@ pytestmark = pytest.mark.quick
 
 PAGE = (ROOT / "docs" / "dashboard.md").read_text(encoding="utf-8")
 ERRORS = " ".join(PAGE.partition("\n## Errors\n")[2].partition("\n## ")[0].split())
-STATE = PAGE.partition("\n## Where the state of a page is\n")[2].partition("\n## ")[0]
+STATE = PAGE.partition("\n## Where the state of a web page is\n")[2].partition("\n## ")[0]
 SOURCES = [path.read_text(encoding="utf-8") for path in (ROOT / "app").rglob("*.py")]
 
 

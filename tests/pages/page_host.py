@@ -16,7 +16,7 @@ from app.serve.compiling.compiler import COMPILER
 from app.serve.computing.worker_pools import WorkerPool
 from app.session.page import Page
 from app.session.session import Session
-from app.session.task import Job
+from app.session.task import Job, Task
 from granchain_core import Scene, Settled, State, scene
 from granchain_core.experiment import Difference, Measured
 from granchain_core.fitting.overlay import Overlay
@@ -69,9 +69,11 @@ class Given:
     job: Job
 
     @property
-    def title(self) -> str:
-        """The title of its task."""
-        return str(self.run.__self__._title)  # type: ignore[attr-defined]
+    def task(self) -> Task:
+        """Its task."""
+        task = self.run.__self__  # type: ignore[attr-defined]
+        assert isinstance(task, Task)
+        return task
 
 
 class Trial:
@@ -89,6 +91,13 @@ class Trial:
         for name in ("has", "await_piece", "load"):
             monkeypatch.setattr(COMPILER, name, lambda *_: True)
         self.page: Page = row.page(self.host, self.view)
+
+    @property
+    def line(self) -> tuple[str, str, str]:
+        """Its line in the list of running computations, which it must have."""
+        line = self.page.activity
+        assert line is not None
+        return line
 
     def do(self, action: str, /, **message: Any) -> None:
         """The visitor asks for an action."""

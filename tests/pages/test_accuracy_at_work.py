@@ -76,6 +76,6 @@ def test_a_stopped_measurement_keeps_its_rows(page: Trial, monkeypatch: pytest.M
     page.look()
     page.compute()
     assert page.state["progress"] == "stopped; the measurements so far are kept"
-    assert page.state["drawn"] == points(ROWS[:1]) and page.page.activity[2] == "1 settings measured"
+    assert page.state["drawn"] == points(ROWS[:1]) and page.line[2] == "1 settings measured"
     page.look()
     assert page.under_way == [], "what was stopped is not measured again by itself"

@@ -89,7 +89,8 @@ def test_what_a_browser_should_not_send_is_refused() -> None:
             question_of(other)
     with pytest.raises(BadInput, match="N = 301"):
         planned(question_of("basins"), CHAIN.evolve(N=MOST_BEADS + 1), {})
-    for values in (None, [], "x", {"starts": None}, {"starts": {"a": 1}}):
+    messages: tuple[object, ...] = (None, [], "x", {"starts": None}, {"starts": {"a": 1}})
+    for values in messages:
         try:
             planned(question_of("basins"), CHAIN, values)
         except BadInput as refused:

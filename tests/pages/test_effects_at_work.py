@@ -92,7 +92,7 @@ def test_a_kernel_that_is_not_there_is_compiled_first_and_one_that_cannot_be_is_
     monkeypatch.setattr(COMPILER, "ask", lambda *_: compilation)
     tab.look()
     assert tab.under_way == [] and row(tab, MEASURED[0])["state"] == "compiling its kernel …"
-    assert tab.page.activity[2].startswith("compiling a kernel for ")
+    assert tab.line[2].startswith("compiling a kernel for ")
     compilation.set_exception(OSError("no room"))
     tab.rest()
     assert row(tab, MEASURED[0])["state"] == "its kernel could not be compiled"

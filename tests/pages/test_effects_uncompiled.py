@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
+from host import FakeHost
 from waiting import until
 
 from app.dashboard.tabs import Tabs
@@ -14,7 +15,6 @@ from app.pages.effects.page import EffectsPage
 from app.serve.compiling import compiler
 from app.serve.compiling.compiler import PICTURE_PIECES, Compiler
 from app.session.session import Session
-from tests.host import FakeHost
 
 
 class Host(FakeHost):

@@ -44,15 +44,6 @@ ASKED: dict[str, tuple[tuple[str, dict[str, Any]], ...]] = {
 }
 #: Pages that show what others have computed.
 WITHOUT_WORK = ("numbers", "probe")
-#: A page ends work that is of no use for other knobs, or says so. The work of these tasks, by title, is of use:
-FOR_ANY_KNOBS = {
-    "The case": "it has a scene of its own", "The figure": "it has scenes of its own",
-    "The observer": "the period under way is the last of the old chain, and the next belongs to the new one",
-    "The cost measurement": "the cost of an effect does not depend on the values of knobs",
-    "Reading the measurement": "what was measured belongs to no knobs",
-    "The virtual experiment": "it is of the knobs at its beginning",
-    "The map": "it covers all f", "Following the branch": "it covers all f",
-}
 
 
 @pytest.fixture(params=PAGES, ids=lambda row: row.name)
@@ -196,11 +187,11 @@ def test_long_work_can_be_stopped_and_the_page_says_so(trial: Trial) -> None:
 
 @with_work
 def test_a_moved_knob_ends_the_work_or_the_page_calls_it_out_of_date(trial: Trial) -> None:
-    """And whatever the page computes next belongs to the new chain."""
+    """Unless its task says why it outlives them. Whatever the page computes next belongs to the new chain."""
     ask_for_work(trial)
     begun = trial.under_way
     trial.turn(f=2100.0)
-    assert trial.is_stale or all(one.job.stop for one in begun if one.title not in FOR_ANY_KNOBS)
+    assert trial.is_stale or all(one.job.stop for one in begun if not one.task.outlives_knobs)
     if all(one.job.stop for one in begun):
         nothing_arrives(trial)
 

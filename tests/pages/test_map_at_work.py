@@ -59,8 +59,12 @@ def test_only_the_cells_that_are_missing_are_computed_later(tab: Trial, monkeypa
     interrupted(monkeypatch, tab, 7)
     assert tab.last("map-status")["progress"] == "stopped; the cells computed so far are kept"
     asked: list[list[int]] = []
-    monkeypatch.setattr(module, "iter_parameter_map",
-                        lambda grid, missing, *_, **_options: asked.append(missing) or iter(missing))
+
+    def noted(_grid: Any, missing: list[int], *_: Any, **_options: Any) -> Iterator[int]:
+        asked.append(missing)
+        yield from missing
+
+    monkeypatch.setattr(module, "iter_parameter_map", noted)
     tab.look()
     tab.compute()
     assert len(asked[0]) == module.ROWS * module.COLUMNS - 7 and tab.last("map-status")["status"] == "done"

@@ -17,7 +17,9 @@ class Run:
 
     def __init__(self, scene: Any, picture: Any, stop: Any, went_on: Any) -> None:
         self.scene, self.went_on = scene, went_on
-        self.orbit = self.predicted = self.measured = None
+        self.orbit: Any = None
+        self.predicted: float | None = None
+        self.measured: float | None = None
         self.failure, self.since, self.in_step, self.sentence = "", 0, False, "It follows its chain."
         self.pair = SimpleNamespace(engine=SimpleNamespace(stop=stop))
         self.done: list[str] = []

@@ -117,7 +117,9 @@ def test_the_evidence_has_a_row_for_what_was_computed_only() -> None:
     assert names == ["regime", "distance to the orbit", "|μ| largest", "Newton's residual", "settled state", "product of all μ",
                      "disturbance followed", "multipliers by", "settled by"]
     rows = {row["name"]: row["value"] for row in evidence(picture(), analysis(), None)}
-    size, error, decay = re.fullmatch(r"(\S+) ± (\S+); (\S+) per orbit seen while it settled", rows["|μ| largest"]).groups()
+    largest = re.fullmatch(r"(\S+) ± (\S+); (\S+) per orbit seen while it settled", rows["|μ| largest"])
+    assert largest is not None
+    size, error, decay = largest.groups()
     assert re.fullmatch(r"0\.36\d{4}", size) and 1e-12 < float(error) < 1e-7 and decay.startswith("0.4")
     assert " → " in rows["Newton's residual"] and float(rows["product of all μ"].removesuffix(" off")) < 1e-6
     chaotic = replace(picture(), regime=Regime("chaotic", None, None, None, 620, (0.265, 0.023)))

@@ -54,7 +54,7 @@ class AccuracyPage(Page):
 
     @property
     def activity(self) -> Activity:
-        """Name, state and detail for the list of what is computed now."""
+        """Name, state and detail for the list of running computations."""
         words = f"{len(self.rows)} settings measured" if self.rows or self.running else "its page has not been opened"
         return "accuracy of all methods", COMPUTING if self.running else READY if self.rows else OFF, words
 
@@ -69,7 +69,7 @@ class AccuracyPage(Page):
             self.describe()
 
     def describe(self) -> None:
-        """Show what was asked, what is cheapest, what the page uses now, and whether the rows still hold."""
+        """Show the accuracy asked for, the cheapest row, the present setting, and whether the rows still hold."""
         scene, session = self._host.session.scene, self._host.session
         now = locate(shown_setting(scene, session.settled, session.mode == "live"), self.rows)
         best = cheapest(self.rows, scene.accuracy)

@@ -31,7 +31,7 @@ def empty_figures(theme: Theme) -> dict[str, Any]:
 
 
 class Accuracy(StreamedFigure):
-    """The overlay. `state` has the text and the figures; what is drawn into them comes as messages."""
+    """The overlay. `state` has the text and the figures; their data come as messages."""
 
     _esm = module("accuracy.js")
     _stylesheets = [text("controls.css"), text("accuracy.css")]  # noqa: RUF012
@@ -48,7 +48,7 @@ class Accuracy(StreamedFigure):
             self.show_naive(self._naive)
 
     def measured(self, rows: list[Row], reference: dict[str, Any]) -> None:
-        """Show the rows measured so far and what is known of the reference."""
+        """Show the rows measured so far and the agreement of the references."""
         self.need_figures()
         self.update_state(rows=described_rows(rows), drawn=points(rows), **reference)
 

@@ -1,4 +1,4 @@
-"""The four questions of the Analysis page: their fields, what is computed, and how it is drawn."""
+"""The four questions of the Analysis page: their fields, their computations and their figures."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ Progress = Callable[[float], None]
 
 @dataclass(frozen=True)
 class Field:
-    """One choice of a question: a list to choose from, or a text; `value` is what it begins with.
+    """One choice of a question: a list to choose from, or a text; `value` is the initial one.
 
     A value that was `chosen` stays when the knobs move, if it can; an offered one follows them.
     """
@@ -75,7 +75,7 @@ class Plan:
 
 @dataclass(frozen=True)
 class AnalysisQuestion:
-    """A question: its fields for a scene, and its plan from what was chosen, which is checked there."""
+    """A question: its fields for a scene, and its plan, which checks the values that were chosen."""
 
     name: str
     title: str
@@ -85,7 +85,7 @@ class AnalysisQuestion:
 
 
 def planned(question: AnalysisQuestion, chain: Scene, values: object) -> Plan:
-    """The plan of a question with the texts that a browser sent. Raises `BadInput` for what is wrong in them."""
+    """The plan of a question with the texts that a browser sent. Raises `BadInput` for a text that is wrong."""
     check_range("the Analysis page: N =", chain.N, 1, MOST_BEADS)
     return question.plan(chain, {field.name: field.value for field in chosen_fields(question, chain, values)})
 
@@ -106,7 +106,7 @@ def chosen_fields(question: AnalysisQuestion, chain: Scene, values: object) -> t
 
 
 def offered_fields(question: AnalysisQuestion, chain: Scene, kept: Sequence[Field]) -> tuple[Field, ...]:
-    """The fields of a question for a scene; what was chosen before stays where it still can."""
+    """The fields of a question for a scene; earlier choices stay where the scene allows them."""
     chosen = {field.name: field.value for field in kept if field.chosen}
     fields = question.fields(chain)
     possible = {field.name: chosen[field.name] for field in fields if field.name in chosen and (

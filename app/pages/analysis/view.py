@@ -39,6 +39,6 @@ class Analysis(ResultFigure):
         self.clear_figure()
 
     def answer(self, plan: Plan, result: Any) -> None:
-        """Show what was found."""
+        """Show the answer of a plan."""
         self.update_state(title=plan.title, words=result.summary(), command=plan.command)
         self.show_figure(partial(plan.draw, result), plan.title)

@@ -47,7 +47,8 @@ class BranchesPage(Page):
     def __init__(self, host: PageHost, view: Branches) -> None:
         self._host = host
         self._view = view
-        self._task = Task(host, LONG, self._show_status, "Following the branch")
+        self._task = Task(host, LONG, self._show_status, "Following the branch",
+                          outlives_knobs="it covers all f")
         self._followed: list[Continuation] = []
         self._drawn: list[_Drawn] = []
         self._special: list[tuple[Branch, Any]] = []
@@ -194,7 +195,7 @@ class BranchesPage(Page):
             self._view.send(type="add", **added)
 
     def _draw(self) -> None:
-        """Send what is new; a special point goes before the orbit that follows it on its half-branch."""
+        """Send the new points; a special point goes before the orbit that follows it on its half-branch."""
         for number, drawn in enumerate(self._drawn):
             points = drawn.half.points[drawn.points :]
             special = drawn.half.special[drawn.special :]

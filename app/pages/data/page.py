@@ -66,14 +66,16 @@ _TOO_LARGE = (f"The measurement is larger than {LARGEST_UPLOAD / 1e6:g} MB; a cu
 
 
 class DataPage(Page):
-    """The tab shows what was understood, what is asked, and the misfit. `Session.measured` is what is drawn."""
+    """The tab shows how the file was read, the open questions, and the misfit. `Session.measured` is drawn."""
 
     def __init__(self, host: PageHost, tabs: Component) -> None:
         self._host = host
         self._tabs = tabs
         self._moving = Task(host, ANALYSES, report_nothing, "Moving the series to the picture", report_to_host=True)
-        self._reading = Task(host, FILES, report_nothing, "Reading the measurement", report_to_host=True)
-        self._recording = Task(host, LONG, report_nothing, "The virtual experiment", report_to_host=True)
+        self._reading = Task(host, FILES, report_nothing, "Reading the measurement", report_to_host=True,
+                             outlives_knobs="a measurement belongs to no knobs")
+        self._recording = Task(host, LONG, report_nothing, "The virtual experiment", report_to_host=True,
+                               outlives_knobs="it is of the knobs at its beginning")
         self._name, self._answers = "", Answers()
         #: The sensors of a series, whose low-pass the model's forces pass.
         self._sensors = Sensors()
@@ -101,7 +103,7 @@ class DataPage(Page):
         self._reading.start(partial(self._read_in_thread, content, self._name, self._answers))
 
     def _replace(self, name: str) -> None:
-        """Other data: a question about the data before is no longer asked."""
+        """Other data: withdraw a question about the earlier data."""
         self._name, self._content, self._answers = name, b"", Answers()
         if self._tabs.state.get("question"):
             self._tabs.update_state(question=None)

@@ -31,12 +31,13 @@ _QUIET = 0.7
 
 
 class EffectsPage(Page):
-    """Lists what is being computed and measures the cost of one effect after the other, while it is on the screen."""
+    """Lists the running computations and measures the cost of one effect after the other, while it is on the screen."""
 
     def __init__(self, host: PageHost, view: Component) -> None:
         self._host = host
         self._view = view
-        self._task = Task(host, MEASUREMENTS, self._ended, "The cost measurement")
+        self._task = Task(host, MEASUREMENTS, self._ended, "The cost measurement",
+                          outlives_knobs="the cost of an effect does not depend on the values of knobs")
         self._visible = False
         self._round = 0
         self._quiet = Debounce(host, _QUIET)
@@ -50,7 +51,7 @@ class EffectsPage(Page):
 
     @property
     def activity(self) -> Activity:
-        """Name, state and detail for the list of what is computed now."""
+        """Name, state and detail for the list of running computations."""
         return "cost of effects", COMPUTING if self.measuring else READY, self._progress_words
 
     @property
@@ -63,7 +64,7 @@ class EffectsPage(Page):
         return f"{len(self._costs)} of {possible} effects measured"
 
     def scene_changed(self) -> None:
-        """A knob has moved: nothing is measured for a while, and what belongs to another kernel is forgotten."""
+        """A knob has moved: measure nothing for a while, and forget the costs of another kernel."""
         self._quiet.start(self._next)
         scene = self._host.session.scene
         key = (structure(scene), scene.knobs["N"])
@@ -75,7 +76,7 @@ class EffectsPage(Page):
             self._show()
 
     def visibility_changed(self, visible: bool) -> None:
-        """List what is computed, and measure, while somebody looks."""
+        """List the running computations, and measure, while somebody looks."""
         self._visible = visible
         self._round += 1
         if visible:
@@ -93,7 +94,7 @@ class EffectsPage(Page):
             self._show()
 
     def _poll(self, number: int) -> None:
-        """Repeat while the panel is open: begin what is next, and show everything."""
+        """Repeat while the panel is open: begin the next measurement, and show everything."""
         if not self._visible or number != self._round:
             return
         self._next()

@@ -29,7 +29,7 @@ class HardCasesPage(Page):
     def __init__(self, host: PageHost, view: HardCases) -> None:
         self._view = view
         self._process = CaseProcess()
-        self._task = Task(host, MEASUREMENTS, self._end, "The case")
+        self._task = Task(host, MEASUREMENTS, self._end, "The case", outlives_knobs="it has a scene of its own")
         host.on_close(self._give_up)
         self._shown: dict[str, dict[str, Any]] = {}
         self._requested = 0
@@ -42,13 +42,13 @@ class HardCasesPage(Page):
 
     @property
     def activity(self) -> Activity:
-        """Name, state and detail for the list of what is computed now."""
+        """Name, state and detail for the list of running computations."""
         if self.waiting:
             return "hard cases", COMPUTING, self.waiting[0]
         return "hard cases", READY if self.rows else OFF, f"{len(self.rows)} of {len(CASES)} run"
 
     def stop(self) -> None:
-        """Stop the case under way and forget those that wait; the results found so far stay."""
+        """Stop the case under way and forget the waiting cases; the results so far stay."""
         self._give_up()
         for name in self.waiting:
             self._put(name, **WORDS.of("stopped"))

@@ -62,7 +62,7 @@ class MapPage(Page):
         self._host = host
         self._view = view
         self._visible = False
-        self._task = Task(host, LONG, self._show_status, "The map")
+        self._task = Task(host, LONG, self._show_status, "The map", outlives_knobs="it covers all f and A0")
         self._search = Task(host, LONG, self._show_attractors, "The search")
         self._grid: Grid | None = None
         self._cells: np.ndarray[Any, Any] = np.zeros(0)
@@ -96,7 +96,7 @@ class MapPage(Page):
         return self._grid is None or self._grid.digest != page_grid(self._host.session.scene).digest
 
     def visibility_changed(self, visible: bool) -> None:
-        """Show the map, and compute what is missing of it, as long as somebody looks."""
+        """Show the map, and compute its missing cells, as long as somebody looks."""
         self._visible = visible
         if not visible:
             self._stop()
@@ -122,7 +122,7 @@ class MapPage(Page):
             self._begin()
 
     def _begin(self) -> None:
-        """Compute what is missing of the present map, or a new one."""
+        """Compute the missing cells of the present map, or a new map."""
         self._task.cancel()
         if self._grid is None or self._stale():
             self._grid = page_grid(self._host.session.scene)

@@ -34,7 +34,8 @@ class ObserverPage(Page):
     def __init__(self, host: PageHost, view: Observer) -> None:
         self._host = host
         self._view = view
-        self._task = Task(host, PICTURES, self._said, "The observer", report_to_host=True)
+        self._task = Task(host, PICTURES, self._said, "The observer", report_to_host=True,
+                          outlives_knobs="one period under way is the old chain's last, the next the new chain's")
         self._run: ObserverRun | None = None
         self._asked = False
         self._requests: list[str] = []
@@ -72,7 +73,7 @@ class ObserverPage(Page):
 
     def _next_in_thread(self, scene: Scene, settled: Settled | None, run: ObserverRun | None, requests: list[str],
                         job: Job) -> None:
-        """In a worker thread: compute one more period of this scene's run; `run` is the one so far."""
+        """In a worker thread: compute one more period of this scene; `run` has the periods so far."""
         job.compile(scene, DOP853_KERNELS, OBSERVER_KERNELS)
         mine = settled if settled is not None and settled.run.scene.digest == scene.digest else None
         began = False

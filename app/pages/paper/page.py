@@ -34,7 +34,7 @@ class PaperPage(Page):
 
     def __init__(self, host: PageHost, view: Paper) -> None:
         self._view = view
-        self._task = Task(host, LONG, self._show_status, "The figure")
+        self._task = Task(host, LONG, self._show_status, "The figure", outlives_knobs="it has scenes of its own")
         self._found: dict[str, Result] = {}
         self._chosen = False
         self.actions: Actions = {"paper-show": self._show, "paper-stop": lambda _: self._stop()}

@@ -25,7 +25,7 @@ def empty_figures(theme: Theme) -> dict[str, Any]:
 
 
 class Probe(StreamedFigure):
-    """The overlay and, through what it shares in the browser, the small figure in its tab."""
+    """The overlay; its script shares the data of the small figure in its tab."""
 
     _esm = module("probe.js")
     _stylesheets = [text(f"{name}.css") for name in ("controls", "probe")]  # noqa: RUF012

@@ -68,7 +68,7 @@ class StabilityPage(Page):
 
     @property
     def activity(self) -> Activity:
-        """Name, state and detail for the list of what is computed now."""
+        """Name, state and detail for the list of running computations."""
         if not self._visible:
             return "stability", OFF, "not on the screen"
         words = {"compiling": "compiling the tangent flow", "computing": "multipliers, mode and section",
@@ -80,7 +80,7 @@ class StabilityPage(Page):
     # The picture in front
 
     def picture_requested(self) -> None:
-        """Another picture is being computed: cancel the analysis, and grey what is shown."""
+        """Another picture is being computed: cancel the analysis, and grey the last one."""
         self._give_up()
         self._settled = None
         if self._visible and self._host.session.mode == "live":

@@ -1,4 +1,4 @@
-"""The trail of multipliers: those of the orbits before the present one, fading."""
+"""The trail of multipliers: the multipliers of earlier orbits, fading."""
 
 from __future__ import annotations
 

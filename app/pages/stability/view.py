@@ -42,7 +42,7 @@ def empty_figures(theme: Theme) -> dict[str, Any]:
 
 
 class Stability(StreamedFigure):
-    """The overlay and, through what it shares in the browser, the small version in its tab."""
+    """The overlay; its script shares the data of the small version in its tab."""
 
     _esm = module("stability.js")
     _stylesheets = [text(f"{name}.css") for name in ("controls", "drawing", "stability")]  # noqa: RUF012
@@ -122,7 +122,7 @@ def multiplier_sentence(orbit: Orbit, rank: int) -> str:
 
 
 def evidence(settled: Settled, analysis: OrbitAnalysis | None, section: Section | None) -> list[dict[str, str]]:
-    """Name, value and meaning of everything on which the verdict rests; what was not computed has no row."""
+    """Name, value and meaning of all evidence for the verdict; a number that was not computed has no row."""
     regime, rows = settled.regime, []
 
     def row(name: str, value: str, meaning: str) -> None:

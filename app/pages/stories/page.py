@@ -59,7 +59,7 @@ class StoriesPage(Page):
             self._task.start(partial(self._through, story_step(self._host.session.story, self._host.overlays)))
 
     def address_applied(self) -> None:
-        """The address says which step is told; its motion is in the address, too."""
+        """The address has the step of the story, and the motion of the step."""
         self._task.cancel()
         name, _, number = self._host.session.story.partition(".")
         self._view.update_state(story=self._words(self._stories[name], int(number)) if name else None)

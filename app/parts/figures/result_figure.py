@@ -15,7 +15,7 @@ from ..toolkit.component import Component
 
 @dataclass(frozen=True)
 class _Drawn:
-    """A figure: how it is drawn, words for those who cannot see it, width over height (0 for that of its place)."""
+    """A figure: how it is drawn, its text for a screen reader, width over height (0 for the ratio of its place)."""
 
     draw: Callable[[Theme], LayoutDOM]
     words: str

@@ -14,7 +14,7 @@ from ..toolkit.component import Component
 
 
 def page_and_small(draw: Callable[[bool], LayoutDOM]) -> dict[str, Any]:
-    """Bokeh's JSON of a figure for a page and, compact, for its tab; `draw` is told whether it is to be compact."""
+    """Bokeh's JSON of a figure for a page and, compact, for its tab; `draw` gets whether it is compact."""
     return {"page": figure_item(draw(False)), "small": figure_item(draw(True))}
 
 

@@ -116,7 +116,7 @@ _ALIKE_FACTOR = 10.0
 
 
 def _worse_forces(run: Run) -> str:
-    """The larger error of both largest forces, where it misses the accuracy asked for or is far above that reached."""
+    """The larger error of both largest forces, if it misses the accuracy asked for or is far above the one reached."""
     errors = [(error, name) for error, name in ((run.force_errors.output, "output force"),
                                                 (run.force_errors.input, "input force")) if error is not None]
     worst, name = max(errors, default=(0.0, ""))

@@ -53,7 +53,7 @@ class MeasuredTrains:
         return 0.0 if swing is None else float(np.abs(swing).max())
 
     def load(self, shown: Overlay | None) -> None:
-        """Take another series, or none, and draw it over what is shown."""
+        """Take another series, or none, and draw it over the picture."""
         self._shown = shown
         self.update(*self._last)
 

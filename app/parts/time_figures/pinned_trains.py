@@ -76,7 +76,7 @@ class PinnedTrains:
         return max(at[0], default=0.0), max(at[1], default=0.0)
 
     def load(self, runs: Sequence[Run | None]) -> None:
-        """Take other pins, and draw them over what is shown."""
+        """Take other pins, and draw them over the picture."""
         self._trains = [None if run is None else _Train.of(run) for run in runs]
         self._drawn = ()
         self.update(*self._last)

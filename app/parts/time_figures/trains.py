@@ -160,7 +160,7 @@ class ForceTrains:
 
     @staticmethod
     def _readable(force: float, factor: float, unit: str) -> tuple[float, str]:
-        """The unit of an axis, or the one of `force` itself where it is too small for that of the axis."""
+        """The unit of an axis or, where `force` is too small for it, the unit of the force itself."""
         if force >= _SMALLEST_READABLE * factor:
             return factor, unit
         factor, letter = prefixed(force)

@@ -27,7 +27,7 @@ def grid(rows: Sequence[Sequence[figure]]) -> LayoutDOM:
 
 
 def fewer(values: np.ndarray, part: float = 2e-4) -> np.ndarray:
-    """Indices of equally spaced samples without those that a straight line replaces, to `part` of the range."""
+    """Indices of equally spaced samples, except samples that a straight line replaces to `part` of the range."""
     kept = np.ones(len(values), dtype=bool)
     limit = part * float(np.ptp(values)) if len(values) else 0.0
     for step in (1, 2, 4, 8, 16):

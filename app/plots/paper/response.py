@@ -1,4 +1,4 @@
-"""Figures 6 and 9: the rig's curves over what is stated or measured, and beside them force trains at 60 Hz."""
+"""Figures 6 and 9: the rig's curves with stated or measured values, and beside them force trains at 60 Hz."""
 
 from __future__ import annotations
 

@@ -43,7 +43,7 @@ _LONGEST_TURN = 0.1
 
 
 class _Priority(NamedTuple):
-    """Sort key of those that wait: new before refinements, long waits first, then least processor time."""
+    """Sort key of waiting computations: new before refinements, long waits first, then least processor time."""
 
     is_refinement: bool
     waited_little: bool
@@ -61,7 +61,7 @@ class _Turn:
         self.granted = threading.Event()
 
     def priority(self, now: float) -> _Priority:
-        """The place of the thread among those that wait."""
+        """The place of the thread among the waiting threads."""
         return _Priority(not self.is_new, now - self.at < _LONGEST_WAIT, self.cpu_time.used)
 
 

@@ -198,7 +198,7 @@ SESSION_WORK = WorkerPool(
 #: go before refinements.
 PICTURES = WorkerPool("pictures", 200, "the main pictures, for all sessions that wait; the Observer page, without a "
                                        "turn")
-#: Short work, which is cancelled when a knob moves.
+#: Short work, which is cancelled when a knob moves. The long questions of the page Analysis are work of `LONG`.
 ANALYSES = WorkerPool(
     "analyses", 8,
     "while the knobs rest: Stability, pinned motions, the motion of a story's step, the names of peaks, where a "
@@ -218,7 +218,8 @@ SWEEPS = WorkerPool(
 #: One session could start all of this work, and two sessions could fill the pool; so each has a limit.
 LONG = WorkerPool(
     "long", 8,
-    "parameter maps, searches for attractors, branches, analyses, figures of the paper, virtual experiments",
+    "parameter maps, searches for attractors, branches, the questions of Analysis, figures of the paper, virtual "
+    "experiments",
     low_priority=True, per_owner_limit=2)
 #: One at a time for all sessions, because two timings at once disturb each other. Its priority is not lower, because a
 #: timing that others hold up is wrong.

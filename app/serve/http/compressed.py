@@ -49,7 +49,7 @@ def accepts_gzip(wanted: str) -> bool:
 
 
 class CompressedFiles(StaticFileHandler):
-    """A mixin for a handler of files: sends the compressed file to a browser that accepts gzip and wants all of it."""
+    """A mixin for a handler of files: a browser that accepts gzip and asks for all of a file gets it compressed."""
 
     def parse_url_path(self, url_path: str) -> str:
         """The file of an address: one of our modules, or the file that the handler finds.

@@ -29,7 +29,7 @@ def resident_memory() -> float:
 
 
 def os_threads() -> float:
-    """Threads of the operating system; on a system that does not tell them, those that Python knows."""
+    """Threads of the operating system; on a system that does not count them, the threads that Python knows."""
     try:
         status = (_PROCESS / "status").read_text()
     except OSError:

@@ -42,7 +42,7 @@ INTERNALS = internals(
 
 
 class _Common(NamedTuple):
-    """The properties that the models of all instances of a part share, and the names of those that differ.
+    """The properties that the models of all instances of a part share, and the names of the other properties.
 
     A style sheet is its text, or the address of a sheet that each document imports once.
     """

@@ -150,8 +150,8 @@ def test_the_metrics_have_the_format_of_prometheus(dashboard: Listening) -> None
     status, headers, text = dashboard.ask("/metrics")
     assert status == 200 and headers["Content-Type"].startswith("text/plain; version=0.0.4")
     for line in text.splitlines():
-        assert re.fullmatch(r"# (HELP|TYPE) (granchain|process)_\w+ .+|"
-                            r'(granchain|process)_\w+(\{(le|pool|queue|version)="[^"]+"\})? \S+', line), line
+        assert re.fullmatch(r"# (HELP|TYPE) (granchain|process)_\w+ .+", line) or re.fullmatch(
+            r'(granchain|process)_\w+(\{((stage="\w+",)?le|pool|queue|stage|version)="[^"]+"\})? \S+', line), line
     for name in ("sessions", "pictures_total", "answer_seconds_bucket", "pool_queued", "cancelled_total", "picture_cache_hits_total"):
         assert f"granchain_{name}" in text
     assert "process_resident_memory_bytes" in text
