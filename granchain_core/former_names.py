@@ -93,26 +93,27 @@ def present(name: str) -> str:
 def of_module(module: str) -> Callable[[str], Any]:
     """The `__getattr__` of a module: former names of what the module has."""
 
-    def found(name: str) -> Any:
+    def value_of(name: str) -> Any:
         has = vars(sys.modules[module])
         if name in _PRESENT and _PRESENT[name] in has:
             return has[_PRESENT[name]]
         raise AttributeError(f"module {module!r} has no attribute {name!r}")
 
-    return found
+    return value_of
 
 
-def with_former_names(one: _Class) -> _Class:
+def with_former_names(owner: _Class) -> _Class:
     """Class decorator: the attributes under their former names too."""
     for row in ATTRIBUTES:
-        if row.former.startswith(f"{one.__name__}."):
-            setattr(one, row.last, property(row.of, doc=f"The former name of `{row.name.rpartition('.')[2]}`."))
-    return one
+        if row.former.startswith(f"{owner.__name__}."):
+            setattr(owner, row.last, property(row.of, doc=f"The former name of `{row.name.rpartition('.')[2]}`."))
+    return owner
 
 
-def with_former_keys(owner: str, said: dict[str, Any], rows: tuple[FormerName, ...] = KEYS) -> dict[str, Any]:
+def with_former_keys(owner: str, values: dict[str, Any], rows: tuple[FormerName, ...] = KEYS) -> dict[str, Any]:
     """The keys of a result's or command's JSON object, or the attributes of its file, under their former names too."""
-    return said | {row.last: said[row.name.rpartition(".")[2]] for row in rows if row.former.startswith(f"{owner}.")}
+    return values | {row.last: values[row.name.rpartition(".")[2]]
+                     for row in rows if row.former.startswith(f"{owner}.")}
 
 
 def former_columns(table: str) -> dict[str, str]:

@@ -36,8 +36,8 @@ def has_avx512() -> bool:
 
 def _host_features() -> str:
     """Features of this machine that Numba uses; none if it does not tell."""
-    told: str = getattr(codegen, "get_host_cpu_features", str)()
-    return told
+    features: str = getattr(codegen, "get_host_cpu_features", str)()
+    return features
 
 
 def is_x86() -> bool:

@@ -163,9 +163,9 @@ def compiled_lines(names: Iterable[str]) -> Iterator[str]:
     """Which pieces of these scenes' structures are compiled on this machine, and what the cache has altogether."""
     chains = {structure(scene(name)): scene(name) for name in names}
     for name, chain in chains.items():
-        there = [piece for piece in PIECES if is_warm(chain, [piece])]
-        lacking = [piece for piece in PIECES if piece not in there]
-        yield (f"{name}: {', '.join(there) or 'nothing'} compiled"
+        compiled = [piece for piece in PIECES if is_warm(chain, [piece])]
+        lacking = [piece for piece in PIECES if piece not in compiled]
+        yield (f"{name}: {', '.join(compiled) or 'nothing'} compiled"
                + (f"; {', '.join(lacking)} not compiled" if lacking else ""))
     if CACHE_FOLDER is None:
         yield "no folder for compiled kernels: they are compiled anew in every process"

@@ -35,23 +35,6 @@ def test_files_are_short_and_have_docstrings(folder: str) -> None:
     assert faults == []
 
 
-#: Locals that do not say what they are. Each is a point, an orbit, a question, and has the noun of it.
-_NAMES_OF_ANYTHING = {"found", "there", "told", "said", "asked", "held", "every", "whole", "way"}
-
-
-@pytest.mark.parametrize("folder", CORE_FOLDERS)
-def test_locals_of_the_core_have_nouns(folder: str) -> None:
-    """Kernels are left out: there `there` is a state beside `here`, and an edit compiles them again."""
-    files = [] if "kernels" in Path(folder).parts else CORE_FOLDERS[folder]
-    faults = []
-    for path in files:
-        for function in (node for node in nodes(path) if isinstance(node, (ast.FunctionDef, ast.Lambda))):
-            names = {node.id for node in ast.walk(function) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
-            names |= {node.arg for node in ast.walk(function) if isinstance(node, ast.arg)}
-            faults += [f"{path.name}: {name}" for name in sorted(names & _NAMES_OF_ANYTHING)]
-    assert faults == []
-
-
 @pytest.mark.parametrize("folder", by_folder(sorted((ROOT / "tests").rglob("test_*.py"))))
 def test_files_of_tests_have_tests(folder: str) -> None:
     """One that is emptied by mistake fails nowhere else."""

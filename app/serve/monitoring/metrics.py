@@ -223,9 +223,9 @@ class Metrics:
             value = metric.read()
             lines += _lines(metric.full_name, metric, metric.label, value)
             if former := former_metric(metric.full_name):
-                was = {former.values.get(key, key): one for key, one in value.items()} if isinstance(value, Mapping) \
-                    else value
-                lines += _lines(former.former, metric, former.label or metric.label, was)
+                if isinstance(value, Mapping):
+                    value = {former.values.get(key, key): number for key, number in value.items()}
+                lines += _lines(former.former, metric, former.label or metric.label, value)
         for name, text in HISTOGRAMS.items():
             lines += [f"# HELP {name} {text}", f"# TYPE {name} histogram"]
             if name == ANSWERS:
@@ -240,7 +240,7 @@ def _lines(name: str, metric: Metric, label: str, value: float | Mapping[str, fl
     """A metric under a name, with its help text."""
     head = [f"# HELP {name} {metric.help}", f"# TYPE {name} {metric.kind}"]
     if isinstance(value, Mapping):
-        return head + [f'{name}{{{label}="{key}"}} {_written(one)}' for key, one in value.items()]
+        return head + [f'{name}{{{label}="{key}"}} {_written(number)}' for key, number in value.items()]
     return [*head, f"{name} {_written(value)}"]
 
 

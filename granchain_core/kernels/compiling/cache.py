@@ -172,19 +172,19 @@ class KernelCache(_FunctionCache):
 
         The lock is then kept until `save_overload`, or until the compiler fails (`_ReleaseAfterFailure`).
         """
-        found = self._load(sig, target_context)
-        if found is None:
+        overload = self._load(sig, target_context)
+        if overload is None:
             path = self._path(sig, target_context.codegen())
             lock = self._locks.setdefault(path, CompileLock(path))
             try:
                 lock.acquire()
-                found = self._load(sig, target_context)
+                overload = self._load(sig, target_context)
             except BaseException:
                 self.release(path)
                 raise
-            if found is not None:
+            if overload is not None:
                 self.release(path)
-        return found
+        return overload
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Write a specialization; where that is impossible, go on without."""
@@ -224,8 +224,8 @@ class KernelCache(_FunctionCache):
 
     def _path(self, sig: Any, codegen: Any) -> Path:
         """Where a specialization is, or would be."""
-        found: Path = self._cache_file.path(self._index_key(sig, codegen))
-        return found
+        path: Path = self._cache_file.path(self._index_key(sig, codegen))
+        return path
 
 
 class _ReleaseAfterFailure(event.Listener):

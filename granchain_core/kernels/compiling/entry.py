@@ -64,10 +64,10 @@ class Entries:
 
     def __call__(self, key: Hashable, *arguments: Any) -> Any:
         """Call the kernel's specialization for `key`."""
-        found = self._known.get((key, CHECK_TYPES))
-        if found is None:
-            found = self._known[key, CHECK_TYPES] = entry(self._kernel, *arguments)
-        return found(*arguments)
+        specialization = self._known.get((key, CHECK_TYPES))
+        if specialization is None:
+            specialization = self._known[key, CHECK_TYPES] = entry(self._kernel, *arguments)
+        return specialization(*arguments)
 
 
 def types_of(value: Any) -> Any:

@@ -42,9 +42,9 @@ class ChoiceType(types.Callable, types.Dummy):
     def get_call_type(self, context: Any, args: Any, kws: Any) -> Any:
         """The signature of a call; compiles the chosen function for it, or finds that version."""
         dispatcher = self._choose(args[0])
-        found: Any = types.Dispatcher(dispatcher).get_call_type(context, *_without_literals(args, kws))
-        self._versions[found.args] = dispatcher.get_overload(found.args)
-        return found
+        signature: Any = types.Dispatcher(dispatcher).get_call_type(context, *_without_literals(args, kws))
+        self._versions[signature.args] = dispatcher.get_overload(signature.args)
+        return signature
 
     def get_call_signatures(self) -> Any:
         """The signatures of the calls so far, for error messages."""

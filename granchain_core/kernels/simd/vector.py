@@ -102,9 +102,9 @@ for _kind in VECTORS.values():
 def aligned(rows: int, width: int = BLOCK_WIDTH) -> np.ndarray:
     """Zeros (rows, width) that begin on a cache line: a vector that lies across two lines costs two accesses."""
     spare = 8  # doubles in a cache line of 64 bytes
-    whole = np.zeros(rows * width + spare)
-    first = -(whole.ctypes.data // 8) % spare
-    return whole[first : first + rows * width].reshape(rows, width)
+    memory = np.zeros(rows * width + spare)
+    first = -(memory.ctypes.data // 8) % spare
+    return memory[first : first + rows * width].reshape(rows, width)
 
 
 @intrinsic
