@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 #: Names of the outcomes of computations whose numbers failed.
-FAILURES = ("not-finite", "step-too-small", "too-many-steps", "chatter", "no-convergence", "same-orbit",
-            "another-orbit", "no-point", "contacts", "contradicted", "solver-gave-up", "too-slow", "worker-failed")
+FAILURES = ("not-finite", "step-too-small", "too-many-steps", "chatter", "too-many-events", "no-convergence",
+            "same-orbit", "another-orbit", "no-point", "contacts", "contradicted", "solver-gave-up", "too-slow",
+            "worker-failed")
 
 
 class BadInput(ValueError):

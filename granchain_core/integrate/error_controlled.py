@@ -87,7 +87,8 @@ class ErrorControlledStepper(ABC):
         self.type_key = self.new_type_key()
 
     def prepare(self, y: np.ndarray) -> None:
-        """Begin from a new state: errors are measured on its scale."""
+        """Begin from a new state: with the first step to try, and errors measured on the state's scale."""
+        self.work.next_step[0] = initial_step(self.scaled)
         for i, values in enumerate(self.scaled.rows(y)):
             self.work.scale[i] = max(_LEAST_SCALE, float(np.abs(values).max()))
 

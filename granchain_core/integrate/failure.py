@@ -5,8 +5,19 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..errors import Cancelled, ComputationError
-from ..kernels.status import CANCELLED, CHATTER, NOT_FINITE, STEP_TOO_SMALL, TOO_MANY_STEPS
+from ..kernels.status import (
+    CANCELLED,
+    CHATTER,
+    EVENTS_PER_CONTACT,
+    NOT_FINITE,
+    STEP_TOO_SMALL,
+    TOO_MANY_EVENTS,
+    TOO_MANY_STEPS,
+)
 from ..scene import Scene
+
+#: A method with fixed steps, as a user asks for it.
+_FIXED_STEPS = "fixed steps (granchain run --method rk4-split)"
 
 
 def not_finite(when: str, bead: int = 0, advice: str = "lower the damping or ask for a higher accuracy") -> str:
@@ -37,20 +48,25 @@ class Failure:
         if self.status == CANCELLED:
             return Cancelled()
         time = self.periods * self.scene.period
-        when = f"at about {time:.6g} s ({self.periods:.6g} drive periods)"
+        place = f"about {time:.6g} s ({self.periods:.6g} drive periods)"
+        when = f"after {place}"
         if self.status == NOT_FINITE:
             where = "" if self.step is None else f" in step {self.step} of its period"
-            return ComputationError(not_finite(f"{when}{where}", self.bead), "not-finite", self.bead or None, time,
+            return ComputationError(not_finite(f"at {place}{where}", self.bead), "not-finite", self.bead or None, time,
                                     self.step, self.cost)
         if self.status == STEP_TOO_SMALL:
             return ComputationError(f"The step of {self.method} became too small {when}; ask for less accuracy than "
-                                    f"{self.scene.accuracy:g}, or on the command line for --method rk4-split.",
+                                    f"{self.scene.accuracy:g}, or for {_FIXED_STEPS}.",
                                     "step-too-small", time=time, cost=self.cost)
         if self.status == TOO_MANY_STEPS:
             return ComputationError(f"One drive period needs millions of steps of {self.method} {when}; raise the "
                                     f"frequency f.", "too-many-steps", time=time, cost=self.cost)
         if self.status == CHATTER:
-            return ComputationError(f"Contacts open and close endlessly {when}; the chain chatters: raise the damping "
-                                    f"D, or on the command line use --method rk4-split.", "chatter", time=time,
+            return ComputationError(f"A contact opens and closes {when} while hardly any time passes: rounding "
+                                    f"decides it, not the motion. Ask for another accuracy, or for {_FIXED_STEPS}.",
+                                    "chatter", time=time, cost=self.cost)
+        if self.status == TOO_MANY_EVENTS:
+            return ComputationError(f"An orbit has more than {EVENTS_PER_CONTACT} contact events a contact and drive "
+                                    f"period {when}; raise the frequency f.", "too-many-events", time=time,
                                     cost=self.cost)
         raise ValueError(f"{self.status} is not the status of a computation that failed")

@@ -262,13 +262,13 @@ def _long_chain(scaled: ScaledChain) -> LongChain:
     slots, blocks = scaled.slots, -(-scaled.bodies // BLOCK_WIDTH)
 
     def padded(values: np.ndarray) -> np.ndarray:
-        return np.pad(values, (0, blocks * BLOCK_WIDTH - len(values))).reshape(blocks, BLOCK_WIDTH)
-
-    def empty(rows: int) -> np.ndarray:
-        return np.zeros((rows, BLOCK_WIDTH))
+        rows = aligned(blocks)
+        rows.reshape(-1)[: len(values)] = values
+        return rows
 
     preload = None if slots.preload is None else type(slots.preload)(padded(slots.preload.static))
     return LongChain(padded(slots.chain.inverse_mass), padded(slots.chain.stiffness), preload,
-                     now=empty(2 * blocks), before=empty(2 * blocks), acc=empty(2 * blocks), first=empty(2 * blocks),
-                     second=empty(2 * blocks), overlap=empty(blocks), velocity=empty(blocks), elastic=empty(blocks),
+                     now=aligned(2 * blocks), before=aligned(2 * blocks), acc=aligned(2 * blocks),
+                     first=aligned(2 * blocks), second=aligned(2 * blocks), overlap=aligned(blocks),
+                     velocity=aligned(blocks), elastic=aligned(blocks),
                      signs=np.zeros(blocks, dtype=np.int64))

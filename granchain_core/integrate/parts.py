@@ -15,12 +15,9 @@ import numpy as np
 from ..kernels.forces.largest import CLOSED
 from ..kernels.forces.peaks import largest_forces, next_period
 from ..kernels.samples import KernelIO, Samples, write_strobe
-from ..kernels.status import CANCELLED, DONE
+from ..kernels.status import CANCELLED, DONE, WORK_BETWEEN_STOP_CHECKS
 from .scaling import ScaledChain
 from .stepper import empty_samples
-
-#: Steps times bodies in one call of a kernel: 5 to 40 ms.
-_WORK_OF_CALL = 1 << 19
 
 
 class InParts(Protocol):
@@ -40,7 +37,7 @@ class InParts(Protocol):
 
 def steps_in_part(bodies: int) -> int:
     """Most steps in one call of the kernel."""
-    return max(1, _WORK_OF_CALL // bodies)
+    return max(1, WORK_BETWEEN_STOP_CHECKS // bodies)
 
 
 def samples_in_parts(stepper: InParts, y: np.ndarray, first: int, stride: int, part: int, samples: Samples,

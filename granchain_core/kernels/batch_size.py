@@ -35,7 +35,7 @@ def has_avx512() -> bool:
 
 
 def _host_features() -> str:
-    """Features of this machine that Numba uses; none if it does not tell."""
+    """Features of this machine that Numba uses; empty if Numba has no such function."""
     features: str = getattr(codegen, "get_host_cpu_features", str)()
     return features
 

@@ -11,7 +11,6 @@ from ..execution.stop import Stop
 from ..integrate import Engine, dop853_setting
 from ..integrate.dop853 import Dop853Stepper
 from ..integrate.scaling import ScaledChain, scale_like
-from ..kernels.dop853.tableau import STAGES
 from ..kernels.effects.contact import FrozenContacts
 from ..kernels.effects.dissipation import LinearDashpot
 from ..kernels.flow.attempt import ContactStatus, FlowProblem
@@ -32,6 +31,10 @@ TANGENT_ERROR = 1e-7
 #: Error of a multiplier near the unit circle: ten times that, as the largest entry of the derivative is 2 to 13 and the
 #: eigenvectors are well separated. For single orbits it is computed (multiplier_errors.py).
 MULTIPLIER_ERROR = 10.0 * TANGENT_ERROR
+#: [step size] flow: first step to try, in scaled time, in a period that is long enough.
+_INITIAL_STEP = 0.1
+#: [step size] flow: fewest steps in a drive period from which the first one follows.
+_LEAST_STEPS = 12
 #: The method, in the provenance of results.
 FLOW_METHOD = "tangent flow (DOP853, time substitution at events)"
 #: An orbit that is back within this, relatively, after a part of its period has that shorter period.
@@ -142,7 +145,7 @@ class StroboscopicMap:
     def _run(self, x: np.ndarray, tangent: Tangent | VelocityTangent) -> float:
         engine = self.engine
         engine.start_scaled(x)
-        self._work.next_step[0] = min(0.1, engine.scaled.period / STAGES)
+        self._work.next_step[0] = min(_INITIAL_STEP, engine.scaled.period / _LEAST_STEPS)
         trajectory = engine.stepper.trajectory(engine.y)._replace(workspace=self._work)
         problem = FlowProblem(trajectory, self._contacts, tangent)
         status, done, trace = run_flow(engine.stepper.method, problem, self.periods, engine.counts.array,

@@ -102,7 +102,7 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
         The run would take longer than `budget` from the beginning; it is a `BadInput`.
     ComputationError
         The motion is no longer finite, a step has shrunk to nothing, a period takes millions of steps, or contacts open
-        and close endlessly (chatter); the message says when and why.
+        and close while no time passes (chatter); the message says when and why.
     Cancelled
         `stop` was set.
 

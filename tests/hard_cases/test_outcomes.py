@@ -18,6 +18,9 @@ from granchain_core.errors import FAILURES, OverBudget
 from granchain_core.execution.stop import Stop
 from granchain_core.integrate import Engine, MethodSetting, method_for
 from granchain_core.integrate.checkpoint import Checkpoint, checkpoint, resumed
+from granchain_core.kernels.error_control import run as error_control
+from granchain_core.kernels.error_control.run import SampleRange
+from granchain_core.kernels.status import CHATTER, EVENTS_PER_CONTACT
 from granchain_core.runs import to_accuracy
 from granchain_core.runs.budget import estimate
 from granchain_core.runs.to_accuracy import warnings
@@ -129,12 +132,31 @@ def test_step_too_small() -> None:
     assert caught.value.status == "step-too-small"
 
 
-def test_endless_touches_fail_with_a_sentence() -> None:
-    """One bead between a slow driver and the wall, undamped: thousands of touches in one drive period."""
-    engine = Engine(scene("sec2").evolve(N=1, dissipation="none", f=1.0), MethodSetting("dop853", 1.0, 1e-4), 1)
+def bouncing() -> Engine:
+    """One bead between a slow driver and the wall, undamped: 4600 contact events in one drive period."""
+    engine = Engine(scene("sec2").evolve(N=1, dissipation="none", f=5.0), MethodSetting("dop853", 1.0, 1e-4), 1)
     engine.start(State(np.zeros(1), np.array([0.5])))
-    with pytest.raises(ComputationError, match="endlessly") as caught:
-        engine.periods(1)
+    return engine
+
+
+def test_thousands_of_touches_in_one_drive_period_are_followed() -> None:
+    """Contacts are compliant, so a touch takes time: however many there are, they are no chatter."""
+    engine = bouncing()
+    engine.periods(1)
+    assert engine.counts.events > 2 * EVENTS_PER_CONTACT
+
+
+def test_contacts_that_open_and_close_while_no_time_passes_fail_with_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With a window that never ends the touches of a period count as if they took no time."""
+    monkeypatch.setattr(error_control, "EVENT_WINDOW", np.inf)
+    monkeypatch.setattr(error_control, "EVENTS_PER_CONTACT", 20)
+    engine = bouncing()
+    trajectory, samples = engine.stepper.trajectory(engine.y), engine.empty_samples(0)
+    status, _ = error_control.run_error_controlled.py_func(engine.stepper.method, trajectory, SampleRange(0, 1, 1, 0), samples,
+                                                           engine._output())
+    assert status == CHATTER
+    with pytest.raises(ComputationError, match="while hardly any time passes") as caught:
+        engine.raise_for(status, 0.0)
     assert caught.value.status == "chatter"
 
 

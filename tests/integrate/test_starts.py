@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from granchain_core import BadInput, LiveChain, Signal, State, drive, lyapunov_spectrum, orbit, run, scene, settle
-from granchain_core.integrate import METHODS, Engine, fixed_step_setting
+from granchain_core.integrate import METHODS, Engine, MethodSetting, fixed_step_setting
 from granchain_core.integrate.start import at_phase_0
 from granchain_core.steady.poincare import iter_section
 
@@ -116,3 +116,13 @@ def test_what_is_no_state_of_the_chain_is_refused(call: Callable[[Any], object],
 def test_lists_are_numbers_too() -> None:
     start = State([0.0, 0.0], [0.01, 0.0])  # type: ignore[arg-type]
     assert run(CHAIN, periods=0, record=1, start=start).velocity[0] == pytest.approx([0.01, 0.0])
+
+
+@pytest.mark.parametrize("method", [name for name, row in METHODS.items() if row.error_control])
+def test_a_second_start_begins_with_the_first_step(method: str) -> None:
+    """The same start gives the same bits: the step of the motion before is forgotten."""
+    engine = Engine(CHAIN, MethodSetting(method, tolerance=1e-8), 8)
+    start = engine.state
+    first = engine.record(32).displacement
+    engine.start(start)
+    assert np.array_equal(engine.record(32).displacement, first)

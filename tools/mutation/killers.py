@@ -96,7 +96,6 @@ SAMPLING = ("tests/observers/test_sampling.py", "-k", "follows_its_chain and smo
 
 #: Time, restarts, failures.
 CONTINUATION = ("tests/integrate/test_continuation.py", "-k", "not stop_flag")
-MANY_PERIODS = ("tests/integrate/test_long_records.py",)
 CHECKPOINTS = ("tests/integrate/test_checkpoints.py",)
 FAILURES_T = ("tests/integrate/test_not_finite.py", "-k", "counts_from_the_start")
 STIFFEST = ("tests/integrate/test_failures.py", "-k", "stiffest")

@@ -59,7 +59,7 @@ EFFECTS = (
     Mutant("sampled-force-quadratic", _PUSHED, "return p[0] + theta * (p[1] + theta * (p[2] + theta * p[3]))",
            "return p[0] + theta * (p[1] + theta * p[2])", "a measured force jumps at every sample", k.UNLIKE),
     Mutant("echo-without-damping", _PUSHED,
-           "put_prescribed_primitive(slots.dissipation, G, 0, driver.contact)", "pass",
+           "copy_primitive(slots.dissipation, G, 0, driver.contact)", "pass",
            "an observer is not told of the dashpot's part of its chain's input", k.TWIN),
     Mutant("cut-takes-the-elastic-force", _CUT, "                e[c] = -damped", "                e[c] = 0.0",
            "where tension is cut the total force is the dashpot's alone", k.MOTION),

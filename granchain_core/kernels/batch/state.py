@@ -1,7 +1,8 @@
 """What a batch knows of its L members (BATCH_SIZE), one in each SIMD lane: arrays with an axis of L.
 
 The state of a chain with N beads are the displacements of driver, beads and wall, then w of the same: 2(N + 2) numbers.
-An axis of length 2 holds the displacements, then w. R is STROBES_KEPT (record.py).
+An axis of length 2 holds the displacements, then w. R is STROBES_KEPT (record.py): there is room for 2R strobes, of
+which the older half is dropped when all places are taken.
 """
 
 from __future__ import annotations

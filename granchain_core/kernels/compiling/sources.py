@@ -20,9 +20,10 @@ from ..batch_size import BATCH_SIZE, processor
 
 #: Sources that decide where compiled code is stored and how it is called but do not change it.
 _NOT_IN_CODE = tuple(f"compiling/{name}.py" for name in ("cache", "cache_folder", "compile_lock", "entry", "sources"))
-#: Settings of Numba (environment variables with NUMBA_ before them) that change machine code and are not among the
-#: names of its own cache: optimisation level, bounds checks, debug information, vectorisers, AVX.
-_SETTINGS = ("OPT", "BOUNDSCHECK", "DEBUGINFO_DEFAULT", "SLP_VECTORIZE", "LOOP_VECTORIZE", "ENABLE_AVX")
+#: Settings of Numba (environment variables with NUMBA_ before them) that change machine code: optimisation level,
+#: bounds checks, debug information, vectorisers, AVX, Intel's vector functions, the processor's features.
+_SETTINGS = ("OPT", "BOUNDSCHECK", "DEBUGINFO_DEFAULT", "SLP_VECTORIZE", "LOOP_VECTORIZE", "ENABLE_AVX",
+             "DISABLE_INTEL_SVML", "CPU_FEATURES")
 #: The folder of the kernels. One outside it (hard_cases/touches.py) is kept under its own module's code too (cache.py).
 FOLDER = Path(__file__).parents[1]
 

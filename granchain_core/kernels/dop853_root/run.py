@@ -30,6 +30,7 @@ from ..status import (
     CHATTER,
     DONE,
     EVALUATIONS,
+    EVENT_WINDOW,
     EVENTS,
     EVENTS_PER_CONTACT,
     NOT_FINITE,
@@ -200,6 +201,7 @@ def run_dop853_root(method, work, trajectory, sample_range, samples, out):
     g, done, row, dt, new_period = sample_range.first, 0, 1, workspace.next_step[0], True
     events, most_events, idle = 0, EVENTS_PER_CONTACT * (bodies - 1), 0
     begin = begin_of_run(context, g * context.spacing, y, bodies)
+    since = begin.t
     if every > 0:
         evaluate(slots, drive.beta, begin.t, y, workspace.k[0], workspace.forces)
         write_sample(slots, 0, y, workspace.k[0], workspace.forces.e, samples)
@@ -208,6 +210,8 @@ def run_dop853_root(method, work, trajectory, sample_range, samples, out):
             return CANCELLED, row if every > 0 else done
         if new_period:  # within a period its oscillator is as exact as the beads
             begin, new_period = with_driver_in_place(context, begin), False
+        if begin.t - since > EVENT_WINDOW:
+            events, since = 0, begin.t
         dt = min(dt, method.largest_step)
         units = new_units(context, begin.point, workspace.scale)
         chosen = nearest_event(begin.rates, begin.closed, workspace.scale[0], dt)
@@ -244,7 +248,7 @@ def run_dop853_root(method, work, trajectory, sample_range, samples, out):
                              drive.beta * begin.t, out.log)
         if begin.t >= period:
             begin = StepBegin(begin.t - period, begin.point, begin.rates, begin.forces, begin.bits, begin.closed)
-            g, events, new_period = g - grid, 0, True
+            g, events, since, new_period = g - grid, 0, begin.t, True
     write_beads(context, begin, y, bodies)
     workspace.next_step[0] = dt
     evaluate(slots, drive.beta, begin.t, y, workspace.k[0], workspace.forces)

@@ -8,7 +8,7 @@ Values     coefficient: λ = D (A₀/δ_r)^a/(mφ), at an overlap of one length 
 Law        defined by its `exponent` a and its `power` δ^a, from which all other terms follow, here and elsewhere
 Terms      damping, damping_slope, dashpot_force, closing_force, dashpot_slope, primitive, times_primitive,
            unit_primitive = G/λ, v_from_w and its inverse w_from_v (absent: v = w); write_primitive, put_primitive and
-           put_prescribed_primitive write into the array of G
+           copy_primitive write into the array of G
 """
 
 from __future__ import annotations
@@ -237,11 +237,11 @@ def _(law, G, c, value):
 
 
 @by_slot
-def put_prescribed_primitive(law, G, source, target):
+def copy_primitive(law, G, source, target):
     """Copy G of contact `source` to contact `target`; without dissipation there is none."""
 
 
-@put_prescribed_primitive.of(*LAWS)
+@copy_primitive.of(*LAWS)
 def _(law, G, source, target):
     G[target] = G[source]
 

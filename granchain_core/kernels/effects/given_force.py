@@ -5,7 +5,7 @@ Source     Zhang et al. 2016, eqs. (3) and (4)
 Values     Sampled: piece (4,), the cubic of the force between two samples in the time since the first of them, constant
            term first; rk4/piecewise.py fills it before each piece, and the phase θ is that time.
            ObserverCoupling: the harmonic driver of the first chain, and the contact before the observer's first bead
-Terms      prescribe_primitive and prescribe_force put the force into contact 0 (Sampled) or into the contact named by
+Terms      put_given_primitive and put_given_force put the force into contact 0 (Sampled) or into the contact named by
            the coupling. Elastic force e_0 and G_0 are copied separately, so that in w-variables nothing jumps in the
            observer either
 Methods    Sampled: fixed steps, from sample to sample. ObserverCoupling: dop853; the quadrature errors
@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiling.dispatch import by_slot
-from .dissipation import put_prescribed_primitive
+from .dissipation import copy_primitive
 from .driver import (
     BODY_FAR_AWAY,
     Harmonic,
@@ -55,7 +55,7 @@ def _(driver, theta):
 
 @driver_velocity.of(Sampled)
 def _(driver, theta):
-    # A force, not a velocity: there is no body 0, so `motion` carries it in dy[0] to `prescribe_force`.
+    # A force, not a velocity: there is no body 0, so `motion` carries it in dy[0] to `put_given_force`.
     p = driver.piece
     return p[0] + theta * (p[1] + theta * (p[2] + theta * p[3]))
 
@@ -71,32 +71,32 @@ driver_acceleration.of(ObserverCoupling)(harmonic_acceleration)
 
 
 @by_slot
-def prescribe_primitive(driver, slots, y, G):
+def put_given_primitive(driver, slots, y, G):
     """Copy the input force's G to the contact of the observer. Effect absent: nothing."""
 
 
-prescribe_primitive.absent_for(Harmonic, PrescribedMotion, Sampled)
+put_given_primitive.absent_for(Harmonic, PrescribedMotion, Sampled)
 
 
-@prescribe_primitive.of(ObserverCoupling)
+@put_given_primitive.of(ObserverCoupling)
 def _(driver, slots, y, G):
-    put_prescribed_primitive(slots.dissipation, G, 0, driver.contact)
+    copy_primitive(slots.dissipation, G, 0, driver.contact)
 
 
 @by_slot
-def prescribe_force(driver, dy, e):
+def put_given_force(driver, dy, e):
     """Put the given force into the contact it acts in. Effect absent: nothing."""
 
 
-prescribe_force.absent_for(Harmonic, PrescribedMotion)
+put_given_force.absent_for(Harmonic, PrescribedMotion)
 
 
-@prescribe_force.of(Sampled)
+@put_given_force.of(Sampled)
 def _(driver, dy, e):
     e[0] = dy[0]
     dy[0] = 0.0
 
 
-@prescribe_force.of(ObserverCoupling)
+@put_given_force.of(ObserverCoupling)
 def _(driver, dy, e):
     e[driver.contact] = e[0]

@@ -26,7 +26,7 @@ from ..effects.contact import closed_overlap, elastic_energy, elastic_force, pos
 from ..effects.dissipation import dashpot_force, v_from_w, w_from_v, write_primitive
 from ..effects.driver import driver_displacement, driver_velocity
 from ..effects.energy_account import account_rates
-from ..effects.given_force import prescribe_force, prescribe_primitive
+from ..effects.given_force import put_given_force, put_given_primitive
 from ..effects.preload import overlap
 from ..effects.registry import check_effects
 from ..effects.tension import cut_tension, unless_force_free, write_force_free_primitive
@@ -100,11 +100,11 @@ def motion(slots, u0, v0, y, dy, forces):
         e[c] = elastic_force(stiffness[c], d)
         write_primitive(slots.dissipation, G, c, d)
     write_force_free_primitive(slots.tension, slots, y, G)
-    prescribe_primitive(slots.driver, slots, y, G)
+    put_given_primitive(slots.driver, slots, y, G)
     for i in range(1, bodies - 1):
         dy[i] = v_from_w(slots.dissipation, inverse_mass, y[bodies + i], G, i)
     cut_tension(slots.tension, slots, y, dy, e)
-    prescribe_force(slots.driver, dy, e)
+    put_given_force(slots.driver, dy, e)
     for i in range(1, bodies - 1):
         dy[bodies + i] = inverse_mass[i] * force_on_bead(slots, i, e[i - 1] - e[i], y[i], dy[i])
     account_rates(slots.account, slots, y, dy, e)
@@ -131,7 +131,7 @@ def write_w(slots, y, dy, forces):
     bodies = slots.chain.inverse_mass.size
     for c in range(bodies - 1):
         write_primitive(slots.dissipation, forces.G, c, positive_part(overlap(slots.preload, y, c)))
-    prescribe_primitive(slots.driver, slots, y, forces.G)
+    put_given_primitive(slots.driver, slots, y, forces.G)
     for i in range(1, bodies - 1):
         y[bodies + i] = w_from_v(slots.dissipation, slots.chain.inverse_mass, dy[i], forces.G, i)
 

@@ -86,8 +86,9 @@ def maximum_inside(quantity, step, until, sections):
 def may_turn(d0, s0, d1, s1, sign):
     """Whether an overlap with the same sign at both ends of a step may cross zero in between.
 
-    It must move towards zero first and away last, as in `may_change` (rk4/step.py). Then the straight lines along its
-    slopes at both ends bound how near it can come, but for curvature, which is small in an accepted step.
+    It must move towards zero first and away last, as in `may_change` (rk4/step.py). If it is convex or concave in the
+    step, the tangents at both ends bound how near it can come. An inflection in the step could hide a touch, which then
+    remains in the error of the step.
     """
     if not (sign * s0 > 0.0 and sign * s1 < 0.0):
         return False

@@ -33,8 +33,8 @@ _MOST_CORRECTIONS = 6
 _EVENT_STRETCH = 1.01
 #: [step size] dop853: an event within this part of a step of its end needs no shorter step before it is located.
 _NEAR_END = 1e-9
-#: [step size] dop853: first step after an event over tolerance^{2/5}. A term (t − t_e)^{5/2} follows the event, so that
-#: this step errs by about the tolerance.
+#: [step size] dop853: first step after an event over tolerance^{2/5}. For the elastic force and the linear dashpot a
+#: term (t − t_e)^{5/2} follows a closing, so that this step errs by about the tolerance.
 _FIRST_STEP_FACTOR = 2.0
 
 

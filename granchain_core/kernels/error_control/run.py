@@ -9,7 +9,7 @@ from ..effects.energy_account import add_to_account, force_free_loss
 from ..equations.motion import copy
 from ..forces.largest import SAMPLE, Instant, Span, record_closings
 from ..samples import first_not_finite, write_sample
-from ..status import CANCELLED, CHATTER, DONE, EVALUATIONS, EVENTS_PER_CONTACT, NOT_FINITE
+from ..status import CANCELLED, CHATTER, DONE, EVALUATIONS, EVENT_WINDOW, EVENTS_PER_CONTACT, NOT_FINITE
 from .force_kinks import leave_force_free
 from .force_search import update_forces_in_step
 from .located_step import located_step
@@ -79,7 +79,7 @@ def run_error_controlled(method, trajectory, sample_range, samples, out):
     first, points, grid, every = sample_range
     bodies, period, spacing = slots.chain.inverse_mass.size, drive.period, drive.period / grid
     point, done, row, events = first, 0, 1, 0
-    t = point * spacing
+    t = since = point * spacing
     evaluate(slots, drive.beta, t, y, workspace.k[0], workspace.forces)
     if every > 0:
         write_sample(slots, 0, y, workspace.k[0], workspace.forces.e, samples)
@@ -92,6 +92,8 @@ def run_error_controlled(method, trajectory, sample_range, samples, out):
         if status != DONE:
             return status, row if every > 0 else done
         end = limit if limit - (t + h) < GOAL_TOLERANCE * period else t + h
+        if t - since > EVENT_WINDOW:
+            events, since = 0, t
         events += contact >= 0
         if events > EVENTS_PER_CONTACT * (bodies - 1):
             return CHATTER, row if every > 0 else done
@@ -104,7 +106,7 @@ def run_error_controlled(method, trajectory, sample_range, samples, out):
         changed = accept(trajectory)
         t = end
         if end == period:
-            t, point, events = 0.0, 0, 0
+            t, point, events, since = 0.0, 0, 0, 0.0
         if changed or end == period:
             evaluate(slots, drive.beta, t, y, workspace.k[0], workspace.forces)
         if first_not_finite(y, bodies) != 0:

@@ -14,7 +14,7 @@ from ..effects.preload import overlap
 from ..equations.motion import copy
 from ..error_control.step import evaluate, new_scale
 from ..samples import first_not_finite
-from ..status import CANCELLED, CHATTER, DONE, EVENTS, NOT_FINITE, STEPS, TOO_MANY_STEPS
+from ..status import CANCELLED, DONE, EVENTS, NOT_FINITE, STEPS, TOO_MANY_EVENTS, TOO_MANY_STEPS
 from .event_time import time_at
 from .events import flow_step
 from .tangent import Tangent, propagate
@@ -86,7 +86,7 @@ def run_flow(method, problem, periods, counts, stop):
                 counts[STEPS] += 1
             if contact >= 0:
                 if contacts.logged[0] >= contacts.log.shape[0]:
-                    return CHATTER, p, trace
+                    return TOO_MANY_EVENTS, p, trace
                 if toggle_contact(slots, contacts, tangent, contact, p * period + t):
                     last_closing = t
                 counts[EVENTS] += 1

@@ -17,11 +17,8 @@ from ..effects.given_force import Sampled
 from ..equations.motion import Trajectory, motion
 from ..forces.largest import update_forces
 from ..samples import first_not_finite, write_sample
-from ..status import CANCELLED, DONE, NOT_FINITE
+from ..status import CANCELLED, DONE, NOT_FINITE, WORK_BETWEEN_STOP_CHECKS
 from .step import DriveTable, step
-
-#: Steps times bodies between two readings of the stop flag: some tens of milliseconds.
-_WORK_BETWEEN_STOP_CHECKS = 1 << 19
 
 
 class DrivePieces(NamedTuple):
@@ -76,7 +73,7 @@ def run_pieces(method, trajectory, pieces, samples, out):
             since = step(method, here, j, out)
             update_forces(slots, y, workspace.k[0], workspace.forces.e, since, out.log)
             work += bodies
-            if work >= _WORK_BETWEEN_STOP_CHECKS:
+            if work >= WORK_BETWEEN_STOP_CHECKS:
                 work = 0
                 if out.stop[0] != 0:
                     return CANCELLED, i + 1

@@ -25,7 +25,8 @@ from .step import step, tabulated_displacement, tabulated_velocity
 def advance(simd, method, trajectory, j, count, out):
     """Take `count` steps from step index j of the period. Without a vector along the chain: one by one.
 
-    The stop flag is read often enough for a run to end within milliseconds; fewer steps are then taken.
+    The stop flag is read every `STEPS_BETWEEN_STOP_CHECKS` steps, and fewer steps are taken once it is set. Calls for
+    long chains are short (integrate/parts.py).
     """
     slots, _, y, workspace = trajectory
     for i in range(j, j + count):

@@ -24,6 +24,11 @@ _HAS_RSQRT14, _HAS_RSQRT_PS = has_avx512(), is_x86()
 #: Smallest number whose root is computed; smaller ones are replaced by it. Its power 3/2, the force of such an overlap,
 #: is negligible. Where `rsqrtps` is used it must not become zero in single precision.
 _LEAST_ARGUMENT = 1e-280 if BATCH_SIZE == 8 else 1e-30
+#: A maximum is smooth if its two neighbours are above this part of it; a jump of a dashpot force is not.
+NEIGHBOUR_PART = 0.8
+#: The same for the two values beyond the neighbours; they are not above the maximum either, since the quartic through a
+#: dip of one step may rise to many times its values.
+SECOND_NEIGHBOUR_PART = 0.4
 
 
 def _llvm_root(builder, kind, value):
@@ -135,8 +140,8 @@ def _vector_peak(typingctx, a, b, c, d, e, top):
     def codegen(context, builder, sig, args):
         a, b, c, d, e, top = args
         kind = sig.return_type.ir
-        near = builder.fmul(c, ir.Constant(kind, [ADJACENT] * kind.count))
-        far = builder.fmul(c, ir.Constant(kind, [BEYOND] * kind.count))
+        near = builder.fmul(c, ir.Constant(kind, [NEIGHBOUR_PART] * kind.count))
+        far = builder.fmul(c, ir.Constant(kind, [SECOND_NEIGHBOUR_PART] * kind.count))
         smooth = builder.and_(builder.fcmp_ordered(">", c, b), builder.fcmp_ordered(">=", c, d))
         for value, least in ((b, near), (d, near), (a, far), (e, far)):
             smooth = builder.and_(smooth, builder.fcmp_ordered(">", value, least))
@@ -147,17 +152,11 @@ def _vector_peak(typingctx, a, b, c, d, e, top):
     return c(c, c, c, c, c, c), codegen
 
 
-#: A maximum is smooth if its two neighbours are above this part of it; a jump of a dashpot force is not.
-ADJACENT = 0.8
-#: The same for the two values beyond the neighbours; they are not above the maximum either, since the quartic through a
-#: dip of one step may rise to many times its values.
-BEYOND = 0.4
-
-
 def choose_peak(a, b, c, d, e, top):
     """`top` where c is a smooth maximum of five successive values, else c."""
     largest = b < c >= d and a <= c >= e
-    smooth = b > ADJACENT * c and d > ADJACENT * c and a > BEYOND * c and e > BEYOND * c
+    near, far = NEIGHBOUR_PART * c, SECOND_NEIGHBOUR_PART * c
+    smooth = b > near and d > near and a > far and e > far
     return top if largest and smooth else c
 
 

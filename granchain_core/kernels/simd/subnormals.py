@@ -1,6 +1,6 @@
 """Subnormal numbers taken for zero: ahead of a wave all numbers may be subnormal, which is slow.
 
-`Engine.record` and `Engine.periods`, short chains and batches switch this on; `run_flow` and others do not.
+`Engine.record` and `Engine.periods`, short chains and batches switch this on; the flow and `run_pieces` do not.
 """
 
 from __future__ import annotations

@@ -41,7 +41,7 @@ class VectorType(types.Type):
 
 
 VECTORS = {width: VectorType(width) for width in WIDTHS}
-vector = VECTORS[BLOCK_WIDTH]
+block_vector = VECTORS[BLOCK_WIDTH]
 
 
 @register_model(VectorType)
@@ -112,9 +112,9 @@ def splat8(typingctx, value):
     """A vector of eight doubles, all equal to `value`."""
 
     def codegen(context, builder, sig, args):
-        return _splat(builder, vector.ir, args[0])
+        return _splat(builder, block_vector.ir, args[0])
 
-    return vector(types.float64), codegen
+    return block_vector(types.float64), codegen
 
 
 def require_rows(array):
