@@ -110,7 +110,7 @@ class Attractors(list[Attractor], Labelled):
     scene : Scene
         The chain.
     failed : list of Origin
-        The starts whose computation failed: their numbers overflowed. Shares count them among the random states.
+        The starts whose computation failed. Shares count them among the random states.
 
     Examples
     --------

@@ -83,7 +83,7 @@ def attractors(scene: Scene, random_states: int = 64, seed: int = 0, stop: Stop 
     BadInput
         `random_states` or `seed` is not a whole number or out of range.
     ComputationError
-        No start stays finite.
+        The computation of every start failed.
 
     Examples
     --------
@@ -115,7 +115,7 @@ def attractors_from(scene: Scene, origins: list[Origin], stop: Stop | None = Non
     starts = [Start(scene, origin.state, number) for number, origin in enumerate(origins)]
     results = _settled(starts, stop, progress)
     if results and not any(not result.failure for result in results):
-        raise ComputationError(results[0].failure, "not-finite")
+        raise ComputationError(results[0].failure, results[0].status)
     failed = {result.number for result in results if result.failure}
     groups = merged([with_section(result) for result in results if not result.failure])
     for _ in range(_MOST_ROUNDS):

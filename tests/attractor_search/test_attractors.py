@@ -7,7 +7,7 @@ import sys
 import numpy as np
 import pytest
 
-from granchain_core import BadInput, Scene, orbit, resonance_curve, scene, settle
+from granchain_core import BadInput, ComputationError, Scene, orbit, resonance_curve, scene, settle
 from granchain_core.attractor_search import Attractor, attractors, listing
 from granchain_core.attractor_search.attractor import Origin
 from granchain_core.attractor_search.attractors import _locks, share
@@ -145,6 +145,18 @@ def test_failed_starts_are_named_and_count_among_the_random_states(monkeypatch: 
     assert [one.share for one in found] == [0.5]
     assert [origin.name for origin in found.failed] == ["random 1"]
     assert found.summary()[-1] == "1 start failed: random 1"
+
+
+def test_the_error_has_the_status_of_the_failure_that_occurred(monkeypatch: pytest.MonkeyPatch) -> None:
+    """All starts fail, for another reason than an overflow."""
+    module = sys.modules["granchain_core.attractor_search.attractors"]
+    chain = scene("sec2").evolve(N=2, f=2000.0)
+    failed = SteadyState(chain, np.full(3, np.nan), Regime("unsettled", None, None, None, 0, None), None, rest(chain),
+                         "One drive period needs millions of steps.", "too-many-steps")
+    monkeypatch.setattr(module, "settle_on_all_cores", lambda *_: [failed])
+    with pytest.raises(ComputationError, match="millions of steps") as caught:
+        module.attractors_from(chain, [Origin("rest", rest(chain))])
+    assert caught.value.status == "too-many-steps"
 
 
 def test_too_many_states_are_refused() -> None:
