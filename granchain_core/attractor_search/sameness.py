@@ -111,7 +111,11 @@ def _strobes(scene: Scene, state: State, periods: int, setting: MethodSetting) -
 
 
 def merged(results: list[Candidate]) -> list[list[Candidate]]:
-    """Results grouped by attractor; the first result of a group represents the group."""
+    """Results grouped by attractor; the first result of a group represents the group.
+
+    Each is compared with the first of every group, so the order of the results may matter: rest, up, down, random,
+    then those that were run on.
+    """
     groups: list[list[Candidate]] = []
     for candidate in results:
         _join(groups, [candidate])
