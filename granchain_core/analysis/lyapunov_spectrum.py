@@ -20,6 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..execution.stop import Stop
+from ..former_names import with_former_names
 from ..inputs.checks import check_range, whole_number
 from ..orbits.stroboscopic_map import FLOW_METHOD, StroboscopicMap
 from ..scene import Scene
@@ -40,6 +41,7 @@ MOST_SPECTRUM_PERIODS = 1_000_000
 _BLOCKS = 20
 
 
+@with_former_names
 @dataclass(frozen=True, eq=False, repr=False)
 class LyapunovSpectrum(Labelled):
     """The Lyapunov exponents of a motion.
@@ -102,7 +104,7 @@ class LyapunovSpectrum(Labelled):
         return self.dimension is not None and span is not None and bool(certain or span[0] == span[1])
 
     @property
-    def liouville(self) -> float | None:
+    def liouville_error(self) -> float | None:
         """Difference of the exponents' sum from the mean trace, over the larger of |mean trace| and 1.
 
         None unless all exponents are resolved.
@@ -124,7 +126,7 @@ class LyapunovSpectrum(Labelled):
         """Dimension and sums, and where they come from."""
         low, high = self.dimension_range or (None, None)
         return {**provenance(self.scene, FLOW_METHOD, None), "periods": self.periods, "mean_trace": self.mean_trace,
-                "dimension": or_nan(self.dimension), "liouville": or_nan(self.liouville),
+                "dimension": or_nan(self.dimension), "liouville": or_nan(self.liouville_error),
                 "dimension_low": or_nan(low), "dimension_high": or_nan(high)}
 
     def summary(self) -> list[str]:
