@@ -36,7 +36,7 @@ def do(arguments: argparse.Namespace) -> None:
         show_json({"exponents": result.exponents.tolist(), "errors": result.errors.tolist(),
                    "resolved": result.resolved, "dimension": result.dimension, "mean_trace": result.mean_trace,
                    "liouville": result.liouville_error, "periods": result.periods,
-                   "dimension_low": low, "dimension_high": high})
+                   "regime": result.regime, "dimension_low": low, "dimension_high": high})
         return
     print(f"{chosen.name}: {result.resolved} of {len(result.exponents)} exponents resolved over {result.periods} "
           f"periods; Kaplan–Yorke dimension of the section: {result.dimension_words()}")

@@ -102,6 +102,24 @@ def test_the_dimension_is_kaplan_and_yorkes(undamped: LyapunovSpectrum, exponent
     assert found == dimension if dimension is None else found == pytest.approx(dimension, abs=1e-12)
 
 
+def test_the_dimension_of_a_closed_curve_is_one() -> None:
+    """Its largest exponent is 0, so that the sign of what is measured for it decides nothing."""
+    found = lyapunov_spectrum(scene("sec2").evolve(f=1700.0), 400)
+    assert found.regime == "quasi-periodic" and abs(found.exponents[0]) < 3.0 * found.errors[0]
+    assert found.dimension == 1.0 and found.dimension_range == (1.0, 1.0) and found.dimension_resolved
+    assert found.dimension_words() == "1 (closed curve)"
+
+
+def test_a_torus_that_is_no_closed_curve_has_no_such_dimension(undamped: LyapunovSpectrum) -> None:
+    """Two exponents near 0: a torus of the section, or a curve that is hardly attracting."""
+    found = replace(undamped, exponents=np.array([0.001, -0.001, -0.5]), errors=np.full(3, 0.002), resolved=3,
+                    regime="quasi-periodic")
+    assert not found.on_closed_curve and not found.dimension_resolved
+    assert found.dimension_words().endswith("more periods show whether it is 1 (closed curve)")
+    assert replace(found, errors=np.full(3, 0.0005)).on_closed_curve
+    assert not replace(found, errors=np.full(3, 0.0005), regime="chaotic").on_closed_curve
+
+
 def test_what_cannot_be_measured_is_refused() -> None:
     for chain, periods, words in ((UNDAMPED, 3, "outside 20 to"), (UNDAMPED.evolve(N=200), 40, "outside 1 to 100"),
                                   (scene("sec2").evolve(tension="cut"), 40, "tension = cut")):
