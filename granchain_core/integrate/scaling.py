@@ -268,9 +268,9 @@ def scales_of(scene: Scene) -> Scales:
 
 def scaled_damping(scene: Scene, scales: Scales | None = None) -> float:
     """λ = D (A₀/δ_r)^a/(mφ), the scaled damping at an overlap of one length unit."""
-    scales = scales_of(scene) if scales is None else scales
+    scales, law = scales_of(scene) if scales is None else scales, LAWS[scene.dissipation]
     strength = scene.D / (scene.bead(1).mass * scales.phi)
-    return float(strength * (scales.length / scene.reference_overlap) ** LAWS[scene.dissipation].exponent)
+    return float(strength * (scales.length / scene.reference_overlap) ** law.exponent)
 
 
 def _dissipation(scene: Scene, scales: Scales) -> Any:
