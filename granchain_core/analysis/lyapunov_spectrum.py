@@ -41,7 +41,7 @@ _ROUNDING = 1e-12
 #: 200 periods of alignment differ from those after 50 by at most 1.9 stated errors on four orbits (in `precompressed`,
 #: where the leading two differ by 5e-5), by 0.5 on a torus and by 0.08 in two chaotic motions.
 _ALIGNMENT_PERIODS = 50
-#: Most periods of one measurement.
+#: [no threshold] Most periods of one measurement.
 MOST_SPECTRUM_PERIODS = 1_000_000
 #: [no threshold] Blocks over which the standard errors are taken. Twenty means give a standard error to 16 %; a block
 #: of the fewest periods allowed is then one period.
