@@ -45,9 +45,9 @@ def do(arguments: argparse.Namespace) -> None:
     if arguments.json:
         show_json(_json(result, arguments))
         return
-    print("share        max_output_force_N  stable  starts  motion")
+    print("share                  max_output_force_N  stable  starts  motion")
     for attractor in result:
-        print(f"{attractor.share_words:>11}  {attractor.max_output_force:18.6g}  {_stability(attractor):>6}  "
+        print(f"{attractor.share_words:>21}  {attractor.max_output_force:18.6g}  {_stability(attractor):>6}  "
               f"{len(attractor.origins):6d}  {attractor.regime.sentence}")
     say(f"{chosen.name}: {len(result)} found from rest, both sweeps and {arguments.random_states} random states.")
     for sentence in failed_sentence(result.failed):
@@ -58,6 +58,12 @@ def _stability(attractor: Attractor) -> str:
     return "–" if attractor.stable is None else "yes" if attractor.stable else "no"
 
 
+def _interval(attractor: Attractor) -> dict[str, float | None]:
+    """The 95 % interval of a share; null where no random state was drawn."""
+    low, high = attractor.share_interval or (None, None)
+    return {"share_low": low, "share_high": high}
+
+
 def _json(result: Attractors, arguments: argparse.Namespace) -> dict[str, Any]:
     """All steady states as one JSON object; shares are null where no random state was drawn."""
     return {"scene": result.scene.name, "knobs": result.scene.knobs, "random_states": arguments.random_states,
@@ -66,5 +72,5 @@ def _json(result: Attractors, arguments: argparse.Namespace) -> dict[str, Any]:
                 **forces_json(attractor), "error_estimate": attractor.force_errors.output,
                 "error_estimate_elastic": attractor.force_errors.elastic,
                 "error_estimate_input": attractor.force_errors.input,
-                "share": attractor.share, "share_error": attractor.share_error,
+                "share": attractor.share, "share_error": attractor.share_error, **_interval(attractor),
                 "starts": [origin.name for origin in attractor.origins]} for attractor in result]}

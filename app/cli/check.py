@@ -36,14 +36,14 @@ def do(arguments: argparse.Namespace) -> int:
         _say_case(f"{len(rows_by_case):2}/{len(CASES)}", name, rows)
     every = in_order(rows_by_case)
     if arguments.json:
-        show_json({"rows": [{"case": row.case, "figure": finite_or_null(row.value), "bar": row.limit,
+        show_json({"rows": [{"case": row.title, "figure": finite_or_null(row.value), "bar": row.limit,
                              "passed": row.passed, "seconds": row.seconds} for row in every]})
     else:
         _show_cases(rows_by_case)
     say(f"{sum(row.passed for row in every)} of {len(every)} rows passed in {time.perf_counter() - began:.1f} s")
     if arguments.picture:
         write_figure(arguments.picture, "The hard cases", _drawn())
-    missed = [row.case for row in every if not row.passed]
+    missed = [row.title for row in every if not row.passed]
     if missed:
         say(f"{len(missed)} of {len(every)} values are above their limits: {'; '.join(missed)}.")
     return 3 if missed else 0
@@ -55,7 +55,7 @@ def _say_case(number: str, name: str, rows: list[Check]) -> None:
     say(f"{number}  {name}: {verdict}, {rows[0].seconds:.1f} s")
     for row in rows:
         if not row.passed:
-            say(f"       {row.value:.2e} is above {row.limit:.1e}: {row.case.removeprefix(name + ': ')} {row.note}")
+            say(f"       {row.value:.2e} is above {row.limit:.1e}: {row.measurement} {row.note}")
 
 
 def _show_cases(rows_by_case: dict[str, list[Check]]) -> None:
@@ -67,7 +67,7 @@ def _show_cases(rows_by_case: dict[str, list[Check]]) -> None:
         for row in rows_by_case[case.name]:
             mark = "ok  " if row.passed else "FAIL"
             note = f"  ({row.note})" if row.note else ""
-            print(f"  {mark} {row.value:9.2e} ≤ {row.limit:7.1e}  {row.case.removeprefix(case.name + ': ')}{note}")
+            print(f"  {mark} {row.value:9.2e} ≤ {row.limit:7.1e}  {row.measurement}{note}")
 
 
 def _drawn() -> Any:

@@ -40,7 +40,7 @@ _CANNOT_BE_WRITTEN = (errno.ENOSPC, errno.EIO, errno.EFBIG, errno.EDQUOT)
 class _Parser(argparse.ArgumentParser):
     """A parser whose errors are `BadInput`: one sentence, no usage text."""
 
-    #: The parsers of the commands by name, of the parser of all.
+    #: Subparsers by command name; set on the top-level parser only.
     commands: Mapping[str, argparse.ArgumentParser] = MappingProxyType({})
 
     def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
@@ -65,7 +65,7 @@ class Command:
     Attributes
     ----------
     form : str
-        What has to follow its name, and what often does.
+        Required and usual arguments.
     about : str
         What it does, for `--help` and the tables of README.md and docs/command-line.md.
     example : str

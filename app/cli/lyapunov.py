@@ -35,8 +35,8 @@ def do(arguments: argparse.Namespace) -> None:
         low, high = result.dimension_range or (None, None)
         show_json({"exponents": result.exponents.tolist(), "errors": result.errors.tolist(),
                    "resolved": result.resolved, "dimension": result.dimension, "mean_trace": result.mean_trace,
-                   "liouville": result.liouville, "periods": result.periods,
-                   "dimension_low": low, "dimension_high": high})
+                   "liouville": result.liouville_error, "periods": result.periods,
+                   "regime": result.regime, "dimension_low": low, "dimension_high": high})
         return
     print(f"{chosen.name}: {result.resolved} of {len(result.exponents)} exponents resolved over {result.periods} "
           f"periods; Kaplan–Yorke dimension of the section: {result.dimension_words()}")

@@ -14,6 +14,7 @@ from granchain_core.prescribed_drive.formulas import FORMULAS
 from granchain_core.results.regime import Regime
 from granchain_core.results.run import start_words
 from granchain_core.runs.budget import BUDGET
+from granchain_core.version import __version__
 
 from .common import chosen_scene, in_background, show_json, show_percent, unbroken
 from .compiling import compiling_beside
@@ -117,11 +118,15 @@ def _result(chosen: Scene, arguments: argparse.Namespace) -> Run:
 def _is_asked_for(run: Run, chosen: Scene, arguments: argparse.Namespace) -> bool:
     """Whether the run in a file has the options of the command line."""
     method = arguments.method or method_for(chosen.accuracy, chosen.cuts_tension).method
-    rows = arguments.record * arguments.samples + 1
-    periods = round(float(run.time[0]) / chosen.period)
-    return (run.scene.digest, run.start, run.samples, len(run.time), periods, run.cost.method) == (
-        chosen.digest, start_words(chosen, None), arguments.samples, rows,
-        arguments.periods, method)
+    sizes = {"periods": arguments.periods, "record": arguments.record, "samples": arguments.samples}
+    return (run.scene.digest, run.start, _sizes(run), run.cost.method) == (
+        chosen.digest, start_words(chosen, None), sizes, method)
+
+
+def _sizes(run: Run) -> dict[str, int]:
+    """What a run in a file or just computed was asked for, by the names of the options."""
+    return {"periods": round(float(run.time[0]) / run.scene.period), "record": (len(run.time) - 1) // run.samples,
+            "samples": run.samples}
 
 
 def _explain(chosen: Scene, arguments: argparse.Namespace, stream: Any) -> None:
@@ -131,8 +136,9 @@ def _explain(chosen: Scene, arguments: argparse.Namespace, stream: Any) -> None:
 
 
 def _run_json(result: Run) -> dict[str, Any]:
-    """A run as one JSON object."""
-    return {**scene_json(result.scene), "status": result.status, "regime": result.regime.name,
+    """A run as one JSON object, with what it takes to cite it."""
+    return {**scene_json(result.scene), "granchain_version": __version__, "scene_digest": result.scene.digest,
+            **_sizes(result), "status": result.status, "regime": result.regime.name,
             "period": result.regime.period, "driven": result.regime.driven,
             "evidence": _evidence(result.regime), **forces_json(result), **errors_json(result),
             "cost": asdict(result.cost)}

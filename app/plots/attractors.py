@@ -17,7 +17,7 @@ from .themed import apply_theme, empty_figure, themed
 
 
 def attractors(results: Sequence[Attractor], theme: Theme) -> figure:
-    """A mark for each, by its regime; the bar is the standard error of its share.
+    """A mark for each, by its regime; the bar is the 95 % interval of its share.
 
     Without random states the marks stand over their fraction of all starts.
     """
@@ -32,10 +32,10 @@ def attractors(results: Sequence[Attractor], theme: Theme) -> figure:
         key = regime_key(attractor.regime.name, attractor.regime.period)
         marker, colour, size = REGIME_MARKS[key]
         share = 100.0 * (len(attractor.origins) / count if attractor.share is None else attractor.share)
-        error = 100.0 * (attractor.share_error or 0.0)
+        low, high = (100.0 * end for end in attractor.share_interval) if attractor.share_interval else (share, share)
         words = attractor.share_words if drawn else f"{share:.0f} %"
         source = ColumnDataSource({
-            "share": [share], "low": [share - error], "high": [share + error],
+            "share": [share], "low": [low], "high": [high],
             "force": [attractor.max_output_force / scale.factor], "motion": [attractor.regime.sentence],
             "value": [in_words(attractor.max_output_force, "N", figures_of(attractor.force_errors.output))],
             "starts": [", ".join(origin.name for origin in attractor.origins[:4])]}, name=key)

@@ -86,4 +86,4 @@ def lesson(scene: Scene, stop: Stop) -> Lesson:
 def output_force(scene: Scene, setting: MethodSetting, stop: Stop) -> np.ndarray:
     """Total force on the wall from rest [N], both ends of every sample."""
     engine = Engine(scene, setting, _SAMPLES, stop=stop)
-    return engine.record((_RUN if scene.is_driven else 1) * _SAMPLES).force[:, -1] * engine.scaled.scales.force
+    return engine.scaled.scales.forces(engine.record((_RUN if scene.is_driven else 1) * _SAMPLES).force[:, -1])

@@ -234,9 +234,8 @@ def _point(value: float, chain: Scene, start: State | None, keep: int, stop: Sto
         engine, strobes, error = _refined(settling) or (settling.engine, settling.engine.periods(keep)[0][1:], None)
     except ComputationError as failed:
         return StrobePoint(value, Regime.unsettled(0), np.zeros((0, 2, chain.N)), start, failed.sentence)
-    scales = settling.engine.scaled.scales
-    units = np.array([scales.length, scales.velocity])[:, None]
-    kept = np.resize(strobes, (keep, *strobes.shape[1:])) * units  # those of an orbit are repeated
+    strobes = settling.engine.scaled.scales.states(strobes)
+    kept = np.resize(strobes, (keep, *strobes.shape[1:]))  # those of an orbit are repeated
     return StrobePoint(value, settling.regime, kept, engine.state, strobe_error=error)
 
 

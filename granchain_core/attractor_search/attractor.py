@@ -34,7 +34,7 @@ class Origin:
 
 @dataclass(eq=False)
 class Attractor:
-    """A steady state with the starts that lead to it.
+    """A steady state that starts lead to; an unstable orbit where a start had not left it after three rounds.
 
     Attributes
     ----------
@@ -56,6 +56,8 @@ class Attractor:
     share, share_error : float or None
         Fraction of the starts named in `share_of` that end here, and its standard error where these are random; None
         where there is none.
+    share_interval : tuple of float or None
+        The 95 % interval of the share where the starts are random; None where there is none.
     share_of : str
         "random states" of `attractors`, or "starts of the plane" of `basins`.
 
@@ -79,6 +81,7 @@ class Attractor:
     share: float | None = None
     share_error: float | None = None
     share_of: str = "random states"
+    share_interval: tuple[float, float] | None = None
 
     @property
     def error_estimate(self) -> float | None:
@@ -90,11 +93,13 @@ class Attractor:
 
     @property
     def share_words(self) -> str:
-        """The share with the standard error in per cent, "–" where there is none."""
+        """The share with its 95 % interval in per cent, "–" where there is none."""
         if self.share is None:
             return "–"
-        error = "" if self.share_error is None else f" ± {100.0 * self.share_error:.0f}"
-        return f"{100.0 * self.share:.0f}{error} %"
+        if self.share_interval is None:
+            return f"{100.0 * self.share:.0f} %"
+        low, high = self.share_interval
+        return f"{100.0 * self.share:.0f} % ({100.0 * low:.0f} to {100.0 * high:.0f} %)"
 
     @property
     def stable(self) -> bool | None:
@@ -110,7 +115,7 @@ class Attractors(list[Attractor], Labelled):
     scene : Scene
         The chain.
     failed : list of Origin
-        The starts whose computation failed: their numbers overflowed. Shares count them among the random states.
+        The starts whose computation failed. Shares count them among the random states.
 
     Examples
     --------
@@ -159,6 +164,7 @@ def attractors_table(scene: Scene, listed: Sequence[Attractor]) -> Table:
     errors = np.array([attractor.force_errors.row for attractor in listed]).reshape(-1, 3)
     stable = np.array([-1 if attractor.stable is None else int(attractor.stable) for attractor in listed],
                       dtype=np.int8)
+    intervals = np.array([attractor.share_interval or (np.nan, np.nan) for attractor in listed]).reshape(-1, 2)
     starts = np.array([", ".join(origin.name for origin in attractor.origins) for attractor in listed], dtype=object)
     states = np.array([[attractor.state.displacement, attractor.state.velocity]
                        for attractor in listed]).reshape(-1, 2, scene.N)
@@ -172,6 +178,8 @@ def attractors_table(scene: Scene, listed: Sequence[Attractor]) -> Table:
                         "fraction of the random states, or of a plane's starts, that end here"),
         "share_error": Column(np.array([or_nan(attractor.share_error) for attractor in listed]), along, "1",
                               "standard error of the share"),
+        "share_low": Column(intervals[:, 0], along, "1", "lower end of the 95 % interval of the share"),
+        "share_high": Column(intervals[:, 1], along, "1", "upper end of the 95 % interval of the share"),
         "share_of": Column(np.array([attractor.share_of for attractor in listed], dtype=object), along, "",
                            "which starts the share is a fraction of"),
         "starts": Column(starts, along, "", "starts that end here"),

@@ -47,6 +47,9 @@ _DEPARTURE_PERIODS = 3000
 #: [attractors] Drive periods that a motion that does not repeat is run on, to see whether it comes to an orbit after
 #: all. On the way to a locked orbit of long period it may wander for thousands beside a closed curve.
 _LATER_PERIODS = 6400
+#: [no threshold] A number drawn from the normal distribution is within so many standard deviations with a probability
+#: of 95 %.
+_NORMAL_95 = 1.959963984540054
 #: [attractors] Most times that motions are run on, for either reason.
 _MOST_ROUNDS = 3
 #: [attractors] Most random states.
@@ -83,7 +86,7 @@ def attractors(scene: Scene, random_states: int = 64, seed: int = 0, stop: Stop 
     BadInput
         `random_states` or `seed` is not a whole number or out of range.
     ComputationError
-        No start stays finite.
+        The computation of every start failed.
 
     Examples
     --------
@@ -97,7 +100,9 @@ def attractors(scene: Scene, random_states: int = 64, seed: int = 0, stop: Stop 
     listed, failed = attractors_from(scene, _origins(scene, random_states, seed, stop), stop, progress)
     tried = _random_count(failed) + sum(_random_count(attractor.origins) for attractor in listed)
     for attractor in listed:
-        attractor.share, attractor.share_error = share(_random_count(attractor.origins), tried)
+        count = _random_count(attractor.origins)
+        attractor.share, attractor.share_error = share(count, tried)
+        attractor.share_interval = share_interval(count, tried)
     return Attractors(scene, sorted(listed, key=lambda one: (-len(one.origins), one.max_output_force)), failed)
 
 
@@ -115,7 +120,7 @@ def attractors_from(scene: Scene, origins: list[Origin], stop: Stop | None = Non
     starts = [Start(scene, origin.state, number) for number, origin in enumerate(origins)]
     results = _settled(starts, stop, progress)
     if results and not any(not result.failure for result in results):
-        raise ComputationError(results[0].failure, "not-finite")
+        raise ComputationError(results[0].failure, results[0].status)
     failed = {result.number for result in results if result.failure}
     groups = merged([with_section(result) for result in results if not result.failure])
     for _ in range(_MOST_ROUNDS):
@@ -177,7 +182,7 @@ def _locks(candidate: Candidate, stop: Stop | None) -> bool:
 
 
 def share(count: int, of: int) -> tuple[float | None, float | None]:
-    """A fraction and its standard error, by the rule of Agresti and Coull, which claims no certainty at 0 or at all.
+    """A fraction and its standard error, by the plus-four rule (Agresti & Coull 1998), which is above 0 at 0 and at 1.
 
     Both are None where nothing was drawn.
     """
@@ -185,6 +190,16 @@ def share(count: int, of: int) -> tuple[float | None, float | None]:
         return None, None
     middle = (count + 2.0) / (of + 4.0)
     return count / of, math.sqrt(middle * (1.0 - middle) / (of + 4.0))
+
+
+def share_interval(count: int, of: int) -> tuple[float, float] | None:
+    """The 95 % interval of a fraction (Wilson 1927), within 0 and 1; None where nothing was drawn."""
+    if of == 0:
+        return None
+    fraction, square = count / of, _NORMAL_95**2
+    middle = (fraction + square / (2.0 * of)) / (1.0 + square / of)
+    half = _NORMAL_95 / (1.0 + square / of) * math.sqrt(fraction * (1.0 - fraction) / of + square / (4.0 * of**2))
+    return (0.0 if count == 0 else max(0.0, middle - half)), (1.0 if count == of else min(1.0, middle + half))
 
 
 def _origins(scene: Scene, random_states: int, seed: int, stop: Stop | None) -> list[Origin]:

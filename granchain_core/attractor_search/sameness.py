@@ -18,8 +18,8 @@ from ..scene import Scene
 from ..scene.state import State
 from ..steady.steady_state import SteadyState
 
-#: [attractors] Largest difference of states that one stated error explains. It is the error of the output force, which
-#: stands in for that of the states and is infinite where the force is zero.
+#: [attractors] Largest difference of states that one stated error explains. It is the largest error of the three
+#: forces, which stands in for that of the states and is infinite where a force is zero.
 _LARGEST_DIFFERENCE = 1e-3
 #: [attractors] Error of an orbit that Newton's method has found, times 1 − |μ|: orbits that agree within the sum of
 #: both are the same.
@@ -58,12 +58,14 @@ class Candidate:
     def tolerance(self) -> float:
         """Error of the section's states, relative to the largest displacement or w.
 
-        It is the stated error of the output force. Without a stated error, None, it is 0: such a result is merged with
-        an equal one only. Periodic results all state an error; others are compared by their sections.
+        It is the largest stated error of the three forces: the states are those of all beads, and the output force
+        depends on the last one alone. Without a stated error, None, it is 0: such a result is merged with an equal one
+        only. Periodic results all state an error; others are compared by their sections.
         """
         if self.orbit is not None:
             return _ORBIT_DIFFERENCE / max(_LEAST_CONTRACTION, 1.0 - min(1.0, float(np.abs(self.orbit.multipliers[0]))))
-        return min(_LARGEST_DIFFERENCE, self.result.output_force_error or 0.0)
+        errors = self.result.errors
+        return 0.0 if errors is None else min(_LARGEST_DIFFERENCE, float(np.max(errors)))
 
     def section_of(self, states: int) -> np.ndarray:
         """The section with so many states of a motion that is not periodic; the shortest is `section`."""
@@ -111,7 +113,11 @@ def _strobes(scene: Scene, state: State, periods: int, setting: MethodSetting) -
 
 
 def merged(results: list[Candidate]) -> list[list[Candidate]]:
-    """Results grouped by attractor; the first result of a group represents the group."""
+    """Results grouped by attractor; the first result of a group represents the group.
+
+    Each is compared with the first of every group, so the order of the results may matter: rest, up, down, random,
+    then those that were run on.
+    """
     groups: list[list[Candidate]] = []
     for candidate in results:
         _join(groups, [candidate])

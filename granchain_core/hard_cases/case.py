@@ -58,9 +58,13 @@ class Case:
 
 @dataclass(frozen=True)
 class Check:
-    """One measurement of a case with its verdict; `seconds` is the whole case's time, on its first row only."""
+    """One measurement of a case with its verdict; `seconds` is the whole case's time, on its first row only.
+
+    `case` and `measurement` are their names.
+    """
 
     case: str
+    measurement: str
     value: float
     limit: float
     passed: bool
@@ -69,6 +73,11 @@ class Check:
     naive: str
     oracle: str
     note: str = ""
+
+    @property
+    def title(self) -> str:
+        """Case and measurement, as the command line's JSON names the row."""
+        return f"{self.case}: {self.measurement}"
 
 
 def run_case(case: Case, quick: bool) -> list[Check]:
@@ -79,5 +88,5 @@ def run_case(case: Case, quick: bool) -> list[Check]:
     except (ComputationError, BadInput) as problem:
         measurements = [Measurement("could not be computed", math.nan, 0.0, str(problem))]
     spent = time.perf_counter() - began
-    return [Check(f"{case.name}: {f.name}", f.value, f.limit, bool(f.value <= f.limit), spent if i == 0 else 0.0,
+    return [Check(case.name, f.name, f.value, f.limit, bool(f.value <= f.limit), spent if i == 0 else 0.0,
                   case.hard, case.naive, case.oracle, f.note) for i, f in enumerate(measurements)]

@@ -80,8 +80,8 @@ class ChainInPieces:
                            "allowed: give a shorter record or ask for less accuracy.")
         y = np.zeros(scaled.size)
         displacement, velocity = scaled.rows(y)
-        displacement[:] = start.displacement / scaled.scales.length
-        velocity[:] = start.velocity / scaled.scales.velocity
+        displacement[:] = scaled.scales.scaled_displacements(start.displacement)
+        velocity[:] = scaled.scales.scaled_velocities(start.velocity)
         workspace = Rk4Workspace(np.zeros((4, scaled.size)), np.zeros(scaled.size), np.zeros(scaled.size),
                                  np.zeros((END_ROWS, row - 1)), scaled.forces(), None)
         scaled.slots.driver.piece[:] = self._pieces[0]

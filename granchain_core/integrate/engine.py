@@ -85,7 +85,8 @@ class Engine:
                            f"samples a period a motion begins at a multiple of 1/{self.samples}; the nearest is "
                            f"{round(at)}/{self.samples}.")
         self.grid_index = round(at) % self.samples * (self.grid // self.samples)
-        self._begin(state.displacement / scales.length, state.velocity / scales.velocity, from_velocity=True)
+        self._begin(scales.scaled_displacements(state.displacement), scales.scaled_velocities(state.velocity),
+                    from_velocity=True)
 
     def start_scaled(self, x: np.ndarray) -> None:
         """Put the chain into a scaled state (2N,) of displacements, then w, at phase 0."""
@@ -115,7 +116,7 @@ class Engine:
         scaled = self.scaled
         self.evaluate(from_velocity=False)
         displacement, velocity = scaled.rows(self.y)[0], scaled.rows(self.stepper.slope)[0]
-        return State(displacement * scaled.scales.length, velocity * scaled.scales.velocity,
+        return State(scaled.scales.displacements(displacement), scaled.scales.velocities(velocity),
                      self.grid_index / self.grid)
 
     # --- motion --------------------------------------------------------------------------------------------

@@ -10,7 +10,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -46,6 +46,7 @@ _DAMPING_LIMIT = 1.39
 #: [step size] Fixed steps: largest speed of a bead over the speed of the body that pushes it. A light bead leaves a
 #: heavy one twice as fast.
 _FASTEST = 2.0
+_Numbers = TypeVar("_Numbers", float, np.ndarray)
 #: Called for every point of a curve.
 _EVALUATE_AT_PHASE = Entries(evaluate_at_phase)
 #: [step size] Fixed steps: fewest steps in a drive period, however slowly the chain moves.
@@ -57,11 +58,49 @@ MOST_STEPS_PER_PERIOD = 50_000_000
 
 @dataclass(frozen=True)
 class Scales:
-    """Units of the scaled equations in SI: length [m], rate φ [1/s], force [N]."""
+    """Units of the scaled equations in SI: length [m], rate φ [1/s], force [N].
+
+    Numbers of the kernels become SI, and SI becomes such numbers, by the methods below and by `ScaledChain.from_si` and
+    `to_si`.
+    """
 
     length: float
     phi: float
     force: float
+
+    def displacements(self, scaled: _Numbers) -> _Numbers:
+        """Scaled displacements in m."""
+        return scaled * self.length
+
+    def velocities(self, scaled: _Numbers) -> _Numbers:
+        """Scaled velocities in m/s."""
+        return scaled * self.velocity
+
+    def forces(self, scaled: _Numbers) -> _Numbers:
+        """Scaled forces in N."""
+        return scaled * self.force
+
+    def states(self, scaled: np.ndarray) -> np.ndarray:
+        """Scaled displacements and velocities (…, 2, N) in m and m/s."""
+        return scaled * np.array([self.length, self.velocity])[:, None]
+
+    def convert_in_place(self, displacement: np.ndarray, velocity: np.ndarray, force: np.ndarray) -> None:
+        """Make the scaled numbers of a long record SI where they are."""
+        displacement[:] *= self.length
+        velocity[:] *= self.velocity
+        force[:] *= self.force
+
+    def scaled_displacements(self, displacements: _Numbers) -> _Numbers:
+        """Displacements [m] in scaled units."""
+        return displacements / self.length
+
+    def scaled_velocities(self, velocities: _Numbers) -> _Numbers:
+        """Velocities [m/s] in scaled units."""
+        return velocities / self.velocity
+
+    def scaled_forces(self, forces: _Numbers) -> _Numbers:
+        """Forces [N] in scaled units."""
+        return forces / self.force
 
     @property
     def velocity(self) -> float:
@@ -155,8 +194,8 @@ class ScaledChain:
         """The scaled (u, w) array (2(N + 2),) of a state at phase 0."""
         y = np.zeros(2 * self.bodies)
         displacement, velocity = self.rows(y)
-        displacement[:] = state.displacement / self.scales.length
-        velocity[:] = state.velocity / self.scales.velocity
+        displacement[:] = self.scales.scaled_displacements(state.displacement)
+        velocity[:] = self.scales.scaled_velocities(state.velocity)
         _EVALUATE_AT_PHASE(self.slot_types, self.slots, 0.0, y, np.zeros_like(y), self.forces(), True)
         y[0] = 0.0
         return y
@@ -168,7 +207,7 @@ class ScaledChain:
         """
         slope = np.zeros_like(y)
         _EVALUATE_AT_PHASE(self.slot_types, self.slots, 0.0, y.copy(), slope, self.forces(), False)
-        return State(self.rows(y)[0] * self.scales.length, self.rows(slope)[0] * self.scales.velocity)
+        return State(self.scales.displacements(self.rows(y)[0]), self.scales.velocities(self.rows(slope)[0]))
 
     @cached_property
     def slot_types(self) -> Any:
@@ -227,11 +266,16 @@ def scales_of(scene: Scene) -> Scales:
     return Scales(scene.A0, phi, scene.K * scene.A0**EXPONENT)
 
 
-def _dissipation(scene: Scene, scales: Scales) -> Any:
-    """The slot with λ = D (A₀/δ_r)^a/(mφ), the scaled damping at an overlap of one length unit."""
-    law = LAWS[scene.dissipation]
+def scaled_damping(scene: Scene, scales: Scales | None = None) -> float:
+    """λ = D (A₀/δ_r)^a/(mφ), the scaled damping at an overlap of one length unit."""
+    scales, law = scales_of(scene) if scales is None else scales, LAWS[scene.dissipation]
     strength = scene.D / (scene.bead(1).mass * scales.phi)
-    return law.slot(strength * (scales.length / scene.reference_overlap) ** law.exponent)
+    return float(strength * (scales.length / scene.reference_overlap) ** law.exponent)
+
+
+def _dissipation(scene: Scene, scales: Scales) -> Any:
+    """The slot of the contacts' damping."""
+    return LAWS[scene.dissipation].slot(scaled_damping(scene, scales))
 
 
 #: The values in scaled units with which the slot of each effect is filled.

@@ -23,8 +23,8 @@ class ForceDrivenChain(ChainInPieces):
         driven = scale_chain(scene)
         scales = driven.scales
         scaled = replace(driven, slots=driven.slots._replace(driver=Sampled(np.zeros(4))))
-        pieces = record.cubics() / scales.force / scales.phi ** np.arange(4)
-        overlap = (float(np.abs(record.force).max()) / scales.force) ** OVERLAP_POWER
+        pieces = scales.scaled_forces(record.cubics()) / scales.phi ** np.arange(4)
+        overlap = scales.scaled_forces(float(np.abs(record.force).max())) ** OVERLAP_POWER
         super().__init__(scaled, record.time, pieces, overlap, stop, counts)
 
     def driven_by(self, record: ForceRecord) -> ForceDrivenChain:

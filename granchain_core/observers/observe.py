@@ -122,14 +122,14 @@ def _observation(chain: ForceDrivenChain, record: ForceRecord, sensors: Sensors,
                  interpolation: np.ndarray, spent: Stopwatch) -> Observation:
     """The result in SI; `interpolation` are the relative errors (4,) by the interpolation."""
     scene, scales, motion = chain.scaled.scene, chain.scaled.scales, finest.samples
-    displacement, forces = motion.displacement * scales.length, motion.force * scales.force
+    displacement, forces = scales.displacements(motion.displacement), scales.forces(motion.force)
     forces[:, 0] = record.force
     elastic = elastic_output(scene, displacement[:, -1])
     errors = finest.errors + interpolation
-    _, output, output_elastic = (float(largest) * scales.force for largest in finest.maxima)
+    _, output, output_elastic = (scales.forces(float(largest)) for largest in finest.maxima)
     return Observation(
-        scene=scene, record=record, displacement=displacement, velocity=motion.velocity * scales.velocity, force=forces,
-        max_output_force=output, max_output_force_elastic=output_elastic,
+        scene=scene, record=record, displacement=displacement, velocity=scales.velocities(motion.velocity),
+        force=forces, max_output_force=output, max_output_force_elastic=output_elastic,
         integration_error=float(finest.errors[0]), interpolation_error=float(interpolation[0]),
         status="done" if errors[0] <= scene.accuracy else "accuracy-not-reached",
         force_errors=ForceErrors.of(np.array([np.nan, *errors[2:]])),

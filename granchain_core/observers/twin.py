@@ -206,9 +206,9 @@ def twin(scene: Scene, perturbation: float | State = 1e-6, periods: int = 60, sa
     (rate, rate_error), measured = rate_of(linear), multipliers_of(linear)
     return Twin(
         scene=scene, orbit=orbit, period=n, time=np.arange(len(u)) / samples * scene.period,
-        chain=u[:, chain] * scales.length, observer=u[:, observer] * scales.length,
-        input_force=force[:, 0] * scales.force, output_force=force[:, beads] * scales.force,
-        observer_output_force=force[:, -1] * scales.force, distance=distance,
+        chain=scales.displacements(u[:, chain]), observer=scales.displacements(u[:, observer]),
+        input_force=scales.forces(force[:, 0]), output_force=scales.forces(force[:, beads]),
+        observer_output_force=scales.forces(force[:, -1]), distance=distance,
         strobe_distance=distance[:: n * samples], window=window, rate=rate, measured=measured,
         translation=share_of_translation(strobes[max(0, window[1] - 1), :beads]),
         cost=Cost.of(spent.seconds, pair.engine.counts, DOP853), rate_error=rate_error,

@@ -101,7 +101,7 @@ def random_state(scene: Scene, seed: int) -> State:
     """A random start: normally distributed displacements and velocities in units of A0 and A0·φ."""
     scales = scales_of(scene)
     draw = np.random.default_rng(seed).standard_normal((2, scene.N))
-    return State(draw[0] * scales.length, draw[1] * scales.velocity)
+    return State(scales.displacements(draw[0]), scales.velocities(draw[1]))
 
 
 def _iterate(stroboscopic_map: StroboscopicMap, x: np.ndarray) -> Iterated:
@@ -143,10 +143,10 @@ def _newton_step(stroboscopic_map: StroboscopicMap, x: np.ndarray, flow: Flow) -
 def _orbit(scene: Scene, n: int, stroboscopic_map: StroboscopicMap, newton: Iterated, observer: bool) -> Orbit:
     """The orbit at the fixed point that was found, with its multipliers."""
     x, flow = newton.z, newton.flow
-    liouville = monodromy = observer_monodromy = None
+    off = monodromy = observer_monodromy = None
     if _dense(x):
         monodromy, multipliers = flow.derivative, sorted_multipliers(flow.derivative)
-        liouville = liouville_if_known(multipliers, flow.log_determinant)
+        off = liouville_if_known(multipliers, flow.log_determinant)
         observer_monodromy = stroboscopic_map(x, observer=True).derivative if observer else None
         observer_multipliers = None if observer_monodromy is None else sorted_multipliers(observer_monodromy)
     else:
@@ -156,4 +156,4 @@ def _orbit(scene: Scene, n: int, stroboscopic_map: StroboscopicMap, newton: Iter
         observer_multipliers = leading_multipliers(stroboscopic_map, x, observer=True) if observer else None
     scaled = stroboscopic_map.engine.scaled
     return Orbit(scene, n, scaled.to_si(scaled.embed(x)), newton.residuals[-1], tuple(newton.residuals), multipliers,
-                 liouville, flow.contact_events, observer_multipliers, monodromy, observer_monodromy)
+                 off, flow.contact_events, observer_multipliers, monodromy, observer_monodromy)

@@ -104,5 +104,5 @@ def orbit_section(orbit: Orbit, samples: int = 48, stop: Stop | None = None) -> 
     engine.start_scaled(stroboscopic_map.inner(stroboscopic_map.engine.scaled.from_si(orbit.state)))
     record, scales = engine.record(orbit.period * samples), engine.scaled.scales
     shape = (orbit.period, samples, -1)
-    return Section(orbit.scene, record.displacement[:-1].reshape(shape) * scales.length,
-                   record.velocity[:-1].reshape(shape) * scales.velocity)
+    return Section(orbit.scene, scales.displacements(record.displacement[:-1].reshape(shape)),
+                   scales.velocities(record.velocity[:-1].reshape(shape)))

@@ -47,7 +47,7 @@ class Orbit(Labelled):
         The residuals of all iterations.
     multipliers : numpy.ndarray of complex, shape (2N,)
         Sorted by modulus, largest first; of more than 100 beads the leading ones only.
-    liouville : float or None
+    liouville_error : float or None
         Difference between the logarithm of the multipliers' product and ∫ trace, relative to the latter where that is
         above 1; None where not all multipliers are known or the smallest are rounding.
     contact_events : numpy.ndarray, shape (events, 2)
@@ -77,7 +77,7 @@ class Orbit(Labelled):
     residual: float
     newton_residuals: tuple[float, ...]
     multipliers: np.ndarray
-    liouville: float | None
+    liouville_error: float | None
     contact_events: np.ndarray
     observer_multipliers: np.ndarray | None = None
     monodromy: np.ndarray | None = None
@@ -166,7 +166,7 @@ class Orbit(Labelled):
         """Period, residual, stability, and the provenance."""
         values: dict[str, Attribute] = {
             **provenance(self.scene, FLOW_METHOD, None), "period": self.period, "residual": self.residual,
-            "stable": int(self.stable), "liouville": or_nan(self.liouville)}
+            "stable": int(self.stable), "liouville": or_nan(self.liouville_error)}
         if self.distance_of_motion is not None:
             values["distance_of_motion"] = self.distance_of_motion
         return values if self.observer_stable is None else {**values, "observer_stable": int(self.observer_stable)}

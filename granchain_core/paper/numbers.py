@@ -11,6 +11,7 @@ import numpy as np
 
 from ..attractor_search import attractors
 from ..inputs.checks import unknown_name
+from ..integrate.scaling import scaled_damping, scales_of
 from ..orbits import periodic_orbit
 from ..results.regime import Regime
 from ..scene import scene
@@ -50,8 +51,7 @@ def _elastic(name: str, **changes: float) -> float:
 
 def _scales() -> Numbers:
     chain = scene("sec2")
-    rate = math.sqrt(chain.K * math.sqrt(chain.A0) / chain.bead(1).mass)
-    return [chain.K, rate, chain.D / (chain.bead(1).mass * rate), _elastic("sec2", D=50.0), _elastic("sec2")]
+    return [chain.K, scales_of(chain).phi, scaled_damping(chain), _elastic("sec2", D=50.0), _elastic("sec2")]
 
 
 def _peaks() -> Numbers:

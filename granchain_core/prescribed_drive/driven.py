@@ -200,14 +200,14 @@ def _sampling_errors(chain: MovedChain, signal: Signal, begin: State, finest: Re
 def _driven(chain: MovedChain, signal: Signal, finest: Refined, between: np.ndarray, spent: Stopwatch) -> Driven:
     """The result in SI; `between` are the relative errors (4,) by the interpolation between samples."""
     scene, scales, motion = chain.scaled.scene, chain.scaled.scales, finest.samples
-    largest = float(np.abs(motion.displacement).max()) * scales.length
-    maxima = finest.maxima * scales.force
+    largest = scales.displacements(float(np.abs(motion.displacement).max()))
+    maxima = scales.forces(finest.maxima)
     error, *errors = finest.errors + between + formula_errors(scene, signal, finest.growth, largest, maxima)
     balance = residual(motion.energy, chain.scaled.static_energy)
     assert balance is not None, "the chain has an account"
     inward, outward, elastic = (float(force) for force in maxima)
-    return Driven(scene, signal, motion.displacement * scales.length, motion.velocity * scales.velocity,
-                  motion.force * scales.force, inward, outward, elastic,
+    return Driven(scene, signal, scales.displacements(motion.displacement), scales.velocities(motion.velocity),
+                  scales.forces(motion.force), inward, outward, elastic,
                   force_errors=ForceErrors.of(np.array(errors)), displacement_error=float(error),
                   energy_residual=balance, status="done" if error <= scene.accuracy else "accuracy-not-reached",
                   cost=Cost.of(spent.seconds, chain.counts, RK4_SPLIT),

@@ -21,8 +21,8 @@ class MovedChain(ChainInPieces):
     def __init__(self, scene: Scene, signal: Signal, stop: Stop, counts: Counts | None = None) -> None:
         driven = scale_chain(scene, account=True)
         scaled = replace(driven, slots=driven.slots._replace(driver=PrescribedMotion(np.zeros(3))))
-        pieces = signal.quadratics() / driven.scales.length / driven.scales.phi ** np.arange(3)
-        overlap = float(np.ptp(signal.displacement)) / driven.scales.length
+        pieces = driven.scales.scaled_displacements(signal.quadratics()) / driven.scales.phi ** np.arange(3)
+        overlap = driven.scales.scaled_displacements(float(np.ptp(signal.displacement)))
         super().__init__(scaled, signal.time, pieces, overlap, stop, counts)
 
     def moved_by(self, signal: Signal) -> MovedChain:

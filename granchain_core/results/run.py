@@ -260,10 +260,8 @@ def run_from(engine: Engine, samples: Samples, first_sample: int, regime: Regime
     scene, scales = engine.scaled.scene, engine.scaled.scales
     index = first_sample + np.arange(len(samples.displacement))
     inside = np.mod(index, engine.samples)
-    maxima = np.where(np.isfinite(engine.maxima), engine.maxima, 0.0) * scales.force
-    samples.displacement[:] *= scales.length
-    samples.velocity[:] *= scales.velocity
-    samples.force[:] *= scales.force
+    maxima = scales.forces(np.where(np.isfinite(engine.maxima), engine.maxima, 0.0))
+    scales.convert_in_place(samples.displacement, samples.velocity, samples.force)
     return Run(
         scene=scene, samples=engine.samples,
         time=(index // engine.samples + inside / engine.samples) * scene.period,
@@ -281,4 +279,4 @@ def _jumps(engine: Engine, first_sample: int) -> Jumps:
     rows, scene = engine.closings, engine.scaled.scene
     period = (first_sample + rows[:, 0].astype(np.int64)) // engine.samples
     return Jumps((period + rows[:, 1] / (2.0 * np.pi)) * scene.period, rows[:, 2].astype(np.int64),
-                 rows[:, 3] * engine.scaled.scales.force, engine.closings_missing, engine.unresolved)
+                 engine.scaled.scales.forces(rows[:, 3]), engine.closings_missing, engine.unresolved)

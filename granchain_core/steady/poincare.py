@@ -77,8 +77,8 @@ def iter_section(scene: Scene, start: State | None, periods: int, samples: int =
         while done < most and time.perf_counter() < until:
             began, chunk = time.perf_counter(), min(chunk, most - done)
             record, part = engine.record(chunk * samples), slice(done, done + chunk)
-            displacement[part] = record.displacement[:-1].reshape(chunk, samples, -1) * scales.length
-            velocity[part] = record.velocity[:-1].reshape(chunk, samples, -1) * scales.velocity
+            displacement[part] = scales.displacements(record.displacement[:-1].reshape(chunk, samples, -1))
+            velocity[part] = scales.velocities(record.velocity[:-1].reshape(chunk, samples, -1))
             done += chunk
             if time.perf_counter() - began < 0.1 * seconds:
                 chunk *= 2

@@ -6,7 +6,7 @@
 /special         kind, knob, knob_low, knob_high, multiplier_real, multiplier_imag, contact, event, arm (special); and
                  criticality, coefficient, coefficient_error, undecided (special), which older files lack
 /special_before, /special_after   the two orbits around each special point, as in /branch
-/turns           turning points of the overlaps on each half-branch's last orbit, with which the next step is compared
+/turns           extrema of the overlaps on each half-branch's last orbit, with which the next step is compared
 The root's attribute `amplitude` describes A0 over f where it is not the scene's. `coordinate` says that p is linear in
 the static overlap; in older files over F0, which lack it, p is linear in F0, and their branches go on so.
 Components are the beads' displacements, then their w, scaled by the chain's own A0 and A0·φ (docs/model.md).
@@ -38,8 +38,8 @@ from .writing import write_file, write_result
 _ENDS = ("", "reached", "returned", "closed", "merged", "lost")
 #: The interval that a contact gains, by its word in files.
 _GAINED = {event: gained for gained, event in EVENTS.items()}
-#: Numbers of one turning point.
-_TURN = 4
+#: Numbers of one extremum of an overlap.
+_EXTREMUM = 4
 
 
 def save_branch(branch: Branch, path: str | Path) -> Path:
@@ -52,7 +52,7 @@ def write_branch(file: h5py.File, branch: Branch) -> None:
     write_result(file, branch)
     turns = file.create_group("turns")
     for place, half in enumerate(branch.half_branches):
-        turns.create_dataset(str(place), data=half.points[-1].turns)
+        turns.create_dataset(str(place), data=half.points[-1].overlap_extrema)
 
 
 def load_branch(path: str | Path) -> Branch:
@@ -82,8 +82,8 @@ def _read(file: File) -> Branch:
         mine = [p for p, where in zip(points, place, strict=True) if where == number]
         if not mine:
             raise Refused(f"half-branch {number} has no orbits")
-        turns = file.numbers(f"turns/{number}", (*file.shape(f"turns/{number}")[:1], _TURN))
-        object.__setattr__(mine[-1], "turns", turns)
+        extrema = file.numbers(f"turns/{number}", (*file.shape(f"turns/{number}")[:1], _EXTREMUM))
+        object.__setattr__(mine[-1], "overlap_extrema", extrema)
         here = [s for s, where in zip(special, special_place, strict=True) if where == number]
         half_branches.append(HalfBranch(half["direction"], mine, here, half["step"], half["ended"], half["reason"]))
     return Branch(axis, header["period"], tuple(half_branches))
@@ -128,7 +128,7 @@ def _read_orbits(file: File, group: str, axis: KnobAxis) -> list[BranchPoint]:
         multipliers=read["multiplier_real"][i] + 1j * read["multiplier_imag"][i],
         **{force: float(read[force][i]) for force in MAXIMA}, closings=closings[i],
         residuals=tuple(float(r) for r in read["residual"][i] if not np.isnan(r)),
-        liouville=float(read["liouville"][i]), turns=np.zeros((0, _TURN)),
+        liouville_error=float(read["liouville"][i]), overlap_extrema=np.zeros((0, _EXTREMUM)),
         damped=axis.damped_at(float(read["knob"][i])),
     ) for i in range(count)]
 

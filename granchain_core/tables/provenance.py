@@ -5,7 +5,10 @@ from __future__ import annotations
 import json
 import platform
 from datetime import UTC, datetime
+from functools import cache
+from hashlib import sha256
 from importlib.metadata import version
+from pathlib import Path
 
 import numpy as np
 
@@ -14,6 +17,9 @@ from ..scene import Amplitude, Scene
 from ..scene.quantities import QUANTITIES
 from ..version import __version__
 
+#: Libraries whose versions may change a number or a file; llvmlite is the compiler of the kernels.
+_LIBRARIES = ("numpy", "scipy", "numba", "llvmlite", "h5py")
+_KERNELS = Path(__file__).parents[1] / "kernels"
 #: An attribute of a file or of a dataset.
 Attribute = str | int | float
 
@@ -43,9 +49,23 @@ def made() -> dict[str, Attribute]:
     """Attributes that say with which versions, on which machine and when a result was made."""
     return {"Conventions": "CF-1.10", "granchain_version": __version__,
             "created": datetime.now(UTC).isoformat(timespec="seconds"),
-            "versions": json.dumps({**{name: version(name) for name in ("numpy", "numba", "h5py")},
+            "versions": json.dumps({**{name: version(name) for name in _LIBRARIES},
                                     "python": platform.python_version()}),
+            "kernels_digest": kernels_digest(),
             "machine": machine()}
+
+
+@cache
+def kernels_digest() -> str:
+    """Hash of the kernels' sources, which tells commits of one version apart where their numbers may differ.
+
+    It is that of the files' bytes: unlike the hash by which compiled code is found (kernels/compiling/sources.py) it
+    needs no compiler, and is the same on every machine.
+    """
+    digest = sha256()
+    for path in sorted(_KERNELS.rglob("*.py")):
+        digest.update(f"{path.relative_to(_KERNELS).as_posix()} {sha256(path.read_bytes()).hexdigest()}\n".encode())
+    return digest.hexdigest()[:12]
 
 
 def or_nan(value: float | None) -> float:

@@ -55,13 +55,13 @@ def test_the_sum_of_exponents_is_the_mean_trace(undamped: LyapunovSpectrum) -> N
     """Without damping volumes are kept: the trace is 0, and the sum is what rounding and the tolerance of 1e-13 leave.
     """
     assert undamped.resolved == 6 and undamped.mean_trace == 0.0
-    assert undamped.liouville is not None and undamped.liouville < 1e-9
+    assert undamped.liouville_error is not None and undamped.liouville_error < 1e-9
 
 
 def test_with_damping_their_sum_is_the_mean_trace_too() -> None:
     found = lyapunov_spectrum(scene("sec2").evolve(N=2, f=1000.0, D=20.0), 60)
     assert found.mean_trace < -0.1 and found.resolved == 4
-    assert found.liouville is not None and found.liouville < 1e-7
+    assert found.liouville_error is not None and found.liouville_error < 1e-7
 
 
 def test_exponents_are_in_descending_order(undamped: LyapunovSpectrum) -> None:
@@ -100,6 +100,24 @@ def test_the_dimension_is_kaplan_and_yorkes(undamped: LyapunovSpectrum, exponent
                                             dimension: float | None) -> None:
     found = replace(undamped, exponents=np.array(exponents), resolved=resolved).dimension
     assert found == dimension if dimension is None else found == pytest.approx(dimension, abs=1e-12)
+
+
+def test_the_dimension_of_a_closed_curve_is_one() -> None:
+    """Its largest exponent is 0, so that the sign of what is measured for it decides nothing."""
+    found = lyapunov_spectrum(scene("sec2").evolve(f=1700.0), 400)
+    assert found.regime == "quasi-periodic" and abs(found.exponents[0]) < 3.0 * found.errors[0]
+    assert found.dimension == 1.0 and found.dimension_range == (1.0, 1.0) and found.dimension_resolved
+    assert found.dimension_words() == "1 (closed curve)"
+
+
+def test_a_torus_that_is_no_closed_curve_has_no_such_dimension(undamped: LyapunovSpectrum) -> None:
+    """Two exponents near 0: a torus of the section, or a curve that is hardly attracting."""
+    found = replace(undamped, exponents=np.array([0.001, -0.001, -0.5]), errors=np.full(3, 0.002), resolved=3,
+                    regime="quasi-periodic")
+    assert not found.on_closed_curve and not found.dimension_resolved
+    assert found.dimension_words().endswith("more periods show whether it is 1 (closed curve)")
+    assert replace(found, errors=np.full(3, 0.0005)).on_closed_curve
+    assert not replace(found, errors=np.full(3, 0.0005), regime="chaotic").on_closed_curve
 
 
 def test_what_cannot_be_measured_is_refused() -> None:

@@ -6,11 +6,12 @@ import sys
 
 import numpy as np
 import pytest
+from scipy.stats import binomtest
 
-from granchain_core import BadInput, Scene, orbit, resonance_curve, scene, settle
+from granchain_core import BadInput, ComputationError, Scene, orbit, resonance_curve, scene, settle
 from granchain_core.attractor_search import Attractor, attractors, listing
 from granchain_core.attractor_search.attractor import Origin
-from granchain_core.attractor_search.attractors import _locks, share
+from granchain_core.attractor_search.attractors import _locks, share, share_interval
 from granchain_core.attractor_search.attractors import _regime as irregular_regime
 from granchain_core.attractor_search.sameness import Candidate
 from granchain_core.results.regime import Regime
@@ -127,6 +128,23 @@ def test_shares_without_a_single_hit_still_have_an_error() -> None:
     assert share(32, 64) == (0.5, pytest.approx(0.0606, abs=1e-3))
 
 
+@pytest.mark.parametrize(("count", "of", "low", "high"), [
+    (6, 6, 0.6097, 1.0), (0, 6, 0.0, 0.3903), (37, 64, 0.4561, 0.6914), (0, 64, 0.0, 0.0566)])
+def test_the_interval_of_a_share_is_wilsons(count: int, of: int, low: float, high: float) -> None:
+    """SciPy's `binomtest(count, of).proportion_ci(method="wilson")`, and the first by hand: 6 / (6 + 1.96²)."""
+    assert share_interval(count, of) == pytest.approx((low, high), abs=1e-4)
+    expected = binomtest(count, of).proportion_ci(method="wilson")
+    assert share_interval(count, of) == pytest.approx((expected.low, expected.high), rel=1e-12, abs=1e-15)
+    assert share_interval(0, 0) is None
+
+
+def test_a_share_is_shown_with_its_interval() -> None:
+    """± a standard error went beyond 100 %."""
+    found = attractors(scene("sec2").evolve(N=2, f=2000.0), random_states=6)
+    assert [one.share_words for one in found] == ["100 % (61 to 100 %)"]
+    assert found.to_xarray()["share_low"].values == pytest.approx(0.6097, abs=1e-4)
+
+
 def test_without_random_states_no_share_is_stated() -> None:
     found = attractors(scene("sec2").evolve(N=2, f=2000.0), random_states=0)
     assert [(one.share, one.share_error, one.share_words) for one in found] == [(None, None, "–")]
@@ -147,6 +165,18 @@ def test_failed_starts_are_named_and_count_among_the_random_states(monkeypatch: 
     assert found.summary()[-1] == "1 start failed: random 1"
 
 
+def test_the_error_has_the_status_of_the_failure_that_occurred(monkeypatch: pytest.MonkeyPatch) -> None:
+    """All starts fail, for another reason than an overflow."""
+    module = sys.modules["granchain_core.attractor_search.attractors"]
+    chain = scene("sec2").evolve(N=2, f=2000.0)
+    failed = SteadyState(chain, np.full(3, np.nan), Regime("unsettled", None, None, None, 0, None), None, rest(chain),
+                         "One drive period needs millions of steps.", "too-many-steps")
+    monkeypatch.setattr(module, "settle_on_all_cores", lambda *_: [failed])
+    with pytest.raises(ComputationError, match="millions of steps") as caught:
+        module.attractors_from(chain, [Origin("rest", rest(chain))])
+    assert caught.value.status == "too-many-steps"
+
+
 def test_too_many_states_are_refused() -> None:
     with pytest.raises(BadInput, match="nearest valid value is 10000"):
         attractors(scene("sec2"), random_states=10**9)
@@ -154,4 +184,4 @@ def test_too_many_states_are_refused() -> None:
 
 def test_the_listing_says_what_share_and_which_regime(many: list[Attractor]) -> None:
     lines = list(listing(many))
-    assert len(lines) == len(many) and lines[0].startswith("period 3") and "% of random states" in lines[0]
+    assert len(lines) == len(many) and lines[0].startswith("period 3") and "%) of random states" in lines[0]

@@ -42,6 +42,17 @@ def test_states_within_their_stated_errors_are_one() -> None:
     assert len(merged([result(SECTION, 1e-5), result(SECTION * (1.0 + 1e-5), 1e-5)])) == 1
 
 
+@pytest.mark.parametrize("place", range(3))
+def test_the_largest_error_of_the_three_forces_is_that_of_the_states(place: int) -> None:
+    """The output force may be known better than the states of the beads before the last."""
+    errors = np.full(3, 1e-9)
+    errors[place] = 1e-5
+    pair = [result(SECTION, 0.0), result(SECTION * (1.0 + 1e-5), 0.0)]
+    for one in pair:
+        one.result = replace(one.result, errors=errors)
+    assert len(merged(pair)) == 1
+
+
 def closed_curve(states: int, turns: float, first: float, radius: float = 1.0) -> np.ndarray:
     """Strobes (states, 2, N) of a rotation by `turns` per period on a circle, from the angle `first`."""
     angle = first + 2.0 * np.pi * turns * np.arange(states)

@@ -18,7 +18,7 @@ def pretend(figure: float, monkeypatch: pytest.MonkeyPatch) -> None:
     def rows(quick: bool, workers: int | None = None):  # type: ignore[no-untyped-def]
         for case in CASES:
             value = figure if case is CASES[-1] else 0.5
-            yield case.name, [Check(f"{case.name}: one", value, 1.0, value <= 1.0, 0.1, case.hard, case.naive, case.oracle)]
+            yield case.name, [Check(case.name, "one", value, 1.0, value <= 1.0, 0.1, case.hard, case.naive, case.oracle)]
 
     monkeypatch.setattr(runner, "run_cases", rows)
 

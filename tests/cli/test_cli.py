@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 from app.cli import main
-from granchain_core import Curve, State, bifurcation_curves, orbit, run, save, scene
+from granchain_core import Curve, State, __version__, bifurcation_curves, orbit, run, save, scene
 from granchain_core.steady.curve.request import CurveRequest
 from granchain_core.store.parameter_maps import load_parameter_map
 
@@ -275,3 +275,13 @@ def test_the_json_of_a_curve_has_the_numbers_behind_a_regime(capsys: pytest.Capt
     smallest, largest = said["window_ratios"]
     assert 0.9 < smallest <= largest < 1.1
     assert abs(said["lyapunov"][0]) < 0.01 and said["lyapunov_periods"] >= 220
+
+
+def test_the_json_of_a_run_says_what_was_run(capsys: pytest.CaptureFixture[str]) -> None:
+    """With the version and the scene's hash one line of JSON can be cited without the command that made it."""
+    chain = scene("sec2").evolve(N=2, f=2000.0)
+    words = ["--set", "N=2", "--set", "f=2000", "--periods", "3", "--record", "2", "--samples", "8"]
+    assert main(["run", "sec2", *words, "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["granchain_version"] == __version__ and told["scene_digest"] == chain.digest
+    assert (told["periods"], told["record"], told["samples"]) == (3, 2, 8)

@@ -80,7 +80,7 @@ def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
     def rows_at_once(quick: bool, workers: int | None = None):  # type: ignore[no-untyped-def]
         for case in CASES:
-            yield case.name, [Check(case.name, 0.5, 1.0, True, 0.1, case.hard, case.naive, case.oracle)]
+            yield case.name, [Check(case.name, "one", 0.5, 1.0, True, 0.1, case.hard, case.naive, case.oracle)]
 
     monkeypatch.setattr(runner, "run_cases", rows_at_once)
     monkeypatch.setattr(import_module("granchain_core.accuracy.work_precision"), "_MOST_RUNS", 1)

@@ -120,7 +120,7 @@ def test_accuracy_is_drawn_for_the_accuracy_asked(tmp_path: Path, monkeypatch: p
 def test_the_pictures_of_the_hard_cases_are_drawn_under_their_names(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def rows(quick: bool, workers: int | None = None):  # type: ignore[no-untyped-def]
         for case in CASES:
-            yield case.name, [Check(f"{case.name}: one", 0.5, 1.0, True, 0.1, case.hard, case.naive, case.oracle)]
+            yield case.name, [Check(case.name, "one", 0.5, 1.0, True, 0.1, case.hard, case.naive, case.oracle)]
 
     (quickest,) = (case for case in CASES if case.name == "touch and graze")
     without = [case if case is quickest else Case(**{**vars(case), "picture": None}) for case in CASES]

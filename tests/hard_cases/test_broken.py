@@ -30,7 +30,7 @@ from granchain_core.scene.state import State
 
 
 def worst(measurements: list[Measurement]) -> Measurement:
-    """The figure furthest above its limit."""
+    """The measurement furthest above its limit."""
     return max(measurements, key=lambda f: np.inf if not f.value <= f.limit else f.value - f.limit)
 
 
@@ -39,7 +39,7 @@ def failed(measurements: list[Measurement]) -> list[str]:
     return [f.name for f in measurements if not f.value <= f.limit]
 
 
-def test_nan_is_above_every_bar() -> None:
+def test_nan_is_above_every_limit() -> None:
     case = Case("x", "", "", "", lambda quick: [Measurement("nan", float("nan"), 1.0), Measurement("good", 0.5, 1.0)])
     assert [row.passed for row in run_case(case, True)] == [False, True]
 

@@ -14,6 +14,7 @@ from app.cli import main
 from granchain_core import BadInput, Cancelled, scene
 from granchain_core.execution.stop import Stop
 from granchain_core.orbits import Branch, Continuation, begin_branch, switch_to_doubled
+from granchain_core.orbits.branch.orbit_checkpoints import special_as_json, special_from_json
 from granchain_core.orbits.branch.steps import SHORTEST_STEP
 from granchain_core.store import load_branch, save_branch
 
@@ -37,7 +38,7 @@ def assert_same(one: Branch, other: Branch) -> None:
                          [*other.points, *(p for s in other.special for p in (s.before, s.after))], strict=True):
         for name in ("x", "tangent", "multipliers", "closings", "slope"):
             np.testing.assert_array_equal(getattr(mine, name), getattr(its, name))
-        for name in ("knob", "arclength", "residuals", "liouville", "max_input_force", "max_output_force",
+        for name in ("knob", "arclength", "residuals", "liouville_error", "max_input_force", "max_output_force",
                      "max_output_force_elastic"):
             assert getattr(mine, name) == getattr(its, name)
     special = [[(s.kind, s.knob, s.interval, s.multiplier, s.contact, s.gained, str(s.normal_form)) for s in b.special]
@@ -55,6 +56,16 @@ def test_a_branch_that_was_saved_goes_on_as_if_it_had_never_stopped(tmp_path: Pa
     Continuation(resumed).run()
     assert_same(resumed, whole)
     assert_same(load_branch(save_branch(resumed, file)), whole)
+
+
+def test_checkpoints_keep_the_names_that_orbits_had_in_them(whole: Branch) -> None:
+    """A branch that was interrupted by an earlier version is resumed from its file."""
+    special = whole.special[0]
+    kept = json.loads(json.dumps(special_as_json(special)))
+    assert {"liouville", "turns"} < set(kept["before"]) and not {"liouville_error", "overlap_extrema"} & set(kept["before"])
+    again = special_from_json(kept).before
+    assert again.liouville_error == special.before.liouville_error == getattr(special.before, "liouville")  # noqa: B009 -- a former name
+    np.testing.assert_array_equal(again.overlap_extrema, getattr(special.before, "turns"))  # noqa: B009 -- a former name
 
 
 def test_points_one_by_one_are_those_of_both_threads(whole: Branch) -> None:

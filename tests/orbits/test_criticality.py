@@ -46,7 +46,7 @@ def torus() -> Branch:
     return granchain_core.branch(scene("sec2"), "f", 1990.0, 1945.0, 1)
 
 
-def the(branch: Branch, kind: str, number: int = 0) -> SpecialPoint:
+def special_point(branch: Branch, kind: str, number: int = 0) -> SpecialPoint:
     """One special point of a kind."""
     return [s for s in branch.special if s.kind == kind][number]
 
@@ -54,7 +54,7 @@ def the(branch: Branch, kind: str, number: int = 0) -> SpecialPoint:
 @pytest.mark.parametrize(("number", "criticality"), [(0, "subcritical"), (1, "supercritical")])
 def test_the_doubled_orbit_is_on_the_side_that_the_criticality_says(doubling: Branch, number: int, criticality: str) -> None:
     """In the plane at amplitude ξ along q, by Newton's method on the doubled map, which does not use normal forms."""
-    special = the(doubling, "period_doubling", number)
+    special = special_point(doubling, "period_doubling", number)
     form = special.normal_form
     assert form is not None and form.criticality == criticality
     once, twice = BranchEquations(doubling.axis, 1), BranchEquations(doubling.axis, 2)
@@ -73,9 +73,9 @@ def test_the_doubled_orbit_is_on_the_side_that_the_criticality_says(doubling: Br
 
 def test_a_subcritical_doubling_has_hysteresis(doubling: Branch) -> None:
     """The doubled branch, followed from its supercritical end, folds back above the subcritical one."""
-    subcritical, supercritical = (the(doubling, "period_doubling", number) for number in (0, 1))
+    subcritical, supercritical = (special_point(doubling, "period_doubling", number) for number in (0, 1))
     doubled = Continuation(switch_to_doubled(doubling, supercritical)).run()
-    fold, end = the(doubled, "fold"), doubled.special[-1]
+    fold, end = special_point(doubled, "fold"), doubled.special[-1]
     # μ − 1 = 2aξ along the branch, so two orbits and their multipliers have the same coefficient
     before, after = (min(point.multipliers, key=lambda z: abs(z - 1.0)).real for point in (fold.before, fold.after))
     apart = np.sqrt(np.mean((fold.after.x - fold.before.x) ** 2))
@@ -93,7 +93,7 @@ def test_a_subcritical_doubling_has_hysteresis(doubling: Branch) -> None:
 
 
 def test_a_coefficient_agrees_with_that_of_smaller_amplitudes_within_its_error(doubling: Branch) -> None:
-    for special in (the(doubling, "period_doubling", number) for number in (0, 1)):
+    for special in (special_point(doubling, "period_doubling", number) for number in (0, 1)):
         fine = again(doubling, special, {"period_doubling": (2e-5,)}, tolerance=1e-13).normal_form
         assert fine is not None and special.normal_form is not None
         assert abs(fine.coefficient - special.normal_form.coefficient) < special.normal_form.error + fine.error
@@ -101,7 +101,7 @@ def test_a_coefficient_agrees_with_that_of_smaller_amplitudes_within_its_error(d
 
 def test_the_closed_curve_grows_as_the_root_of_the_distance(torus: Branch) -> None:
     """|z|² = −β/Re d on it, with β = |μ| − 1: 1e-5 m beside the orbit the chain goes to the curve and stays there."""
-    form = the(torus, "neimark_sacker").normal_form
+    form = special_point(torus, "neimark_sacker").normal_form
     assert form is not None and form.criticality == "supercritical"
     equations = BranchEquations(torus.axis, 1)
     radii, expected = [], []
@@ -135,12 +135,12 @@ def between(branch: Branch, special: SpecialPoint) -> Between:
 
 
 def test_the_criticality_is_the_same_when_it_is_computed_again(doubling: Branch) -> None:
-    special = the(doubling, "period_doubling")
+    special = special_point(doubling, "period_doubling")
     assert again(doubling, special).normal_form == special.normal_form
 
 
 def test_nothing_is_decided_where_a_contact_grazes_in_the_same_interval(doubling: Branch) -> None:
-    special = the(doubling, "period_doubling")
+    special = special_point(doubling, "period_doubling")
     closings = special.after.closings.copy()
     closings[3] += 1
     form = again(doubling, replace(special, after=replace(special.after, closings=closings))).normal_form
@@ -152,7 +152,7 @@ def test_the_order_of_contact_events_counts_where_none_grazes(doubling: Branch, 
     """At about 228 Hz a closing passes the strobe phase 0; at about 252 Hz events of distant contacts change places."""
     points = doubling.points
     after = next(i for i, point in enumerate(points) if point.knob < frequency)
-    special = replace(the(doubling, "period_doubling"), before=points[after - 1], after=points[after])
+    special = replace(special_point(doubling, "period_doubling"), before=points[after - 1], after=points[after])
     assert np.array_equal(special.before.closings, special.after.closings)
     events = [between(doubling, special).contacts(point) for point in (special.before, special.after)]
     if frequency == 228.0:
@@ -185,12 +185,12 @@ def test_a_normal_form_needs_the_sequence_as_far_as_its_derivatives_do(other: li
 
 def test_no_state_is_used_along_which_contacts_close_in_another_order(doubling: Branch) -> None:
     """At 255.8 Hz a contact grazes between the amplitudes 3e-4 and 1e-3."""
-    form = again(doubling, the(doubling, "period_doubling"), {"period_doubling": (1e-3,)}).normal_form
+    form = again(doubling, special_point(doubling, "period_doubling"), {"period_doubling": (1e-3,)}).normal_form
     assert form is not None and (form.criticality, form.reason) == ("not decided", SEQUENCE_NEAR)
 
 
 def test_a_grazing_has_no_criticality(doubling: Branch) -> None:
-    grazing = the(doubling, "grazing")
+    grazing = special_point(doubling, "grazing")
     assert grazing.normal_form is None and grazing.criticality is None and grazing.criticality_words() == ""
 
 
@@ -198,7 +198,7 @@ def test_a_grazing_has_no_criticality(doubling: Branch) -> None:
 
 
 def test_files_and_checkpoints_keep_the_criticality(doubling: Branch, tmp_path: Path) -> None:
-    undecided = replace(the(doubling, "period_doubling"), normal_form=NormalForm("not decided", reason=REASONS[0]))
+    undecided = replace(special_point(doubling, "period_doubling"), normal_form=NormalForm("not decided", reason=REASONS[0]))
     doubling = replace(doubling, half_branches=(replace(doubling.half_branches[0], special=[*doubling.special, undecided]),))
     loaded = load_branch(save_branch(doubling, tmp_path / "b.h5"))
     kept = [special_from_json(json.loads(json.dumps(special_as_json(one)))) for one in doubling.special]
@@ -221,7 +221,7 @@ def test_a_file_without_criticality_opens(doubling: Branch, tmp_path: Path) -> N
 
 @pytest.mark.parametrize(("earlier", "now"), EARLIER_REASONS.items())
 def test_a_reason_as_earlier_versions_spelled_it_is_read(doubling: Branch, tmp_path: Path, earlier: str, now: str) -> None:
-    special = replace(the(doubling, "period_doubling"), normal_form=NormalForm("not decided", reason=earlier))
+    special = replace(special_point(doubling, "period_doubling"), normal_form=NormalForm("not decided", reason=earlier))
     assert special_from_json(json.loads(json.dumps(special_as_json(special)))).criticality_words() == f"criticality not decided: {now}"
     old = replace(doubling, half_branches=(replace(doubling.half_branches[0], special=[special]),))
     assert load_branch(save_branch(old, tmp_path / "old.h5")).special[0].criticality_words() == f"criticality not decided: {now}"
@@ -237,20 +237,20 @@ def test_a_reason_that_does_not_fit_is_refused(doubling: Branch, tmp_path: Path)
 
 
 def test_the_criticality_is_given_in_words_and_numbers(doubling: Branch, torus: Branch) -> None:
-    subcritical, supercritical = (the(doubling, "period_doubling", number) for number in (0, 1))
+    subcritical, supercritical = (special_point(doubling, "period_doubling", number) for number in (0, 1))
     assert criticality_words(subcritical) == "subcritical: beside it, on the stable side, an orbit of twice the period repels"
     assert criticality_words(supercritical) == (
         "supercritical: beside it, on the unstable side, an orbit of twice the period attracts")
-    assert criticality_words(the(torus, "neimark_sacker")).endswith("a closed curve of the map attracts")
-    assert criticality_words(the(doubling, "grazing")) == ""
+    assert criticality_words(special_point(torus, "neimark_sacker")).endswith("a closed curve of the map attracts")
+    assert criticality_words(special_point(doubling, "grazing")) == ""
     assert supercritical.normal_form is not None
     assert supercritical.normal_form.coefficient == pytest.approx(699.0, rel=2e-3)  # with the tolerance it moves by 3e-4
-    said = branch_json(torus)["normal_form"][torus.special.index(the(torus, "neimark_sacker"))]
+    said = branch_json(torus)["normal_form"][torus.special.index(special_point(torus, "neimark_sacker"))]
     assert said["criticality"] == "supercritical" and said["coefficient"] < 0.0 < said["error"] and said["reason"] == ""
     assert said["angle"] == pytest.approx(1.1995, abs=1e-4)
     rounded = NormalForm("supercritical", coefficient=698.98765, error=0.123)
     assert normal_form_words(replace(supercritical, normal_form=rounded)) == ", supercritical, coefficient 698.99 ± 0.12"
-    turned = replace(the(torus, "neimark_sacker"), normal_form=rounded, multiplier=np.exp(1.2j))
+    turned = replace(special_point(torus, "neimark_sacker"), normal_form=rounded, multiplier=np.exp(1.2j))
     assert normal_form_words(turned) == ", supercritical, coefficient 698.99 ± 0.12, angle 68.75°"
     assert any("subcritical" in line for line in doubling.summary())
     unknown = replace(subcritical, normal_form=NormalForm("not decided", reason=REASONS[0]))

@@ -119,7 +119,7 @@ def test_an_orbit_whose_displacements_vanish_at_phase_0_is_found() -> None:
     """
     found = granchain_core.orbit(VANISHING)
     assert found.period == 1 and found.stable and found.residual < 1e-9
-    assert found.liouville is not None and abs(found.liouville) < 1e-8
+    assert found.liouville_error is not None and abs(found.liouville_error) < 1e-8
 
 
 def test_its_branch_is_found_too() -> None:

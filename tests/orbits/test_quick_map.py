@@ -78,16 +78,16 @@ def test_a_wrong_quick_map_makes_no_wrong_orbit(whole: Branch, wrong: float, mon
         assert relative_change(equations.stroboscopic_map(one.knob).end(one.x) - one.x, one.x) <= 1e-10
 
 
-def test_turning_points_count_the_closings_that_the_flow_counts(whole: Branch) -> None:
+def test_extrema_of_overlaps_count_the_closings_that_the_flow_counts(whole: Branch) -> None:
     """Rough orbits have the same counts."""
     for one in [*whole.points, *(p for s in whole.special for p in (s.before, s.after))]:
-        np.testing.assert_array_equal(points._counted_turns(len(one.closings), one.turns), one.closings)
+        np.testing.assert_array_equal(points._counted_extrema(len(one.closings), one.overlap_extrema), one.closings)
 
 
 def test_contacts_that_never_open_or_never_close_have_their_own_counts() -> None:
-    turns = np.array([[0, 1, 0.1, 0.5], [0, -1, 0.2, 0.3], [1, 1, 0.1, -0.5], [1, -1, 0.2, -0.7],
-                      [2, 1, 0.1, 0.2], [2, -1, 0.2, -0.2], [2, 1, 0.3, 0.1], [2, -1, 0.4, -0.3]])
-    assert points._counted_turns(3, turns).tolist() == [-1, 0, 2]
+    extrema = np.array([[0, 1, 0.1, 0.5], [0, -1, 0.2, 0.3], [1, 1, 0.1, -0.5], [1, -1, 0.2, -0.7],
+                        [2, 1, 0.1, 0.2], [2, -1, 0.2, -0.2], [2, 1, 0.3, 0.1], [2, -1, 0.4, -0.3]])
+    assert points._counted_extrema(3, extrema).tolist() == [-1, 0, 2]
 
 
 def test_a_branch_that_comes_back_to_the_least_value_of_its_knob_ends_there() -> None:

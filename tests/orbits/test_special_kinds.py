@@ -33,8 +33,8 @@ class GivenOrbits:
         values = np.array(sorted(self.multipliers(s), key=abs, reverse=True), dtype=complex)
         return BranchPoint(knob=knob, x=np.zeros(4), tangent=tangent, arclength=s, multipliers=values,
                            max_input_force=1.0, max_output_force=1.0, max_output_force_elastic=1.0,
-                           closings=np.zeros(3, dtype=int), slope=np.zeros(4), residuals=(0.0,), liouville=0.0,
-                           turns=np.zeros((0, 4)))
+                           closings=np.zeros(3, dtype=int), slope=np.zeros(4), residuals=(0.0,), liouville_error=0.0,
+                           overlap_extrema=np.zeros((0, 4)))
 
     def careful(self, a: BranchPoint, b: BranchPoint, fraction: float) -> BranchPoint:
         return self.at(a.arclength + fraction * (b.arclength - a.arclength))

@@ -69,7 +69,7 @@ def test_the_ends_of_every_interval_are_exact(fast: Branch) -> None:
     for one in fast.special:
         for point in (one.before, one.after):
             flow = equations.stroboscopic_map(point.knob)(point.x)
-            assert point.residual <= 1e-10 and np.isfinite(point.max_output_force) and np.isfinite(point.liouville)
+            assert point.residual <= 1e-10 and np.isfinite(point.max_output_force) and np.isfinite(point.liouville_error)
             mu = np.linalg.eigvals(flow.derivative)
             assert np.abs(mu).max() == pytest.approx(abs(point.multipliers[0]), rel=1e-12)  # the same map: rounding
 

@@ -86,7 +86,7 @@ def test_a_long_chain_has_the_leading_multipliers_of_its_linear_modes() -> None:
     # as in the short chain, but by products with single directions only; the drive moves them by about A0/δ0
     shown = scene("sec2").evolve(N=200, F0=50.0, A0=1e-10, D=1000.0, f=2000.0)
     orbit = granchain_core.orbit(shown, period=1, start=rest(shown))
-    assert orbit.residual <= 1e-9 and orbit.liouville is None
+    assert orbit.residual <= 1e-9 and orbit.liouville_error is None
     exact = linear_multipliers(shown)[: len(orbit.multipliers)]
     assert np.abs(orbit.multipliers) == pytest.approx(np.abs(exact), rel=1e-4)
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 
 from app.pages.map.page import COLUMNS, ROWS, page_grid
@@ -40,4 +42,4 @@ def test_an_attractor_is_told_with_share_kind_and_evidence() -> None:
     assert periodic["words"].startswith("period 4, pulse ratio 1:4, |μ| ") and "error" in periodic["force"]
     assert irregular["words"].startswith("quasi-periodic, Lyapunov exponent") and "error" not in irregular["force"]
     assert "rest" in periodic["from"] and "down" in irregular["from"]
-    assert sum(one["starts"] for one in found) == 27 and "±" in periodic["share_words"]
+    assert sum(one["starts"] for one in found) == 27 and re.fullmatch(r"\d+ % \(\d+ to \d+ %\)", periodic["share_words"])

@@ -134,7 +134,7 @@ def test_the_evidence_has_a_row_for_what_was_computed_only() -> None:
 
 
 def test_multipliers_lost_in_rounding_decide_nothing() -> None:
-    lost = replace(analysis(), orbit=replace(analysis().orbit, liouville=None))
+    lost = replace(analysis(), orbit=replace(analysis().orbit, liouville_error=None))
     rows = {row["name"]: row["value"] for row in evidence(picture(), lost, None)}
     assert rows["product of all μ"] == "the smallest multipliers are below rounding"
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,6 +13,10 @@ import xarray
 
 from granchain_core import BadInput, resonance_curve, run, scene, settle
 from granchain_core.store import load, save, save_curve
+from granchain_core.tables.provenance import kernels_digest
+
+#: The package has a function of the name of the module.
+provenance = sys.modules["granchain_core.tables.provenance"]
 
 pytestmark = pytest.mark.quick
 
@@ -59,6 +64,22 @@ def test_xarray_opens_a_run_with_labelled_axes_and_units(tmp_path: Path, result)
         for name in ("granchain_schema", "scene", "method", "accuracy_asked", "accuracy_reached", "cost", "versions",
                      "machine"):
             assert name in root.attrs
+
+
+def test_a_file_says_by_which_kernels_and_libraries_it_was_made(tmp_path: Path, result,  # type: ignore[no-untyped-def]
+                                                                monkeypatch: pytest.MonkeyPatch) -> None:
+    """Commits of one version whose kernels differ are told apart; llvmlite decides the bits of compiled code."""
+    made = result.attributes()
+    assert set(json.loads(made["versions"])) == {"python", "numpy", "scipy", "numba", "llvmlite", "h5py"}
+    with xarray.open_dataset(save(result, tmp_path / "a.h5"), engine="h5netcdf") as root:
+        assert root.attrs["kernels_digest"] == made["kernels_digest"] == kernels_digest()
+    monkeypatch.setattr(provenance, "_KERNELS", tmp_path)
+    kernel = tmp_path / "a.py"
+    digests = []
+    for text in ("x = 1\n", "x = 2\n", "x = 1\n"):
+        kernel.write_text(text, encoding="utf-8")
+        digests.append(kernels_digest.__wrapped__())
+    assert digests[0] == digests[2] != digests[1] and len(made["kernels_digest"]) == 12
 
 
 def test_xarray_opens_a_curve(tmp_path: Path) -> None:

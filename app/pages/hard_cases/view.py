@@ -63,7 +63,7 @@ def described_results(name: str, rows: list[Check]) -> dict[str, Any]:
     A value that could not be computed has a note that says why.
     """
     return {"time": duration(rows[0].seconds), "rows": [
-        {"what": row.case.removeprefix(f"{name}: "), "value": value_beside(row.value, row.limit),
+        {"what": row.measurement, "value": value_beside(row.value, row.limit),
          "limit": digits_of(row.limit, 3), "passed": row.passed, "note": row.note} for row in rows]}
 
 
@@ -79,4 +79,4 @@ def summary(rows_by_case: dict[str, list[Check]]) -> str:
     first = missed[0]
     more = f", and {len(missed) - 1} more" if len(missed) > 1 else ""
     return (f"{run}: {len(missed)} of {len(every)} values FAILED: "
-            f"{first.case}, {value_beside(first.value, first.limit)} against {digits_of(first.limit, 3)}{more}.")
+            f"{first.title}, {value_beside(first.value, first.limit)} against {digits_of(first.limit, 3)}{more}.")

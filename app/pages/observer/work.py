@@ -152,9 +152,9 @@ class ObserverRun:
         self.in_step = bool(np.abs(difference).max() < SYNCHRONISED)
         scales, number = engine.scaled.scales, self.number
         self.number += 1
-        u, v = rows.displacement * scales.length, rows.velocity * scales.velocity
-        self._largest_input = max(self._largest_input, float(engine.maxima[0] * scales.force))
-        force, half_mass = rows.force * scales.force, 0.5 * self.scene.masses()
+        u, v = scales.displacements(rows.displacement), scales.velocities(rows.velocity)
+        self._largest_input = max(self._largest_input, float(scales.forces(engine.maxima[0])))
+        force, half_mass = scales.forces(rows.force), 0.5 * self.scene.masses()
         return ObserverStep(
             number=number, samples=self.samples,
             drive=self.scene.A0 * np.sin(2 * np.pi * np.arange(self.samples + 1) / self.samples),

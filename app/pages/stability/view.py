@@ -180,7 +180,7 @@ def _orbit_rows(row: Any, settled: Settled, analysis: OrbitAnalysis) -> None:
             "states of the section, relative to their largest displacement and velocity.")
     why = ("the smallest multipliers are below rounding" if len(orbit.multipliers) == 2 * orbit.scene.N
            else f"only the {len(orbit.multipliers)} leading multipliers are computed")
-    row("product of all μ", why if orbit.liouville is None else f"{short_error(orbit.liouville)} off",
+    row("product of all μ", why if orbit.liouville_error is None else f"{short_error(orbit.liouville_error)} off",
         "Liouville's theorem: the logarithm of the multipliers' product and the integral of the equations' trace are "
         "equal; their relative difference.")
     row("disturbance followed", f"{short_error(max(analysis.mode.closure, 1e-16))} off",

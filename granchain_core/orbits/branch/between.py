@@ -45,11 +45,11 @@ class Between:
         near = self._near(arclength)
         newton.solve_quick(near)
         slope, multipliers, tangent = near.slope, a.multipliers, a.tangent
-        if a.turning != b.turning:
+        if a.knob_direction != b.knob_direction:
             slope = self.equations.quick_slope(newton.z, newton.steps)
             newton.matrix[:-1, -1] = slope
-        if (a.turning, a.unstable_multipliers, a.doubling_sign) \
-                == (b.turning, b.unstable_multipliers, b.doubling_sign):
+        if (a.knob_direction, a.unstable_multipliers, a.doubling_sign) \
+                == (b.knob_direction, b.unstable_multipliers, b.doubling_sign):
             tangent = self.equations.tangent_by(newton.matrix, a.tangent)
         else:
             derivative = newton.flow(ROUGH_TOLERANCE).derivative

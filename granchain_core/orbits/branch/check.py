@@ -41,9 +41,9 @@ def _orbit_wrong(branch: Branch, point: BranchPoint) -> list[str]:
         faults.append(f"residual {point.residual:.1e} at {where}")
     smallest, largest = np.abs(point.multipliers[-1]), max(1.0, float(np.abs(point.multipliers[0])))
     # where the smallest multiplier is rounding, its logarithm says nothing
-    if (smallest >= ROUNDING * largest
-            and point.liouville > _LIOUVILLE_ERROR + len(point.multipliers) * np.finfo(float).eps * largest / smallest):
-        faults.append(f"Liouville is off by {point.liouville:.1e} at {where}")
+    rounding = len(point.multipliers) * np.finfo(float).eps * largest / smallest
+    if smallest >= ROUNDING * largest and point.liouville_error > _LIOUVILLE_ERROR + rounding:
+        faults.append(f"Liouville is off by {point.liouville_error:.1e} at {where}")
     return faults
 
 
@@ -59,7 +59,7 @@ def _step_wrong(branch: Branch, half: HalfBranch, i: int) -> list[str]:
         faults.append(f"stability changes without a special point {where}")
     if a.doubling_sign != b.doubling_sign and not any(s.kind == "period_doubling" for s in between):
         faults.append(f"a multiplier passes -1 without a period doubling {where}")
-    if a.turning != b.turning and not any(s.kind == "fold" for s in between):
+    if a.knob_direction != b.knob_direction and not any(s.kind == "fold" for s in between):
         faults.append(f"the knob turns without a fold {where}")
     for contact in np.flatnonzero(a.closings != b.closings):
         if not any(s.contact == contact for s in between):
@@ -76,6 +76,6 @@ def _special_wrong(branch: Branch, half: HalfBranch) -> list[str]:
         if s.before.signature == s.after.signature:
             faults.append(f"{where} lies between orbits that are alike")
         inside = [low - 1e-12 * abs(low) <= p.knob <= high + 1e-12 * abs(high) for p in (s.before, s.after)]
-        if s.before.turning == s.after.turning and not all(inside):
+        if s.before.knob_direction == s.after.knob_direction and not all(inside):
             faults.append(f"{where} has orbits outside its interval")
     return faults

@@ -23,7 +23,9 @@ from .point import BranchPoint
 from .special import SpecialPoint
 
 #: Entries of a point that are arrays.
-_ARRAYS = ("x", "tangent", "multipliers", "closings", "slope", "turns")
+_ARRAYS = ("x", "tangent", "multipliers", "closings", "slope", "overlap_extrema")
+#: Entries of a point whose names in a file of checkpoints are former ones.
+_FORMER = {"liouville_error": "liouville", "overlap_extrema": "turns"}
 
 
 def asked_digest(axis: KnobAxis, both: bool) -> str:
@@ -93,16 +95,18 @@ def _as_json(point: BranchPoint) -> dict[str, Any]:
     for name in _ARRAYS:
         record[name] = np.asarray(record[name])
     record["multipliers"] = np.stack([record["multipliers"].real, record["multipliers"].imag])
-    return {name: value.tolist() if isinstance(value, np.ndarray) else value for name, value in record.items()}
+    return {_FORMER.get(name, name): value.tolist() if isinstance(value, np.ndarray) else value
+            for name, value in record.items()}
 
 
-def _point(record: dict[str, Any]) -> BranchPoint:
+def _point(kept: dict[str, Any]) -> BranchPoint:
+    record = {entry.name: kept[_FORMER.get(entry.name, entry.name)] for entry in fields(BranchPoint)}
     arrays: dict[str, Any] = {name: np.array(record[name], dtype=int if name == "closings" else float)
                               for name in _ARRAYS if name != "multipliers"}
     real, imaginary = np.array(record["multipliers"])
     multipliers = np.empty(len(real), dtype=complex)
     multipliers.real, multipliers.imag = real, imaginary
-    arrays["turns"] = arrays["turns"].reshape(-1, 4)
+    arrays["overlap_extrema"] = arrays["overlap_extrema"].reshape(-1, 4)
     return BranchPoint(**{**record, **arrays, "multipliers": multipliers, "residuals": tuple(record["residuals"])})
 
 

@@ -22,15 +22,15 @@ from .equations import BranchEquations, Solved
 _TOLERANCE = 1e-11
 #: Tolerance per step of the run along an orbit that only helps to find others; overlaps have errors of about 1e-7.
 _ROUGH_TOLERANCE = 1e-9
-#: Room for turning points of overlaps at first, for each contact and period.
+#: Room for extrema of overlaps at first, for each contact and period.
 _FIRST_ROOM = 32
 #: Without damping the multipliers of a stable orbit lie on the unit circle. Where two meet they are known to about the
 #: root of the map's error only; so near to the circle a multiplier is on it.
 ON_CIRCLE = 1e-6
 #: Count of the closings of a contact that is always closed; it is 0 of one that is always open.
 _CLOSED = -1
-#: Columns of a turning point (`OrbitRecord`): contact, +1 for a largest and −1 for a smallest overlap, time, overlap.
-CONTACT, TURN_SIGN, TIME, OVERLAP = range(4)
+#: Columns of an extremum (`OrbitRecord`): contact, +1 for a largest and −1 for a smallest overlap, time, overlap.
+CONTACT, EXTREMUM_SIGN, TIME, OVERLAP = range(4)
 
 
 @with_former_names
@@ -42,8 +42,9 @@ class BranchPoint:
     (x/√(2N), p); `arclength` counts from the start. `multipliers` (2N,) come largest modulus first. The three largest
     forces are in N. `closings` (N + 1,) count how often each contact closes along the orbit: 0 if it is always
     open, −1 if it is always closed. `slope` (2N,) is the map's change with p. `residuals` are those of Newton's method,
-    the last being the orbit's; `liouville` is how far ln |det| of the monodromy matrix is from ∫ trace. `turns` are the
-    turning points of all overlaps (kernels/error_control/orbit_record.py). `damped` is whether its chain loses energy.
+    the last being the orbit's; `liouville_error` is how far ln |det| of the monodromy matrix is from ∫ trace.
+    `overlap_extrema` are the extrema of all overlaps (kernels/error_control/orbit_record.py). `damped` is whether its
+    chain loses energy.
     """
 
     knob: float
@@ -57,8 +58,8 @@ class BranchPoint:
     closings: np.ndarray
     slope: np.ndarray
     residuals: tuple[float, ...]
-    liouville: float
-    turns: np.ndarray
+    liouville_error: float
+    overlap_extrema: np.ndarray
     damped: bool = True
 
     @property
@@ -82,7 +83,7 @@ class BranchPoint:
         return self.unstable_multipliers == 0
 
     @property
-    def turning(self) -> int:
+    def knob_direction(self) -> int:
         """+1 where the knob grows along the branch, −1 where it falls."""
         return 1 if self.tangent[-1] > 0.0 else -1
 
@@ -94,8 +95,8 @@ class BranchPoint:
 
     @property
     def signature(self) -> tuple[int, ...]:
-        """Numbers that change at special points and nowhere else."""
-        return (self.turning, self.unstable_multipliers, self.doubling_sign, *(int(n) for n in self.closings))
+        """Integers whose change between neighbours marks a special point."""
+        return (self.knob_direction, self.unstable_multipliers, self.doubling_sign, *(int(n) for n in self.closings))
 
 
 def branch_point(equations: BranchEquations, solved: Solved, tangent: np.ndarray, arclength: float) -> BranchPoint:
@@ -110,18 +111,18 @@ def unrecorded(equations: BranchEquations, solved: Solved, tangent: np.ndarray, 
         knob=equations.value(solved.z), x=equations.state(solved.z), tangent=tangent, arclength=arclength,
         multipliers=multipliers, max_input_force=np.nan, max_output_force=np.nan, max_output_force_elastic=np.nan,
         closings=np.zeros(equations.size // 2 + 1, dtype=int), slope=solved.knob_slope, residuals=solved.residuals,
-        liouville=liouville_error(multipliers, solved.flow.log_determinant), turns=np.zeros((0, 4)),
+        liouville_error=liouville_error(multipliers, solved.flow.log_determinant), overlap_extrema=np.zeros((0, 4)),
         damped=equations.axis.damped_at(equations.value(solved.z)))
 
 
 def recorded(equations: BranchEquations, point: BranchPoint, contact_events: np.ndarray) -> BranchPoint:
     """The point with its forces and contacts; `contact_events` are its contact events, as in `Flow`."""
     engine, record = record_along(equations, point.x, point.knob)
-    maxima = largest_forces(record.peaks) * engine.scaled.scales.force
+    maxima = engine.scaled.scales.forces(largest_forces(record.peaks))
     return replace(
         point, max_input_force=float(maxima[0]), max_output_force=float(maxima[1]),
         max_output_force_elastic=float(maxima[2]), closings=_counts(len(point.closings), record, contact_events),
-        turns=record.turns)
+        overlap_extrema=record.turns)
 
 
 def state_at(scene: Scene, x: np.ndarray) -> State:
@@ -138,13 +139,13 @@ def rough_point(equations: BranchEquations, z: np.ndarray, tangent: np.ndarray, 
     return BranchPoint(
         knob=value, x=x, tangent=tangent, arclength=arclength, multipliers=multipliers,
         max_input_force=np.nan, max_output_force=np.nan, max_output_force_elastic=np.nan,
-        closings=_counted_turns(len(x) // 2 + 1, record.turns), slope=slope, residuals=tuple(residuals),
-        liouville=np.nan, turns=record.turns, damped=equations.axis.damped_at(value))
+        closings=_counted_extrema(len(x) // 2 + 1, record.turns), slope=slope, residuals=tuple(residuals),
+        liouville_error=np.nan, overlap_extrema=record.turns, damped=equations.axis.damped_at(value))
 
 
 def record_along(equations: BranchEquations, x: np.ndarray, value: float,
                  tolerance: float = _TOLERANCE) -> tuple[Engine, OrbitRecord]:
-    """Largest forces and turning points of all overlaps along the way from the scaled state x."""
+    """Largest forces and extrema of all overlaps along the way from the scaled state x."""
     engine = Engine(equations.axis.scene_at(value), dop853_setting(tolerance), 1, stop=equations.stop)
     stepper, room = engine.stepper, _FIRST_ROOM * (equations.size // 2 + 1) * equations.period
     while True:
@@ -158,11 +159,11 @@ def record_along(equations: BranchEquations, x: np.ndarray, value: float,
         room = rows
 
 
-def _counted_turns(contacts: int, turns: np.ndarray) -> np.ndarray:
-    """Closings of every contact by its overlap's turning points alone, between which it passes zero once or never."""
+def _counted_extrema(contacts: int, extrema: np.ndarray) -> np.ndarray:
+    """Closings of every contact by its overlap's extrema alone, between which it passes zero once or never."""
     closings = np.zeros(contacts, dtype=int)
     for contact in range(contacts):
-        pressed = turns[turns[:, CONTACT] == contact, OVERLAP] > 0.0
+        pressed = extrema[extrema[:, CONTACT] == contact, OVERLAP] > 0.0
         closings[contact] = np.sum(pressed & ~np.roll(pressed, 1))
         if len(pressed) and pressed.all():
             closings[contact] = _CLOSED
@@ -170,7 +171,7 @@ def _counted_turns(contacts: int, turns: np.ndarray) -> np.ndarray:
 
 
 def _counts(contacts: int, record: OrbitRecord, contact_events: np.ndarray) -> np.ndarray:
-    """Closings of every contact; always open and always closed are distinguished by the overlap's turning points."""
+    """Closings of every contact; always open and always closed are distinguished by the overlap's extrema."""
     numbers = contact_events[:, 0].astype(int)
     closings = np.bincount(numbers[numbers > 0] - 1, minlength=contacts)
     if not np.array_equal(closings, np.bincount(-numbers[numbers < 0] - 1, minlength=contacts)):

@@ -75,7 +75,7 @@ class SpecialPoint:
     @property
     def gained_side(self) -> str | None:
         """On which side of `knob` a contact has one `gained` more: "below" or "above"; None where the knob turns."""
-        if self.contact is None or self.before.turning != self.after.turning:
+        if self.contact is None or self.before.knob_direction != self.after.knob_direction:
             return None
         more, fewer = more_and_fewer(self.before, self.after, self.contact)
         return None if more.knob == fewer.knob else "below" if more.knob < fewer.knob else "above"

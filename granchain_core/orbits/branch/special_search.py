@@ -13,7 +13,7 @@ import numpy as np
 from ...errors import ComputationError
 from .axis import KnobAxis
 from .between import Between
-from .point import CONTACT, OVERLAP, TIME, TURN_SIGN, BranchPoint
+from .point import CONTACT, EXTREMUM_SIGN, OVERLAP, TIME, BranchPoint
 from .special import SpecialPoint, closings_of, more_and_fewer
 
 #: [branch] Width of an interval that is narrow enough, relative to the knob or to a thousandth of the range's larger
@@ -25,11 +25,11 @@ _TANGENT_REACH = 1.25
 #: [branch] Offset of the next orbit from the root of the straight line through the test function, as a fraction of the
 #: bracket.
 _OFFSET_FROM_ROOT = 0.02
-#: [branch] First part of the offset from the root of the parabola, where a third value is known, as a fraction of the
-#: width that is narrow enough.
+#: [branch] First part of the offset from the root by inverse quadratic interpolation, where a third value is known, as
+#: a fraction of the width that is narrow enough.
 _WIDTH_FRACTION = 0.4
-#: [branch] Second part of that offset, as a fraction of the distance between both roots. The parabola's error is a
-#: small fraction of the line's.
+#: [branch] Second part of that offset, as a fraction of the distance between the linear and the inverse quadratic
+#: estimate. The latter's error is a small fraction of the former's.
 _ERROR_FRACTION = 0.1
 #: [branch] Levels of bisection from one that takes the middle, whatever the test function says, to the next.
 _LEVELS_TO_MIDDLE = 5
@@ -89,9 +89,9 @@ def _interval(axis: KnobAxis, a: BranchPoint, b: BranchPoint) -> tuple[float, fl
     Where the knob turns in between, the curve stays on the inner side of its tangents at a and b.
     """
     low, high = min(a.knob, b.knob), max(a.knob, b.knob)
-    if a.turning != b.turning:
+    if a.knob_direction != b.knob_direction:
         reach = _TANGENT_REACH * _distance(axis, a, b) * min(abs(a.tangent[-1]), abs(b.tangent[-1])) * axis.slope(high)
-        return (high, float(high + reach)) if a.turning > 0 else (float(low - reach), low)
+        return (high, float(high + reach)) if a.knob_direction > 0 else (float(low - reach), low)
     return low, high
 
 
@@ -139,7 +139,7 @@ def _inverse_quadratic_root(a: BranchPoint, b: BranchPoint, values: tuple[float,
 
 
 def _test_values(a: BranchPoint, b: BranchPoint) -> tuple[float, float] | None:
-    if a.turning != b.turning:
+    if a.knob_direction != b.knob_direction:
         return float(a.tangent[-1]), float(b.tangent[-1])
     if a.unstable_multipliers != b.unstable_multipliers:
         k = max(a.unstable_multipliers, b.unstable_multipliers) - 1
@@ -147,17 +147,18 @@ def _test_values(a: BranchPoint, b: BranchPoint) -> tuple[float, float] | None:
     if a.doubling_sign != b.doubling_sign:
         return float(np.prod(1.0 + a.multipliers).real), float(np.prod(1.0 + b.multipliers).real)
     contact = int(np.flatnonzero(a.closings != b.closings)[0])
-    return _turning_values(a, b, contact)
+    return _extremal_overlaps(a, b, contact)
 
 
-def _turning_values(a: BranchPoint, b: BranchPoint, contact: int) -> tuple[float, float] | None:
-    """The overlap at the turning point that passes zero, at a and at b; None if it is not found in both."""
+def _extremal_overlaps(a: BranchPoint, b: BranchPoint, contact: int) -> tuple[float, float] | None:
+    """The extremum of the overlap that passes zero, at a and at b; None if it is not found in both."""
     more, fewer = more_and_fewer(a, b, contact)
     nearest = _slightest_crossing(more, contact)
     if nearest is None:
         return None
-    turns = _turns(fewer, contact)
-    uncrossed = turns[(turns[:, TURN_SIGN] == nearest[TURN_SIGN]) & (turns[:, OVERLAP] * nearest[OVERLAP] < 0.0)]
+    extrema = _extrema(fewer, contact)
+    alike = extrema[extrema[:, EXTREMUM_SIGN] == nearest[EXTREMUM_SIGN]]
+    uncrossed = alike[alike[:, OVERLAP] * nearest[OVERLAP] < 0.0]
     if not len(uncrossed):
         return None
     partner = uncrossed[np.argmin(np.abs(uncrossed[:, TIME] - nearest[TIME]))]
@@ -166,18 +167,18 @@ def _turning_values(a: BranchPoint, b: BranchPoint, contact: int) -> tuple[float
 
 
 def _slightest_crossing(point: BranchPoint, contact: int) -> np.ndarray | None:
-    """The turning point nearest to zero on the side it turns to: a maximum of the overlap above it, or a minimum below.
+    """The extremum of the overlap nearest to zero, of the maxima above it and the minima below.
 
-    Before and after such a turning point the contact closes and opens. None if there is none.
+    Before and after such an extremum the contact closes and opens. None if there is none.
     """
-    turns = _turns(point, contact)
-    crossed = turns[turns[:, TURN_SIGN] * turns[:, OVERLAP] > 0.0]
+    extrema = _extrema(point, contact)
+    crossed = extrema[extrema[:, EXTREMUM_SIGN] * extrema[:, OVERLAP] > 0.0]
     return crossed[np.argmin(np.abs(crossed[:, OVERLAP]))] if len(crossed) else None
 
 
-def _turns(point: BranchPoint, contact: int) -> np.ndarray:
-    """The turning points of one contact's overlap, rows of `BranchPoint.turns`."""
-    return point.turns[point.turns[:, CONTACT] == contact]
+def _extrema(point: BranchPoint, contact: int) -> np.ndarray:
+    """The extrema of one contact's overlap, rows of `BranchPoint.overlap_extrema`."""
+    return point.overlap_extrema[point.overlap_extrema[:, CONTACT] == contact]
 
 
 def _classified(axis: KnobAxis, a: BranchPoint, b: BranchPoint) -> list[SpecialPoint]:
@@ -185,7 +186,7 @@ def _classified(axis: KnobAxis, a: BranchPoint, b: BranchPoint) -> list[SpecialP
     low, high = _interval(axis, a, b)
     special_points = []
     passing = _passing(a, b)
-    if a.turning != b.turning:
+    if a.knob_direction != b.knob_direction:
         through_one = next((mu for mu in passing if mu.imag == 0.0 and mu.real > 0.0), None)
         passing = [mu for mu in passing if mu is not through_one]
         special_points.append(SpecialPoint("fold", 0.5 * (low + high), (low, high), a, b, multiplier=through_one))
@@ -220,7 +221,7 @@ def _gained(a: BranchPoint, b: BranchPoint, contact: int) -> str:
         return "open interval" if fewer.closings[contact] < 0 else "closed interval"
     nearest = _slightest_crossing(more, contact)
     assert nearest is not None
-    return "closed interval" if nearest[TURN_SIGN] > 0.0 else "open interval"
+    return "closed interval" if nearest[EXTREMUM_SIGN] > 0.0 else "open interval"
 
 
 def _merged(special_points: list[SpecialPoint]) -> list[SpecialPoint]:
@@ -234,10 +235,11 @@ def _merged(special_points: list[SpecialPoint]) -> list[SpecialPoint]:
         last = merged[-1] if merged else None
         if last is not None and point.kind == last.kind == "fold" and point.before is last.after \
                 and (point.multiplier is None) != (last.multiplier is None):
-            turn = point if point.before.turning != point.after.turning else last
+            turn = point if point.before.knob_direction != point.after.knob_direction else last
             merged[-1] = SpecialPoint("fold", turn.knob, turn.interval, last.before, point.after,
                                       multiplier=point.multiplier or last.multiplier)
         else:
             merged.append(point)
     return [replace(point, kind="multiplier_one")
-            if point.kind == "fold" and point.before.turning == point.after.turning else point for point in merged]
+            if point.kind == "fold" and point.before.knob_direction == point.after.knob_direction else point
+            for point in merged]

@@ -66,4 +66,4 @@ def doubling_direction(equations: BranchEquations, x: np.ndarray, value: float) 
 def _half(equations: BranchEquations, solved: Solved, away: np.ndarray) -> HalfBranch:
     tangent = equations.tangent(solved, away)
     start = branch_point(equations, solved, tangent, 0.0)
-    return HalfBranch(start.turning, [start])
+    return HalfBranch(start.knob_direction, [start])

@@ -39,9 +39,9 @@ def _orbits(name: str, over: KnobAxis, points: Sequence[BranchPoint],
     """A table with one row for each orbit. Components are the beads' displacements, then their w, scaled."""
     n, along, knob = over.scene.N, ("point",), QUANTITIES[over.knob]
 
-    def column(attribute: str, unit: str, meaning: str, kind: type = float) -> dict[str, Column]:
+    def column(attribute: str, unit: str, meaning: str, kind: type = float, name: str = "") -> dict[str, Column]:
         values: np.ndarray = np.array([getattr(point, attribute) for point in points], dtype=kind)
-        return {attribute: Column(values, along, unit, meaning)}
+        return {name or attribute: Column(values, along, unit, meaning)}
 
     def wide(attribute: str, width: int, kind: type = float) -> np.ndarray:
         return np.array([getattr(point, attribute) for point in points], dtype=kind).reshape(len(points), width)
@@ -65,7 +65,7 @@ def _orbits(name: str, over: KnobAxis, points: Sequence[BranchPoint],
         **column("stable", "1", "1 if no multiplier is outside", np.int8),
         "unstable": Column(np.array([point.unstable_multipliers for point in points], dtype=np.int64), along, "1",
                            "multipliers outside the unit circle"),
-        **column("liouville", "1", "ln |det| against the integral of the trace"),
+        **column("liouville_error", "1", "ln |det| against the integral of the trace", name="liouville"),
         "residual": Column(residuals, ("point", "iteration"), "1", "residuals of Newton's method"),
         "state": Column(wide("x", 2 * n), of_state, "1", "scaled state at phase 0"),
         "tangent": Column(wide("tangent", 2 * n + 1), of_tangent, "1", "unit tangent"),

@@ -131,7 +131,7 @@ class BatchJob:
         farther = max(distance, regime.distance)
         regime = _with_period(regime, int(batch.state.search.last_check[member, CHECK_PERIOD]))
         if not distance <= FARTHEST_FROM_ORBIT:  # settled alone; a NaN is not near
-            return SteadyState(self.scene, maxima * self.scaled.scales.force, replace(regime, distance=distance), None,
+            return SteadyState(self.scene, self.scaled.scales.forces(maxima), replace(regime, distance=distance), None,
                                self.scaled.to_si(y), number=self.number, undecided=True)
         multiplier = self._multiplier(regime, y, batch.grew(member), batch.stop)
         regime = replace(regime, distance=distance, multiplier=multiplier)
@@ -142,7 +142,7 @@ class BatchJob:
             rough = np.append(rough, rough[1])
             located, located_errors = orbits.maxima(self.scaled, y, regime, farther)
             maxima, errors = np.where(rough, located, maxima), np.where(rough, located_errors, errors)
-        maxima = maxima * self.scaled.scales.force
+        maxima = self.scaled.scales.forces(maxima)
         undecided = multiplier is not None and multiplier >= _LARGEST_SURE_MULTIPLIER
         return SteadyState(self.scene, maxima, regime, errors, self.scaled.to_si(y), number=self.number,
                            undecided=undecided)
@@ -201,7 +201,7 @@ def draft_result(job: BatchJob, batch: Batch, member: int) -> SteadyState:
         return unsettled(job, batch, member, periods_run)
     search = batch.state.search
     regime = _periodic(search.last_check[member], search.slowest_contraction[member], periods_run)
-    maxima = batch.settled_maxima(member, int(period)) * job.scaled.scales.force
+    maxima = job.scaled.scales.forces(batch.settled_maxima(member, int(period)))
     state = job.scaled.to_si(batch.state.motion.y[:, member])
     return SteadyState(job.scene, maxima, regime, None, state, number=job.number)
 
@@ -251,7 +251,7 @@ def _periodic(check: np.ndarray, slowest_decay: float, periods_run: int) -> Regi
 
 def _to_measure(job: BatchJob, batch: Batch, member: int, periods_run: int, record: np.ndarray) -> BatchJob:
     """A job whose exponent is measured next."""
-    maxima = batch.maxima(member, IRREGULAR_PERIODS)[0] * job.scaled.scales.force
+    maxima = job.scaled.scales.forces(batch.maxima(member, IRREGULAR_PERIODS)[0])
     y = batch.state.motion.y[:, member].copy()
     return BatchJob(job.scene, job.scaled, y, periods_run, Stage.EXPONENT, record=record, maxima=maxima,
                     number=job.number)
@@ -259,7 +259,7 @@ def _to_measure(job: BatchJob, batch: Batch, member: int, periods_run: int, reco
 
 def unsettled(job: BatchJob, batch: Batch, member: int, periods_run: int) -> SteadyState:
     """The result of a member whose budget of steps is spent."""
-    maxima = batch.maxima(member, IRREGULAR_PERIODS)[0] * job.scaled.scales.force
+    maxima = job.scaled.scales.forces(batch.maxima(member, IRREGULAR_PERIODS)[0])
     state = job.scaled.to_si(batch.state.motion.y[:, member])
     return SteadyState(job.scene, maxima, Regime.unsettled(periods_run), None, state,
                       number=job.number)

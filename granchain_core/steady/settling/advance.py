@@ -52,7 +52,8 @@ class SettlingRun:
     def _begin(self, periods_run: int) -> None:
         """Begin a new record of strobes at the engine's state, after `periods_run` periods; `_here` counts its own."""
         first, scales = self.engine.state, self.engine.scaled.scales
-        self.strobes = np.array([[first.displacement / scales.length, first.velocity / scales.velocity]])
+        self.strobes = np.array([[scales.scaled_displacements(first.displacement),
+                                  scales.scaled_velocities(first.velocity)]])
         self._run_before, self._here, self._stop_at = periods_run, 0, EXAMINED_AFTER
         self._check_at = _FIRST_CHECK
         self.regime = Regime.unsettled(periods_run)

@@ -87,5 +87,5 @@ def move_to_limit(engine: Engine, states: np.ndarray, change: float, contraction
     if not within_reach(states[-1] / largest, limit / largest, change, contraction):
         return False
     scales = engine.scaled.scales
-    engine.start(State(limit[0] * scales.length, limit[1] * scales.velocity))
+    engine.start(State(scales.displacements(limit[0]), scales.velocities(limit[1])))
     return True

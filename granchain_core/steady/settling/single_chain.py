@@ -30,7 +30,7 @@ def settle_to_forces(scene: Scene, start: State | None, stop: Stop, periods_run:
     settling = run_until_settled(scene, start, stop, periods_run)
     if settling.regime.name == "periodic":
         return _on_its_orbit(settling)
-    maxima = settling.maxima[-IRREGULAR_PERIODS:].max(axis=0) * settling.engine.scaled.scales.force
+    maxima = settling.engine.scaled.scales.forces(settling.maxima[-IRREGULAR_PERIODS:].max(axis=0))
     return SteadyState(scene, maxima, settling.regime, None, settling.engine.state)
 
 
@@ -44,14 +44,14 @@ def _on_its_orbit(settling: SettlingRun) -> SteadyState:
     assert n is not None
     if distance > FARTHEST_FROM_ORBIT:
         _, maxima = engine.periods(IRREGULAR_PERIODS)
-        return SteadyState(settling.scene, maxima.max(axis=0) * engine.scaled.scales.force,
+        return SteadyState(settling.scene, engine.scaled.scales.forces(maxima.max(axis=0)),
                            Regime.unsettled(settling.regime.periods_run), None, engine.state)
     before = engine.advance_and_find_largest(n)
     finer = Engine(settling.scene, engine.setting.finer(), 1, stop=settling.stop)
     finer.start(engine.state)
     maxima = finer.advance_and_find_largest(n)
     errors = errors_between(finer, before, settling.regime.assumed_contraction, distance)
-    return SteadyState(settling.scene, maxima * finer.scaled.scales.force, settling.regime, errors, finer.state)
+    return SteadyState(settling.scene, finer.scaled.scales.forces(maxima), settling.regime, errors, finer.state)
 
 
 def settle_or_failure(scene: Scene, start: State | None, stop: Stop, periods_run: int = 0) -> SteadyState:
