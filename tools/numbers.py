@@ -13,6 +13,7 @@ from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 
+from granchain_core.hard_cases import CASES
 from granchain_core.results.regime import Regime
 from granchain_core.steady import regime_criteria
 from granchain_core.steady.settling import regime_decisions
@@ -42,6 +43,7 @@ def _plain(value: float) -> str:
 DERIVED: dict[str, Callable[[], float]] = {
     #: Below this exponent the drive periods of a comparison would be more than `_LONGEST_COMPARISON`.
     "smallest_exponent": lambda: round(regime_criteria._BOUNDED_GROWTH / regime_criteria._LONGEST_COMPARISON, 4),
+    "hard_cases": lambda: len(CASES),
     "periods_of_departure": lambda: regime_decisions.MOST_SETTLING_PERIODS * regime_decisions._DEPARTURE_FACTOR,
     "periods_with_one_limit": lambda: regime_criteria._BOUNDED_GROWTH / regime_criteria._LARGEST_NEUTRAL_EXPONENT,
     "largest_assumed_contraction": lambda: Regime("periodic", 1, 1.0, None, 1).assumed_contraction,
