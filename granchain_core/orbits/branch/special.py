@@ -57,10 +57,10 @@ class SpecialPoint:
     """A special point: its kind, the interval of the knob that holds it, and the two orbits around it.
 
     `kind` is one of `SPECIAL_KINDS`, `knob` the middle of the interval.
-    `contact` and `gained` belong to a grazing: on its side `gained_side` the contact has one more contact phase ("closed
-    interval" in `gained`) or separation ("open interval") per period of the orbit. `multiplier` passes the unit circle
-    at the point. `normal_form` has the criticality and its coefficient; it is None for a grazing, for `multiplier_one`,
-    at the end of a doubled branch, and in older files.
+    `contact` and `gained` belong to a grazing: on its side `gained_side` the contact has one more contact phase
+    ("closed interval" in `gained`) or separation ("open interval") per period of the orbit. `multiplier` passes the
+    unit circle at the point. `normal_form` has the criticality and its coefficient; it is None for a grazing, for
+    `multiplier_one`, at the end of a doubled branch, and in older files.
     """
 
     kind: str
