@@ -12,7 +12,10 @@ import re
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
+from types import SimpleNamespace
 
+from granchain_core.hard_cases import CASES
+from granchain_core.orbits.branch import special_search
 from granchain_core.results.regime import Regime
 from granchain_core.steady import regime_criteria
 from granchain_core.steady.settling import regime_decisions
@@ -38,10 +41,18 @@ def _plain(value: float) -> str:
     return power if 0.0 < value < 0.01 and float(power) == value else printed(value)
 
 
+def _least_width_over_range() -> float:
+    """The width that is narrow enough between two orbits at which the knob is 0, over the larger end of its range."""
+    at_zero, axis = SimpleNamespace(knob=0.0), SimpleNamespace(high=1.0)
+    return special_search._wanted(axis, at_zero, at_zero)  # type: ignore[arg-type]
+
+
 #: Numbers that follow from several constants.
 DERIVED: dict[str, Callable[[], float]] = {
     #: Below this exponent the drive periods of a comparison would be more than `_LONGEST_COMPARISON`.
     "smallest_exponent": lambda: round(regime_criteria._BOUNDED_GROWTH / regime_criteria._LONGEST_COMPARISON, 4),
+    "least_width_over_range": _least_width_over_range,
+    "hard_cases": lambda: len(CASES),
     "periods_of_departure": lambda: regime_decisions.MOST_SETTLING_PERIODS * regime_decisions._DEPARTURE_FACTOR,
     "periods_with_one_limit": lambda: regime_criteria._BOUNDED_GROWTH / regime_criteria._LARGEST_NEUTRAL_EXPONENT,
     "largest_assumed_contraction": lambda: Regime("periodic", 1, 1.0, None, 1).assumed_contraction,

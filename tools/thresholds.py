@@ -2,8 +2,8 @@
 
 A threshold is a constant in `granchain_core` whose `#:` comment begins with a mark: `[period n]` names the regimes that
 it decides, `[rotation]` puts it into the table of docs/rotation-number.md, `[response]` into that of docs/orbits.md,
-`[branch]` into that of docs/branches.md, `[fit]` into that of docs/fit.md, `[attractors]` into that of
-docs/parameter-map.md, `[safety factor]` into that of docs/accuracy.md and `[step size]` into that of docs/method.md.
+`[fit]` into that of docs/fit.md and `[safety factor]` into that of docs/accuracy.md. `[step size]`, `[branch]` and
+`[attractors]` put it into the tables of docs/constants.md.
 The comment's first sentence is its row; what follows, the reason, stays in the code. A number beside thresholds that is
 none itself is marked `[no threshold]`.
 """
@@ -126,7 +126,7 @@ def table_of_safety_factors() -> str:
 
 
 def table_of_branches() -> str:
-    """The table of docs/branches.md."""
+    """The table of docs/constants.md."""
     return _table("branch")
 
 
@@ -136,12 +136,12 @@ def table_of_fits() -> str:
 
 
 def table_of_attractors() -> str:
-    """The table of docs/parameter-map.md."""
+    """The table of docs/constants.md."""
     return _table("attractors")
 
 
 def table_of_step_sizes() -> str:
-    """The table of docs/method.md: what sets the steps of each method, method by method."""
+    """The table of docs/constants.md: what sets the steps of each method, method by method."""
     rows = sorted((one for one in marked_constants() if one.mark == "step size"), key=lambda one: _METHODS.index(_method(one)))
     table = ["| method | what | value | constant and file |", "|---|---|---|---|"]
     for one in rows:
@@ -150,7 +150,7 @@ def table_of_step_sizes() -> str:
     return "\n".join(table)
 
 
-#: What the steps in the table of docs/method.md belong to, in its order: how the comment of such a constant begins.
+#: What the steps in the table of docs/constants.md belong to, in its order: how the comment of such a constant begins.
 _METHODS = ("Fixed steps", "Error control", "dop853", "dop853, tension cut", "dop853-root", "flow")
 
 

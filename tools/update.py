@@ -2,12 +2,12 @@
 
     python -m tools.update
 
-- tables in the docs: thresholds (docs/regimes.md, rotation-number.md, orbits.md, branches.md, accuracy.md), methods
-  and step sizes (docs/method.md), knobs (docs/model.md), equations and scenes (README.md), commands (README.md,
-  docs/command-line.md), drives by a formula (docs/scenes.md), marks of the figures (docs/marks.md), special points and
-  their names in AUTO and MatCont (docs/branches.md, glossary.md), uses of libraries (docs/libraries.md), metrics
-  (docs/deployment.md), the map of the code (docs/design.md), the dashboard's messages and worker pools
-  (docs/dashboard.md);
+- tables in the docs: thresholds (docs/regimes.md, rotation-number.md, orbits.md, fit.md, accuracy.md, constants.md),
+  methods (docs/method.md), hard cases (docs/hard-cases.md), knobs (docs/model.md), equations and scenes (README.md),
+  commands (README.md, docs/command-line.md), drives by a formula (docs/scenes.md), marks of figures (docs/marks.md),
+  special points and their names in AUTO and MatCont (docs/branches.md, glossary.md), uses of libraries
+  (docs/libraries.md), metrics (docs/deployment.md), the map of the code (docs/design.md), the dashboard's messages and
+  worker pools (docs/dashboard.md);
 - the table of steps in each recipe docs/add-….md;
 - numbers of the code in sentences of the docs (tools/numbers.py);
 - a row for every new scene in the test of share links (tools/links.py);
@@ -25,6 +25,7 @@ from tools import gallery, links, recipes, scales
 from tools.command_tables import commands_with_pictures, table_of_commands, table_of_json
 from tools.dashboard_tables import table_of_messages_of_the_browser, table_of_messages_of_the_server
 from tools.generated import with_part
+from tools.hard_cases import table_of_hard_cases
 from tools.lists import (
     equations,
     list_of_methods,
@@ -70,14 +71,15 @@ _TABLES = (
     ("docs/rotation-number.md", "rotation thresholds", table_of_rotation_numbers),
     ("docs/orbits.md", "thresholds", table_of_responses),
     ("docs/branches.md", "kinds of special points", table_of_kinds),
-    ("docs/branches.md", "branch constants", table_of_branches),
+    ("docs/constants.md", "branch constants", table_of_branches),
     ("docs/fit.md", "constants of a fit", table_of_fits),
-    ("docs/parameter-map.md", "constants of the search", table_of_attractors),
+    ("docs/constants.md", "constants of the search", table_of_attractors),
     ("docs/glossary.md", "special points", table_of_terms),
     ("docs/accuracy.md", "safety factors", table_of_safety_factors),
+    ("docs/hard-cases.md", "hard cases", table_of_hard_cases),
     ("docs/method.md", "methods", list_of_methods),
     ("docs/method.md", "orders", table_of_orders),
-    ("docs/method.md", "step sizes", table_of_step_sizes),
+    ("docs/constants.md", "step sizes", table_of_step_sizes),
     ("docs/model.md", "knobs", table_of_knobs),
     ("README.md", "equations", equations),
     ("README.md", "scenes", table_of_scenes),

@@ -100,7 +100,7 @@ COMMANDS = {
         "Neimark–Sacker points, grazings", "sec2 --set N=2 --knob f --from 2000 --to 700", "branches.md"),
     "spectrum": Command("SCENE", "lines of a force, and the transfer from input to output force", "sec2",
                         "analysis.md"),
-    "lyapunov": Command("SCENE", "all Lyapunov exponents, and the dimension of the attractor",
+    "lyapunov": Command("SCENE", "all Lyapunov exponents, and the Kaplan–Yorke dimension of the section",
                         "sec2 --set f=1130 --periods 100", "analysis.md#lyapunov-spectrum-and-dimension"),
     "rotation": Command("SCENE", "rotation number and second frequency of a quasi-periodic motion",
                         "sec2 --set f=1700", "analysis.md#rotation-number"),

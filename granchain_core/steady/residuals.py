@@ -13,9 +13,9 @@ import numpy as np
 
 from .returns import relative_change
 
-#: [branch] Residual of the exact map (`StroboscopicMap`) at which Newton's method stops.
+#: [branch] Residual of the accurate map (`StroboscopicMap`) at which Newton's method stops.
 RESIDUAL_GOAL = 1e-11
-#: [branch] Largest residual of the exact map that is accepted, where rounding does not let it fall that far. Of 3851
+#: [branch] Largest residual of the accurate map that is accepted, where rounding does not let it fall that far. Of 3851
 #: random chains 2883 ended below the goal, 2 between both limits and the others, without an orbit, far above.
 ACCEPTED_RESIDUAL = 1e-9
 #: [period n, followed] Residual of the map with fixed steps (`FiniteDifferenceMap`) at which Newton's method stops.

@@ -18,9 +18,10 @@ from ...scene.quantities import QUANTITIES
 
 #: Knobs that change a chain continuously; N and the laws are discrete, `accuracy` does not change the chain.
 CONTINUOUS = tuple(name for name, quantity in QUANTITIES.items() if quantity.is_continuous)
-#: Length of a factor e in a logarithmic knob: the state changes by about its own size where f changes by a tenth.
+#: [branch] Length of a factor e in a logarithmic knob. The state changes by about its own size where f changes by a
+#: tenth.
 _LENGTH_OF_FACTOR_E = 10.0
-#: Length of the whole range of every other knob.
+#: [branch] Length of the whole range of every other knob.
 _LENGTH_OF_RANGE = 20.0
 #: The attribute `coordinate` of a file with a branch over F0.
 STATIC_OVERLAP = "static overlap"

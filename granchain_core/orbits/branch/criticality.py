@@ -1,4 +1,4 @@
-"""The criticality of a branch's special points: their normal forms (normal_forms.py) from the exact map.
+"""The criticality of a branch's special points: their normal forms (normal_forms.py) from the accurate map.
 
 The map is smooth as long as the contacts close and open in the same sequence as along the orbit. Where the sequence
 changes, higher derivatives may not exist: at a grazing the map has terms of order 3/2, where an event passes the strobe
@@ -29,7 +29,7 @@ from .normal_forms import (
 from .point import BranchPoint
 from .special import BIFURCATIONS, SpecialPoint
 
-#: Tolerance of the map beside an orbit. Coefficients of sec2 change by up to 3e-4 with it, by 2e-3 with 1e-11.
+#: [branch] Tolerance of the map beside an orbit. Coefficients of sec2 change by up to 3e-4 with it, by 2e-3 with 1e-11.
 _TOLERANCE = 1e-12
 
 
@@ -72,7 +72,7 @@ def same_sequence(kind: str, before: np.ndarray, after: np.ndarray) -> bool:
 
 
 def _map_near(kind: str, between: Between, point: BranchPoint, tolerance: float) -> MapNear:
-    """The exact map near an orbit, as far as contacts close and open in the same sequence (`same_sequence`)."""
+    """The accurate map near an orbit, as far as contacts close and open in the same sequence (`same_sequence`)."""
 
     def product(x: np.ndarray, columns: np.ndarray) -> np.ndarray:
         try:

@@ -1,6 +1,6 @@
 """The equations of continuation, P(x; p) − x = 0 and a condition on the step.
 
-Jacobian   [[(P_x − 1)√(2N), P_p], [nᵀ]] in z = (x/√(2N), p): P_x is the exact derivative of the stroboscopic map, P_p
+Jacobian   [[(P_x − 1)√(2N), P_p], [nᵀ]] in z = (x/√(2N), p): P_x is the derivative of the stroboscopic map, P_p
            a difference of the map in the knob. n is the normal of the plane in which z is sought: the bordered matrix
            stays regular at folds (Keller 1977).
 """
@@ -21,7 +21,7 @@ from .axis import KnobAxis
 from .newton import ROUGH_TOLERANCE, Near, Newton
 from .quick import QuickMap, quick_steps
 
-#: One-sided difference ε in p of the exact map. Its error by curvature is ε P_pp/2, that by the noise of the steps
+#: One-sided difference ε in p of the accurate map. Its error by curvature is ε P_pp/2, that by the noise of the steps
 #: 1e-12/ε.
 _DIFFERENCE = 1e-6
 #: Half of the central difference in p of the quick map.

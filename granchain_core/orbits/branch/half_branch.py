@@ -29,14 +29,14 @@ from .special import SpecialPoint
 from .special_search import special_between
 from .steps import FIRST_STEP, LARGEST_CORRECTION, LEAST_COSINE, SHORTEST_STEP, next_step, predicted
 
-#: Points from the starting orbit on before the branch may close on itself.
+#: [branch] Points from the starting orbit on before the branch may close on itself.
 _POINTS_BEFORE_CLOSING = 4
-#: An orbit that is back within this, relatively, after a part of its period is refused: where the branches of both
-#: periods meet, an orbit of the shorter one is found with an error far above its residual.
+#: [branch] An orbit that is back within this, relatively, after a part of its period is refused. Where the branches of
+#: both periods meet, an orbit of the shorter one is found with an error far above its residual.
 _SHORTER_PERIOD_DISTANCE = 1e-6
-#: Orbits that the continuation is ahead of the search for special points, at most.
+#: [no threshold] Orbits that the continuation is ahead of the search for special points, at most.
 _ORBITS_AHEAD = 4
-#: Threads that search, at most; there are no more than processors.
+#: [no threshold] Threads that search, at most; there are no more than processors.
 _THREADS = 2
 
 

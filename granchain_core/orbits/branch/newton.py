@@ -3,11 +3,12 @@
 Equation   J Δz = −F,  F = (P(x; p) − x, (z − z0)·n),  J as in equations.py;  after a step J is corrected by Broyden's
            rank-one update, J ← J + F(z + Δz) Δzᵀ/|Δz|²
 Source     Broyden 1965; Dennis & Schnabel 1983, Numerical Methods for Unconstrained Optimization, chapter 8
-Note       The exact map takes 2 ms with eleven beads, with its derivative 5 ms, the quick map (quick.py) 0.3 ms.
-           So J begins with a derivative known nearby, and the quick map is solved first. Then the exact map is computed
-           once: its difference from the quick one, the defect, hardly changes over the distance that is left, and the
-           steps to the orbit itself use the quick map with the defect added (deferred correction). The exact derivative
-           is computed at the orbit only, for its multipliers; its own residual decides whether the orbit is accepted.
+Note       The accurate map (the flow at 1e-13) takes 2 ms with eleven beads, with its derivative 5 ms, the quick map
+           (quick.py) 0.3 ms. So J begins with a derivative known nearby, and the quick map is solved first. Then the
+           accurate map is computed once: its difference from the quick one, the defect, hardly changes over the
+           distance that is left, and the steps to the orbit itself use the quick map with the defect added (deferred
+           correction). The accurate map's derivative is computed at the orbit only, for the multipliers; its residual
+           there decides whether the orbit is accepted.
            A derivative of the rough map is computed where steps without one converge too slowly.
 """
 
@@ -39,13 +40,13 @@ _SLOW_DECREASE = 0.4
 #: along the branch is safer than a way that may lead to another branch (Deuflhard 2004, Newton Methods for Nonlinear
 #: Problems).
 _FAILED_DECREASE = 0.5
-#: [branch] A step with the derivative of the exact map that does not lower the residual to this fraction of it has met
-#: rounding.
+#: [branch] A step with the derivative of the accurate map that does not lower the residual to this fraction of it has
+#: met rounding.
 _STALLED_DECREASE = 0.3
-#: [branch] The exact map with its derivative is computed where its residual should be below this fraction of
+#: [branch] The accurate map with its derivative is computed where its residual should be below this fraction of
 #: `RESIDUAL_GOAL`.
 _SAFETY = 0.3
-#: [branch] Most derivatives of the rough and of the exact map each.
+#: [branch] Most derivatives of the rough and of the accurate map each.
 _MOST_DERIVATIVES = 6
 #: [branch] Least residual before a step of `solve_with_derivatives` that may be followed by one that reuses its
 #: derivative.
@@ -122,7 +123,7 @@ class Newton:
         raise self._failure()
 
     def solve_exact(self) -> Flow:
-        """Solve for the orbit of the exact map from that of the quick one; returns that map with its derivative."""
+        """Solve for the orbit of the accurate map from that of the quick one; returns that map with its derivative."""
         quick = self._quick_end() if self._quick_end_here is None else self._quick_end_here
         end, ratio = self._exact_end(TOLERANCE), 1.0
         self._record(end)
@@ -228,7 +229,7 @@ class Newton:
         return moved
 
     def _exact_end(self, tolerance: float) -> np.ndarray:
-        """The end of the exact map from z."""
+        """The end of the accurate map from z."""
         return self.equations.reused_map(self.equations.value(self.z), tolerance).end(self.equations.state(self.z))
 
     def _quick_end(self) -> np.ndarray:

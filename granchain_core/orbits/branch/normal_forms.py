@@ -4,7 +4,7 @@ Equation   the coefficients a of a fold, c of a period doubling and d of a Neima
            "Criticality"
 Source     Kuznetsov 2004, Elements of Applied Bifurcation Theory, 3rd edition: chapter 4, and the projection method of
            section 5.4
-Note       B and C are central differences of the exact derivative A, so that no difference is of higher order than the
+Note       B and C are central differences of the derivative A, so that no difference is of higher order than the
            second. They hold only where the map is smooth: `MapNear.product` raises `NotSmooth` elsewhere.
 """
 

@@ -39,7 +39,8 @@ KINDS = (
     Kind("neimark_sacker", "Neimark–Sacker", "TR", "NS", "a complex pair passes the unit circle"),
     Kind("multiplier_one", "multiplier +1 without a fold", "BP", "BPC",
          "a real multiplier passes +1 and the knob does not turn: not classified; it may be a branch point"),
-    Kind("grazing", "grazing", "", "", "a contact has one closed or one open interval more, or less, per orbit"),
+    Kind("grazing", "grazing", "", "",
+         "a contact has one contact phase or one separation more, or less, per period of the orbit"),
 )
 #: The end `merged` of a doubled branch (ends.py), which AUTO and MatCont report as a branch point.
 MERGED = Kind("period_doubling", "the end `merged` of a doubled branch", "BP", "BPC",
@@ -56,10 +57,10 @@ class SpecialPoint:
     """A special point: its kind, the interval of the knob that holds it, and the two orbits around it.
 
     `kind` is one of `SPECIAL_KINDS`, `knob` the middle of the interval.
-    `contact` and `gained` belong to a grazing: on its side `gained_side` the contact has one more closed or open
-    interval per orbit; `gained` is "closed interval" or "open interval". `multiplier` passes the unit circle at the
-    point. `normal_form` has the criticality and its coefficient; it is None for a grazing, for `multiplier_one`, at the
-    end of a doubled branch, and in older files.
+    `contact` and `gained` belong to a grazing: on its side `gained_side` the contact has one more contact phase
+    ("closed interval" in `gained`) or separation ("open interval") per period of the orbit. `multiplier` passes the
+    unit circle at the point. `normal_form` has the criticality and its coefficient; it is None for a grazing, for
+    `multiplier_one`, at the end of a doubled branch, and in older files.
     """
 
     kind: str
