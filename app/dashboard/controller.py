@@ -150,6 +150,10 @@ class Controller:
         """See `PageHost`."""
         self.sentences.report_fault(error, sentence, fault)
 
+    def log_failed_computation(self, error: Exception, fault: str) -> None:
+        """See `PageHost`."""
+        self.sentences.log_failed_computation(error, fault)
+
     def session_dropped(self, session_context: object) -> None:
         """Bokeh has dropped the session: see `close`."""
         self.close()

@@ -301,3 +301,20 @@ def test_a_page_that_lost_its_server_opens_its_own_link_when_that_answers_again(
     until(page, lambda: page.evaluate("window.granchain?.connection?.resumeState?.playing") is False)
     assert page.evaluate("[lost.hidden, lost.textContent.slice(0, 15), Boolean(document.getElementById('last-pictures'))]") == [
         False, "Connected again", True]
+
+
+def test_errors_of_scripts_are_reported_and_no_more_than_a_few(blank: Page) -> None:
+    reported = blank.evaluate("""async () => {
+      const { watchScriptErrors } = await import("/parts/header/script_errors.js");
+      const reported = [];
+      watchScriptErrors((words) => reported.push(words));
+      dispatchEvent(new ErrorEvent("error", { message: "ResizeObserver loop completed with undelivered notifications." }));
+      dispatchEvent(new ErrorEvent("error", { message: "x is null", filename: "http://a.test/b/chain.js?v=1", lineno: 7 }));
+      Promise.reject(new Error("y".repeat(1000)));
+      await new Promise((done) => setTimeout(done, 0));
+      for (let i = 0; i < 10; i++) dispatchEvent(new ErrorEvent("error", { message: "again" }));
+      return reported;
+    }""")
+    assert reported[0] == "x is null (chain.js:7)"
+    assert reported[1].startswith("unhandled rejection: Error: yyy") and len(reported[1]) == 400
+    assert len(reported) == 5

@@ -20,6 +20,7 @@ from tornado.web import HTTPError
 
 from ..connection.leaving import end_session
 from ..document.part_messages import dispatch
+from ..monitoring.faults import session_label
 from ..monitoring.metrics import METRICS
 from .frame_rate import FrameBucket
 from .guard import Guard
@@ -162,8 +163,13 @@ class GuardedSocket(Guard):
             return
         self._refused, self._fragments = True, ()
         METRICS.count("refused_messages")
-        log.warning("refused: %s", reason, extra={"request": self.request_id, "remote": self.request.remote_ip})
+        log.warning("refused: %s", reason, extra=self._log_fields())
         self.close(_POLICY_VIOLATION, reason)  # type: ignore[attr-defined]
+
+    def _log_fields(self) -> dict[str, str]:
+        """Fields of a line of the log: the request's id, the visitor's address, and the session if there is one."""
+        fields = {"request": self.request_id, "remote": str(self.request.remote_ip)}
+        return {**fields, "session": session_label(self._session_id)} if self._session_id else fields
 
     def on_close(self) -> None:
         """The visitor has left: end the page's computations; Bokeh drops the session at its next check.
@@ -193,6 +199,5 @@ class GuardedSocket(Guard):
         if not isinstance(content, dict) or "traceback" not in content:
             return frame
         METRICS.count("errors")
-        log.error("message failed: %s", content.get("text"),
-                  extra={"request": self.request_id, "remote": self.request.remote_ip})
+        log.error("message failed: %s", content.get("text"), extra=self._log_fields())
         return json.dumps({"text": f"The message could not be handled (request {self.request_id}).", "traceback": None})
