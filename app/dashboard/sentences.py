@@ -22,7 +22,6 @@ from ..session.budget import RefusedPicture
 from ..session.page import Actions
 from ..session.session import Session
 
-
 #: Most errors of scripts that are logged for one session: a script that fails may fail at every frame.
 MOST_SCRIPT_ERRORS = 5
 #: Longest text of such an error that is logged [characters].

@@ -76,8 +76,8 @@ def everywhere(page: Page) -> dict[str, dict[str, list[str]]]:
     expect(page.locator("#foot .sentence")).to_be_visible()
     found["error"] = violations(page, "#foot")
     page.get_by_role("tab", name="stories", exact=True).click()
-    page.locator("#tabs .story").first.click()
-    expect(page.locator("#curves")).to_have_class("in-story")
+    page.locator("#tabs .story button").first.click()
+    expect(page.locator("#curves.in-story")).to_be_visible()
     page.evaluate("shown()")
     found["story"] = violations(page, "#curves")
     return found

@@ -7,12 +7,12 @@ const HARMLESS = /^ResizeObserver loop/; // the browser does the rest of the lay
 // Calls `report` with the words of an error that no script has caught, and the place where it was raised.
 export function watchScriptErrors(report) {
   let reported = 0;
-  const tell = (words) => {
+  const reportFew = (words) => {
     if (HARMLESS.test(words) || reported >= MOST) return;
     reported += 1;
     report(words.slice(0, LONGEST));
   };
   const place = (name, line) => `${(name ?? "").split(/[?#]/)[0].split("/").pop()}:${line}`;
-  addEventListener("error", ({ message, filename, lineno }) => tell(`${message} (${place(filename, lineno)})`));
-  addEventListener("unhandledrejection", ({ reason }) => tell(`unhandled rejection: ${reason}`));
+  addEventListener("error", ({ message, filename, lineno }) => reportFew(`${message} (${place(filename, lineno)})`));
+  addEventListener("unhandledrejection", ({ reason }) => reportFew(`unhandled rejection: ${reason}`));
 }

@@ -115,9 +115,9 @@ class GuardedSocket(Guard):
 
         def write_and_count(data: bytes | memoryview) -> Future[None]:
             if unsent.of(self) > MOST_UNSENT:
-                self._drop("too much that waits to be sent")
+                self.drop("too much that waits to be sent")
             elif unsent.total > MOST_UNSENT_TOGETHER:
-                unsent.largest()._drop("too much that waits to be sent to all pages together")
+                unsent.largest().drop("too much that waits to be sent to all pages together")
             if stream.closed():
                 unwritten: Future[None] = Future()
                 unwritten.set_exception(StreamClosedError())
@@ -133,7 +133,7 @@ class GuardedSocket(Guard):
         stream.write = write_and_count  # type: ignore[method-assign]
         return stream
 
-    def _drop(self, reason: str) -> None:
+    def drop(self, reason: str) -> None:
         """Close the connection without a closing frame, which would wait behind the unsent bytes."""
         self._refuse(reason)
         if self._stream is not None:
