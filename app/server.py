@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import gc
 import ipaddress
 import secrets
@@ -114,7 +115,8 @@ def serve(port: int = 5006, address: str = "127.0.0.1", access: Access | None = 
 def server_at(port: int, address: str, access: Access | None = None) -> Server:
     """The server: it listens, but does not run yet."""
     access = access or Access()
-    names = [*access.origins, *(f"{host}:{port}" for host in ("localhost", "127.0.0.1", _in_url(address)) if host)]
+    names = [*map(_as_browsers_write, access.origins),
+             *(f"{host}:{port}" for host in ("localhost", "127.0.0.1", _in_url(address)) if host)]
     hosts = frozenset(_name_of(origin) for origin in names)
     secret = access.secret or secrets.token_bytes(32)
     rules = Rules(hosts, Sessions(access.max_sessions), access.embedding, secret, frozenset(filter(_is_ipv6, names)),
@@ -182,6 +184,17 @@ def _in_url(address: str) -> str:
 
 def _is_ipv6(origin: str) -> bool:
     return origin.startswith("[")
+
+
+def _as_browsers_write(origin: str) -> str:
+    """The origin in lower case, with an IPv6 address in its shortest form; others would match no browser's origin."""
+    origin = origin.lower()
+    address, bracket, port = origin[1:].partition("]")
+    if not _is_ipv6(origin) or not bracket:
+        return origin
+    with contextlib.suppress(ValueError):  # a pattern is no address
+        address = ipaddress.ip_address(address).compressed
+    return f"[{address}]{port}"
 
 
 def _name_of(origin: str) -> str:

@@ -46,6 +46,8 @@ class FakeHost(Pending):
         self.failures: list[Exception] = []
         self.faults: list[tuple[Exception, str]] = []
         self.fault_ids: list[str] = []
+        #: Computations that could not be finished, with the ids of their sentences.
+        self.failed_computations: list[tuple[Exception, str]] = []
         self.closing: list[Callable[[], object]] = []
 
     def next_tick(self, action: Callable[..., None], *args: Any) -> None:
@@ -73,3 +75,7 @@ class FakeHost(Pending):
         """An error of granchain itself, what is said of it beside the page, and its id."""
         self.faults.append((error, sentence))
         self.fault_ids.append(fault)
+
+    def log_failed_computation(self, error: Exception, fault: str) -> None:
+        """Keep a computation that could not be finished."""
+        self.failed_computations.append((error, fault))

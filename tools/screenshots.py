@@ -45,7 +45,7 @@ COUNTER = """() => {
 }"""
 # The line at the bottom says whether the curve, which has the names of its peaks, is still being computed.
 REST = """() => performance.now() - window.changes.at > 1000
-  && !document.querySelector("#foot b")?.textContent.includes("being computed")"""
+  && !document.querySelector("#foot #regime")?.textContent.includes("being computed")"""
 
 
 def views() -> dict[str, str]:

@@ -101,6 +101,9 @@ def _serve(arguments: argparse.Namespace, on_ready_to_listen: Callable[[], None]
         if arguments.secret_file is not None and Path(arguments.secret_file).stat().st_mode & stat.S_IROTH:
             log.warning("all users of this machine can read the secret in %s; chmod o= closes it",
                         arguments.secret_file)
+        if any(_covers_all_names(name) for name in access.origins):
+            log.warning("--allow-websocket-origin with * for all names switches off the checks of hosts and origins: a "
+                        "stranger's page can use a visitor's browser to reach this server; give the server's own names")
         on_ready_to_listen()
 
     try:
@@ -111,6 +114,11 @@ def _serve(arguments: argparse.Namespace, on_ready_to_listen: Callable[[], None]
     except OSError as problem:
         raise BadInput(f"Cannot listen on {arguments.address}:{arguments.port}: {problem.strerror or problem}; "
                        f"try --port {arguments.port + 1}.") from None
+
+
+def _covers_all_names(origin: str) -> bool:
+    """Whether an origin is a pattern such as *, *:5006 or *.*, which names no domain."""
+    return not origin.rpartition("://")[2].partition(":")[0].strip("*.")
 
 
 def _secret(arguments: argparse.Namespace) -> bytes | None:

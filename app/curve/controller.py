@@ -46,7 +46,7 @@ class CurveController:
         self._placed = placed
         self._compared: list[Callable[[Difference | None], None]] = []
         self._task = Task(host, CURVES, self._ended, "The resonance curve", report_to_host=True)
-        self._drafts = Drafts(host, figure)
+        self._drafts = Drafts(host, figure, self._draft_drawn)
         self._quiet = Debounce(host, CURVE_QUIET)
         self._reports = Reports(host, self._draw)
         self._visible = True
@@ -78,6 +78,7 @@ class CurveController:
         """
         self._complete_for.clear()
         self._names.forget()
+        self._drafts.drop()
         self._figure.clear()
         self._figure.range(*slider_range(scene, "f"))
         if selected:
@@ -132,7 +133,7 @@ class CurveController:
                                              f"({type(failure).__name__}).")
 
     def _give_up(self) -> None:
-        """Show no curve: the chain has none, or its curve would take too long. That of another chain would mislead."""
+        """Show no curve, because the chain has none or it would take too long; another chain's would mislead."""
         self.stop()
         self._complete_for.clear()
         self._figure.clear()
@@ -170,6 +171,7 @@ class CurveController:
     def stop(self) -> None:
         """Stop computing; the points computed so far stay."""
         self._cancel()
+        self._drafts.drop()
         self._done = -1.0
         self._bar.update_state(done=-1.0)
         if self._figure.expected:
@@ -238,12 +240,16 @@ class CurveController:
         if "rest" in missing:
             self._notify_compared(None)
         self._missing, self._done = list(missing), 0.0 if missing else -1.0
+        self._drafts.drop()
         if missing:
-            self._drafts.curve_begun()
             self._task.start(Sweep(scene, missing, self._reports.add, lambda: self._host.busy,
                                    self._host.session.cpu_time))
         else:
             self._task.cancel()
+
+    def _draft_drawn(self) -> None:
+        """The curve from rest has been replaced by a draft; it must be computed again even for the same knobs."""
+        self._complete_for.pop("rest", None)
 
     def _show_features(self, scene: Scene) -> None:
         stated = stated_features() if self._wanted["features"] else ()

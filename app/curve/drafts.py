@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import partial
 
 from granchain_core import CurvePoint, Scene
@@ -16,31 +16,37 @@ from .view import CurveFigure
 
 
 class Drafts:
-    """The drafts of one session; a newer draft replaces one that waits or is being computed."""
+    """The drafts of one session; a newer draft replaces one that waits or is being computed.
 
-    def __init__(self, host: PageHost, figure: CurveFigure) -> None:
+    `drawn` is called when a draft has replaced the curve from rest in the figure.
+    """
+
+    def __init__(self, host: PageHost, figure: CurveFigure, drawn: Callable[[], None]) -> None:
         self._figure = figure
+        self._drawn = drawn
         self._jobs = LatestWins(partial(host.next_tick, self._draw), partial(host.next_tick, host.show_failure),
                                 host.session.cpu_time)
-        #: How many curves have been begun; a draft from before the last of them is out of date.
-        self._curves_begun = 0
+        #: How often drafts were dropped; a draft that was submitted before the last time is out of date.
+        self._dropped = 0
         host.on_close(self._jobs.close)
 
     def submit(self, scene: Scene) -> None:
         """Compute and draw a draft for this scene."""
-        self._jobs.submit(partial(self._computed, scene, self._curves_begun))
+        self._jobs.submit(partial(self._computed, scene, self._dropped))
 
-    def curve_begun(self) -> None:
-        """The curve itself is being computed: draw no draft that was submitted before."""
-        self._curves_begun += 1
+    def drop(self) -> None:
+        """Draw no draft that was submitted before, and stop computing it: the figure shows something else now."""
+        self._dropped += 1
+        self._jobs.cancel()
 
     @staticmethod
-    def _computed(scene: Scene, curves_begun: int, stop: TurnFlag) -> Iterator[tuple[int, list[CurvePoint]]]:
+    def _computed(scene: Scene, dropped: int, stop: TurnFlag) -> Iterator[tuple[int, list[CurvePoint]]]:
         with stop.held():
             points = draft_curve(scene, grid(scene, COARSE), stop)
-        yield curves_begun, points
+        yield dropped, points
 
     def _draw(self, drafted: tuple[int, list[CurvePoint]]) -> None:
-        curves_begun, points = drafted
-        if points and curves_begun == self._curves_begun:
+        dropped, points = drafted
+        if points and dropped == self._dropped:
             self._figure.redraw("rest", points)
+            self._drawn()

@@ -21,6 +21,7 @@ from ..serve.connection.socket_tuning import disable_nagle
 from ..session.activities import Activity, account_activity, picture_activities
 from ..session.message_checks import quoted
 from ..session.page import Actions, Page, all_actions
+from ..session.page_constants import CURVE_NAME
 from ..session.session import Session
 from .calls import Calls
 from .display_choices import DisplayChoices
@@ -32,7 +33,7 @@ from .pinned import Pinned
 from .playback import Playback
 from .scene_changes import SceneChanges
 from .sentences import Sentences
-from .table import CURVE_NAME, PAGES, overlay_names
+from .table import PAGES, overlay_names
 
 if TYPE_CHECKING:
     from granchain_core.fitting.overlay import Overlay
@@ -149,6 +150,10 @@ class Controller:
     def report_fault(self, error: Exception, sentence: str, fault: str = "") -> None:
         """See `PageHost`."""
         self.sentences.report_fault(error, sentence, fault)
+
+    def log_failed_computation(self, error: Exception, fault: str) -> None:
+        """See `PageHost`."""
+        self.sentences.log_failed_computation(error, fault)
 
     def session_dropped(self, session_context: object) -> None:
         """Bokeh has dropped the session: see `close`."""

@@ -11,6 +11,7 @@ from bokeh.core.properties import validate
 from bokeh.document import Document
 
 from ..serve.connection.leaving import when_left
+from ..serve.monitoring.faults import session_label
 from ..serve.monitoring.metrics import METRICS
 from ..session.session import Session
 from .addresses import apply_address
@@ -23,7 +24,8 @@ def page() -> None:
     document = pn.state.curdoc
     if document is None:
         raise RuntimeError("the page is made inside a request; serve it, do not call it")
-    session = Session()
+    context = document.session_context
+    session = Session(label="" if context is None else session_label(context.id))
     query = _query(document)
     initial_state, sentences = apply_address(session, query) if query.strip("?") else (None, [])
     with validate(False):  # validation takes a sixth of an opening, and the tests find such errors

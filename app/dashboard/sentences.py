@@ -1,18 +1,31 @@
-"""Sentences to the visitor, and the button that computes a refused picture anyway."""
+"""Sentences to the visitor, their lines in the log, and the button that computes a refused picture anyway."""
 
 from __future__ import annotations
 
+import contextlib
+import json
 from collections.abc import Callable
 from typing import Any
 
 from granchain_core import BadInput, ComputationError, Scene
 
 from ..parts.status.status_line import StatusLine
-from ..serve.monitoring.faults import log_fault, new_fault_id, with_fault_id
+from ..serve.monitoring.faults import (
+    log_failed_computation,
+    log_fault,
+    log_script_error,
+    new_fault_id,
+    with_fault_id,
+)
 from ..serve.monitoring.metrics import METRICS
 from ..session.budget import RefusedPicture
 from ..session.page import Actions
 from ..session.session import Session
+
+#: Most errors of scripts that are logged for one session: a script that fails may fail at every frame.
+MOST_SCRIPT_ERRORS = 5
+#: Longest text of such an error that is logged [characters].
+LONGEST_SCRIPT_ERROR = 400
 
 
 class Sentences:
@@ -23,7 +36,9 @@ class Sentences:
         self._line = line
         self._compute = compute
         self._refused: Scene | None = None
-        self.actions: Actions = {"dismiss-sentence": self._dismiss, "insist": self._insist}
+        self._script_errors = 0
+        self.actions: Actions = {"dismiss-sentence": self._dismiss, "insist": self._insist,
+                                 "script-error": self._script_error}
 
     def show_message(self, sentence: str, refused: Scene | None = None) -> None:
         """Show one sentence until the next valid action; an empty text removes the sentence.
@@ -48,7 +63,9 @@ class Sentences:
         elif isinstance(error, BadInput):
             self.show_message(str(error))
         elif isinstance(error, ComputationError):
-            self.show_notice(error.sentence)
+            fault = new_fault_id()
+            self.log_failed_computation(error, fault)
+            self.show_notice(with_fault_id(error.sentence, fault))
         else:
             self.report_fault(error, f"Something went wrong inside granchain ({type(error).__name__}); the last "
                                      "picture stays. Move the knob back or reset, and please report it.")
@@ -59,9 +76,31 @@ class Sentences:
         `fault` is the id if the visitor sees it elsewhere; otherwise it is made here.
         """
         fault = fault or new_fault_id()
-        log_fault(error, fault)
+        log_fault(error, fault, where=self._where())
         if sentence:
             self.show_message(with_fault_id(sentence, fault))
+
+    def log_failed_computation(self, error: Exception, fault: str) -> None:
+        """Log a computation that could not be finished, under the id that its sentence has."""
+        log_failed_computation(error, fault, self._where())
+
+    def _where(self) -> dict[str, str]:
+        """Fields of a line of the log: the session's label, and the link by which the state can be restored.
+
+        The link has scene, knobs and view, and nothing of an uploaded file.
+        """
+        where = {"session": self._session.label} if self._session.label else {}
+        with contextlib.suppress(Exception):  # the state may be what has failed; the fault must be logged all the same
+            where["link"] = self._session.link
+        return where
+
+    def _script_error(self, message: dict[str, Any]) -> None:
+        """Log an error of a script in the browser, as one line: anybody may send anything as its words."""
+        words = message.get("what")
+        if not isinstance(words, str) or self._script_errors >= MOST_SCRIPT_ERRORS:
+            return
+        self._script_errors += 1
+        log_script_error(json.dumps(words[:LONGEST_SCRIPT_ERROR]), self._where())
 
     def _show(self) -> None:
         self._line.update_state(sentence=f"{self._session.sentence} {self._session.notice}".strip(),

@@ -30,6 +30,7 @@ from ..pages.stories.page import StoriesPage
 from ..parts.toolkit.component import Component
 from ..session.host import PageHost
 from ..session.page import Page
+from ..session.page_constants import CURVE_NAME
 
 #: The heights of a tab.
 Height = Literal["usual", "taller", "tallest"]
@@ -95,9 +96,6 @@ TABS: tuple[PageSpec | TabSpec, ...] = (
     PageSpec("data", DataPage, None, group=""),
 )
 PAGES = tuple(row for row in TABS if isinstance(row, PageSpec))
-#: The name of the resonance curve, which is not a page, in the message `visible`.
-CURVE_NAME = "curve"
-
 
 def check_names(rows: Sequence[PageSpec | TabSpec]) -> None:
     """Raise `ValueError` if two tabs have one name, or a tab has the name of the curve."""

@@ -2,7 +2,7 @@
 
 import { onScreen, PHONE } from "../parts/toolkit/dom.js";
 
-const CURVE_NAME = "curve"; // the name of the curve among the names of the pages
+const { curveName: CURVE_NAME } = window.pageConstants; // app/session/page_constants.py
 
 // Calls `tell(name, value)` when a visitor begins or ceases to look at a page or at the curve. A page is looked at in
 // its tab, or as an overlay, which hides tabs and curve. A page that works hidden counts as looked at while it is

@@ -52,6 +52,9 @@ class WorkHost(Caller, Protocol):
         The sentence is empty if a page shows a sentence of its own, which has the id `fault`.
         """
 
+    def log_failed_computation(self, error: Exception, fault: str) -> None:
+        """Log a computation that could not be finished; a page shows its sentence, which has the id `fault`."""
+
 
 class PageHost(WorkHost, Protocol):
     """One session's dashboard, as its pages see it.

@@ -15,11 +15,11 @@ from ..frames import PERIODS, Frames, LiveWindow, samples_for
 from ..serve.computing.cpu_time import CpuTime
 from ..serve.computing.turns import TurnFlag
 
-#: Viewing time that the first step of a run, or the first after a pause, makes up for [s]: two frames of a screen.
+#: Viewing time that the first step of a run, or the first step after a pause, makes up for [s]: two frames of a screen.
 _FIRST_STEP = 0.03
-#: Longest viewing time that one step makes up for [s]: the run does not jump after its tab was hidden.
+#: Longest viewing time that one step makes up for [s]: the run must not jump after its tab was hidden.
 _LONGEST_STEP = 0.1
-#: Intended longest computing time of one step [s].
+#: Longest computing time that one step aims at [s].
 _LONGEST_COMPUTING = 0.1
 
 
@@ -50,10 +50,14 @@ class LiveRun:
         self._lock = threading.Lock()
         self._new_scene: Scene | None = None
         self._reset = False
+        #: When the last step began to compute, on the clock of `time.perf_counter` [s]; None after a pause.
         self._last: float | None = None
-        self._owed = 0.0
-        self._most = self.samples
-        self._shown = 0
+        #: Samples that the viewing time has asked for and that are not computed yet; the fraction is kept.
+        self._samples_due = 0.0
+        #: Most samples of the next step, so that it computes for about `_LONGEST_COMPUTING`.
+        self._most_samples = self.samples
+        #: Samples computed since the start or the last reset.
+        self._samples_shown = 0
         self._runs: deque[Run] = deque()
 
     def change(self, scene: Scene) -> None:
@@ -77,19 +81,20 @@ class LiveRun:
     def step(self, periods_per_second: float) -> LiveStep:
         """Advance by the viewing time since the last step; in slow motion, wait for the next sample.
 
-        A step computes for about `_LONGEST_COMPUTING` at most, so that a slow chain lags behind the clock and not
-        behind its knobs.
+        Viewing time that a step cannot make up for is dropped: what exceeds `_LONGEST_STEP`, and what would take longer
+        to compute than `_LONGEST_COMPUTING`. The run is then slower than the chosen speed, but never lags behind its
+        knobs.
         """
         rate = periods_per_second * self.samples
         now = time.perf_counter()
         elapsed = _FIRST_STEP if self._last is None else min(now - self._last, _LONGEST_STEP)
-        self._owed = min(self._owed, 1.0) + elapsed * rate
-        if self._owed < 1.0:
+        self._samples_due = min(self._samples_due, 1.0) + elapsed * rate
+        if self._samples_due < 1.0:
             with self.flag.released():
-                time.sleep((1.0 - self._owed) / rate)
-            self._owed = 1.0
+                time.sleep((1.0 - self._samples_due) / rate)
+            self._samples_due = 1.0
         self._last = time.perf_counter()
-        return self.advance(min(int(self._owed), self._most))
+        return self.advance(min(int(self._samples_due), self._most_samples))
 
     def window_run(self) -> Run | None:
         """The periods on the screen as one run, to be saved."""
@@ -107,14 +112,14 @@ class LiveRun:
             chain.reset()
             self._window = LiveWindow(self.samples)
             self._runs.clear()
-            self._shown = 0
-        self._owed = max(0.0, self._owed - samples)
+            self._samples_shown = 0
+        self._samples_due = max(0.0, self._samples_due - samples)
         began = time.thread_time()
         run = chain.advance(samples)
-        self._most = max(1, int(samples * _LONGEST_COMPUTING / max(time.thread_time() - began, 1e-6)))
-        self._shown += samples
+        self._most_samples = max(1, int(samples * _LONGEST_COMPUTING / max(time.thread_time() - began, 1e-6)))
+        self._samples_shown += samples
         self._remember(run)
-        return LiveStep(self._window.add(run), run, self._shown / self.samples)
+        return LiveStep(self._window.add(run), run, self._samples_shown / self.samples)
 
     def _made(self) -> LiveChain:
         scene, start = self._first

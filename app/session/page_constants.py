@@ -1,4 +1,7 @@
-"""Constants that the scripts take from Python: the template writes `window.pageConstants` before the inline scripts."""
+"""Constants that all scripts can read: the template writes `window.pageConstants` before the inline scripts.
+
+docs/dashboard.md (Shared facts) says which facts reach the scripts in which way.
+"""
 
 from __future__ import annotations
 
@@ -9,9 +12,13 @@ from ..plots.theme import THEMES
 from .share import BROWSER_FIELDS
 from .terms import definitions
 
+#: The name of the resonance curve, which is not a page, in the message `visible`.
+CURVE_NAME = "curve"
+
 
 @cache
 def page_constants() -> str:
     """The constants as a JavaScript expression that may stand in a script element."""
-    constants = {"themes": list(THEMES), "browserFields": BROWSER_FIELDS, "terms": definitions()}
+    constants = {"themes": list(THEMES), "browserFields": BROWSER_FIELDS, "terms": definitions(),
+                 "curveName": CURVE_NAME}
     return json.dumps(constants).replace("<", "\\u003c")

@@ -77,6 +77,8 @@ class Session:
     story_to_settle: bool = False
     #: The question of the Analysis page with its values, as a link has it.
     question: str = ""
+    #: The name of this session in the log; empty outside a server.
+    label: str = ""
 
     @property
     def link(self) -> str:

@@ -146,12 +146,23 @@ class Task:
             work(job)
         except Cancelled:
             return
-        except (ComputationError, BadInput) as problem:
+        except BadInput as problem:
             job.next_tick(self._end, "failed", str(problem), problem)
+        except ComputationError as problem:
+            self._report_failed_computation(job, problem)
         except Exception as error:
             self._report_fault(job, error)
         else:
             job.next_tick(self._end, "done")
+
+    def _report_failed_computation(self, job: Job, problem: ComputationError) -> None:
+        """Report a computation that could not be finished; page and log have the same id."""
+        if self._report_to_host:
+            job.next_tick(self._end, "failed", str(problem), problem)
+            return
+        fault = new_fault_id()
+        job.next_tick(self._end, "failed", with_fault_id(str(problem), fault))
+        job.next_tick(self._host.log_failed_computation, problem, fault)
 
     def _report_fault(self, job: Job, error: Exception) -> None:
         """Report an error of granchain itself, from any thread; page and log have the same id."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from functools import partial
 
@@ -11,6 +12,14 @@ from playwright.sync_api import Locator, Page, expect
 Visit = Callable[..., Page]
 #: Long enough for a first visit that has to compile kernels, on a machine that runs tests [ms].
 COMPILED = 240_000
+
+
+#: The popovers: the name of the opening button, the element that gets the focus, and a width of the window at which
+#: the button is on the bar.
+POPOVERS = {"Help and keys (?)": (".popover.help", 1920),
+            "Export: pictures, tables, a program": (".popover .export-menu :is(button, select) >> nth=0", 1920),
+            "Link to this picture": ("input[aria-label='link to this picture']", 1920),
+            "More controls": (".popover.menu :is(button, select, input) >> nth=0", 1000)}
 
 
 def look_seldom(page: Page) -> None:
@@ -37,10 +46,15 @@ def type_into(page: Page, name: str, text: str) -> None:
     field(page, name).press("Enter")
 
 
+def play_button(page: Page) -> Locator:
+    """The button that plays or pauses the replay; its name says which of the two it does now."""
+    return page.get_by_role("button", name=re.compile(r"^(Play|Pause) \(space\)$"))
+
+
 def settled(page: Page) -> None:
     """Wait until the final picture of the knobs as they are is painted, and the status line has it."""
     page.wait_for_function("granchain.address.isSettled() && painted.at(-1)?.number === granchain.shown.number", timeout=COMPILED)
-    expect(page.locator("#foot b")).not_to_contain_text("preview")
+    expect(page.locator("#foot #regime")).not_to_contain_text("preview")
 
 
 def looks(page: Page, name: str) -> list[str]:

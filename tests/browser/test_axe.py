@@ -1,4 +1,4 @@
-"""axe-core finds nothing on any tab, page and popover."""
+"""axe-core finds nothing on any tab, page and popover, nor in the tour, an error, a bubble and a story."""
 
 from __future__ import annotations
 
@@ -6,12 +6,11 @@ from pathlib import Path
 
 import pytest
 from axe_playwright_python.sync_playwright import Axe
-from knobs import COMPILED, Visit
-from playwright.sync_api import Page
+from knobs import COMPILED, POPOVERS, Visit, type_into
+from playwright.sync_api import Page, expect
 
 from app.plots.theme import THEMES
 
-POPOVERS = ("Help and keys (?)", "Export: pictures, tables, a program", "Link to this picture")
 #: Its `granchainViolations` is what axe-core finds within an element, and words that are too faint in other themes.
 SCRIPT = Path(__file__).with_name("violations.js").read_text(encoding="utf-8")
 
@@ -43,7 +42,9 @@ def test_axe_finds_nothing(visit: Visit) -> None:
 
 
 def everywhere(page: Page) -> dict[str, dict[str, list[str]]]:
-    """What axe-core finds on the page as it is, on every page and tab, and in every popover on a large screen."""
+    """What axe-core finds on the page as it is, on every page and tab, and in every popover, then in a bubble,
+    the tour, an error and a story.
+    """
     page.evaluate("shown()")
     found = {"whole page": violations(page)}
     for name in page.evaluate("[...document.querySelectorAll('[data-overlay]')].map((one) => one.dataset.overlay)"):
@@ -57,8 +58,26 @@ def everywhere(page: Page) -> dict[str, dict[str, list[str]]]:
         tab.click()
         page.evaluate("shown()")
         found[f"tab {tab.text_content()}"] = violations(page, "#tabs")
-    page.set_viewport_size({"width": 1920, "height": 1080})
-    for name in POPOVERS:
+    for name, (_, width) in POPOVERS.items():
+        page.set_viewport_size({"width": width, "height": 1080})
         page.get_by_role("button", name=name, exact=True).click()
+        expect(page.get_by_role("button", name=name, exact=True)).to_have_attribute("aria-expanded", "true")
         found[name] = violations(page, "#bar")
+        page.keyboard.press("Escape")
+    page.set_viewport_size({"width": 1920, "height": 1080})
+    page.locator("#foot #accuracy").click()
+    found["bubble"] = violations(page, "#term")
+    page.keyboard.press("Escape")
+    page.get_by_role("button", name="Help and keys (?)").click()
+    page.get_by_role("button", name="show the tour again").click()
+    found["tour"] = violations(page, "#tour")
+    page.keyboard.press("Escape")
+    type_into(page, "f", "fast")
+    expect(page.locator("#foot .sentence")).to_be_visible()
+    found["error"] = violations(page, "#foot")
+    page.get_by_role("tab", name="stories", exact=True).click()
+    page.locator("#tabs .story button").first.click()
+    expect(page.locator("#curves.in-story")).to_be_visible()
+    page.evaluate("shown()")
+    found["story"] = violations(page, "#curves")
     return found

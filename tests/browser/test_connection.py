@@ -14,7 +14,7 @@ from urllib.parse import urlsplit
 import pytest
 from bokeh_figures import FIGURES
 from evidence import watch
-from knobs import COMPILED, field, knob, type_into
+from knobs import COMPILED, field, knob, play_button, type_into
 from playwright.sync_api import Browser, Page, Route, expect
 from server import Server
 
@@ -126,7 +126,7 @@ def restarted(chromium: Browser, tmp_path_factory: pytest.TempPathFactory, reque
     with running(tmp_path_factory.mktemp("restarted")) as server, opened(chromium, server, request.node) as page:
         type_into(page, "f", "700")
         page.wait_for_function(BELONGS, arg=700)
-        page.get_by_role("button", name="Play or pause").click()
+        play_button(page).click()
         page.get_by_role("button", name="More controls").click()
         page.locator("select.speed").select_option("5")
         page.get_by_role("tab", name="data").click()
@@ -162,7 +162,7 @@ def test_knobs_start_and_speed_come_back(restarted: Restarted) -> None:
 
 
 def test_a_paused_motion_stays_paused(restarted: Restarted) -> None:
-    expect(restarted.page.get_by_role("button", name="Play or pause")).to_contain_text("play")
+    expect(play_button(restarted.page)).to_contain_text("play")
 
 
 def test_a_sentence_says_that_uploaded_data_are_gone(restarted: Restarted) -> None:

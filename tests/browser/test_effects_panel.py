@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from evidence import watch
-from knobs import COMPILED, Visit, field
+from knobs import COMPILED, Visit, field, play_button
 from playwright.sync_api import Locator, Page, expect
 
 
@@ -111,9 +111,9 @@ def test_what_is_computed_is_what_is_asked_for(visit: Visit) -> None:
     expect(activity(tab, "resonance curve, sweep up")).to_contain_text("all points are computed", timeout=COMPILED)
     page.get_by_role("button", name="The run goes on").click()
     expect(activity(tab, "live run")).to_contain_text("paused")
-    page.get_by_role("button", name="Play or pause").click()
+    play_button(page).click()
     expect(activity(tab, "live run")).to_contain_text("computing")
-    page.get_by_role("button", name="Play or pause").click()
+    play_button(page).click()
     page.get_by_title("Larger, over the curve").click()
     page.locator('[data-knob="D"] input[type="range"]').press("ArrowRight")
     expect(activity(tab, "resonance curve, from rest")).to_contain_text("not on the screen")

@@ -78,7 +78,7 @@ def test_cold_kernels_are_announced_and_the_picture_follows(visit: Visit, chromi
         page = chromium.new_page(reduced_motion="reduce")
         page.goto(url)
         expect(page.get_by_role("alert")).to_contain_text("Compiling the kernels")
-        expect(page.locator("#foot b")).to_contain_text("period 1", timeout=COMPILED)
+        expect(page.locator("#foot #regime")).to_contain_text("period 1", timeout=COMPILED)
         expect(page.get_by_role("alert")).to_be_hidden()
         page.close()
 

@@ -105,7 +105,7 @@ def test_on_a_phone_one_tap_puts_the_curve_under_the_picture(visit: Visit) -> No
     assert sheet and box and box["y"] + box["height"] <= sheet["y"]  # the knob f does not cover it
     until(page, lambda: faults(page) == [])
     page.locator(".peak-names .peak").nth(1).tap()
-    expect(page.locator("#foot b")).to_contain_text("1:2 resonance")
+    expect(page.locator("#foot #regime")).to_contain_text("1:2 resonance")
     page.get_by_role("button", name="Show or hide the other knobs").tap()
     expect(button).to_have_attribute("aria-pressed", "false")  # the sheet has its place
 

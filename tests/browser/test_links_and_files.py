@@ -30,7 +30,7 @@ def test_the_address_follows_the_page_and_a_reload_keeps_everything(visit: Visit
     page = visit()
     page.locator("select.scene").select_option("fig3b")
     expect(field(page, "f")).to_have_value("1130")
-    expect(page.locator("#foot b")).to_contain_text("period 3")
+    expect(page.locator("#foot #regime")).to_contain_text("period 3")
     type_into(page, "f", "850")
     page.get_by_label("sweep down").click()
     expect(page.get_by_label("sweep down")).to_be_checked()

@@ -135,7 +135,7 @@ def answers_a_knob(page: Page) -> None:
     settled(page)
     type_into(page, "f", "380")
     settled(page)
-    expect(page.locator("#foot b")).to_contain_text("period 1")
+    expect(page.locator("#foot #regime")).to_contain_text("period 1")
     expect(page.locator("#lost")).to_be_hidden()
 
 

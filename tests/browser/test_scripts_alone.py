@@ -9,11 +9,13 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from playwright.sync_api import BrowserContext, Page, Route, expect
 from server import until
 
 from app.format import prefixed
+from app.frames import chain_series, drawn_values
 from app.scripts import FILES, INLINE_SCRIPTS
 from app.session.page_constants import page_constants
 
@@ -301,3 +303,36 @@ def test_a_page_that_lost_its_server_opens_its_own_link_when_that_answers_again(
     until(page, lambda: page.evaluate("window.granchain?.connection?.resumeState?.playing") is False)
     assert page.evaluate("[lost.hidden, lost.textContent.slice(0, 15), Boolean(document.getElementById('last-pictures'))]") == [
         False, "Connected again", True]
+
+
+def test_errors_of_scripts_are_reported_and_no_more_than_a_few(blank: Page) -> None:
+    reported = blank.evaluate("""async () => {
+      const { watchScriptErrors } = await import("/parts/header/script_errors.js");
+      const reported = [];
+      watchScriptErrors((words) => reported.push(words));
+      dispatchEvent(new ErrorEvent("error", { message: "ResizeObserver loop completed with undelivered notifications." }));
+      dispatchEvent(new ErrorEvent("error", { message: "x is null", filename: "http://a.test/b/chain.js?v=1", lineno: 7 }));
+      const rejected = new Promise((done) => addEventListener("unhandledrejection", done, { once: true }));
+      Promise.reject(new Error("y".repeat(1000)));
+      await rejected;
+      for (let i = 0; i < 10; i++) dispatchEvent(new ErrorEvent("error", { message: "again" }));
+      return reported;
+    }""")
+    assert reported[0] == "x is null (chain.js:7)"
+    assert reported[1].startswith("unhandled rejection: Error: yyy") and len(reported[1]) == 400
+    assert len(reported) == 5
+
+
+def test_the_chain_is_unpacked_in_the_order_in_which_it_was_packed(blank: Page) -> None:
+    """`chain_series` of app/frames.py and `unpack` of chain_series.js know the same order."""
+    rows, beads = 3, 2
+    widths = {"displacement": beads, "force": beads + 1, "energy": beads, "drive": 1}
+    arrays = {name: 100.0 * number + np.arange(rows * width).reshape(rows, width)
+              for number, (name, width) in enumerate(widths.items())}
+    values = drawn_values(chain_series(*arrays.values()))
+    found = blank.evaluate("""async ([rows, beads, list]) => {
+      const { unpack } = await import("/parts/chain/chain_series.js");
+      const { series, end } = unpack({ rows, beads, values: new Float32Array([-1, ...list]) }, 1);
+      return [Object.entries(series).map(([name, values]) => [name, [...values]]), end];
+    }""", [rows, beads, values.tolist()])
+    assert found == [[[name, array.ravel().tolist()] for name, array in arrays.items()], 1 + len(values)]

@@ -72,17 +72,17 @@ def test_a_step_back_brings_the_motion_and_not_only_the_knobs(visit: Visit) -> N
     page = visit("?v=1&scene=sec2&f=860&start=previous")
     settled(page)
     type_into(page, "f", "880")
-    expect(page.locator("#foot b")).to_contain_text(PERIOD_1)
+    expect(page.locator("#foot #regime")).to_contain_text(PERIOD_1)
     step(page, "from=*")
     type_into(page, "f", "400")
     step(page, "f=400")
     page.keyboard.press("Control+z")
     expect(field(page, "f")).to_have_value("880")
-    expect(page.locator("#foot b")).to_contain_text(PERIOD_1)
+    expect(page.locator("#foot #regime")).to_contain_text(PERIOD_1)
     expect(page.locator("#foot #start")).to_have_text("from previous state")
     page.reload()
     page.wait_for_function("window.painted.length > 0")
-    expect(page.locator("#foot b")).to_contain_text(PERIOD_1)
+    expect(page.locator("#foot #regime")).to_contain_text(PERIOD_1)
 
 
 def test_a_pin_stays_while_knobs_move_and_comes_back_with_the_link(visit: Visit) -> None:

@@ -26,7 +26,7 @@ FORCE = """() => {
 def shows(page: Page, story: Story, number: int) -> None:
     """The badge and the pictures are those of the step."""
     step = story.steps[number - 1]
-    badge = page.locator("#foot b")
+    badge = page.locator("#foot #regime")
     expect(badge).not_to_contain_text("preview")
     regime = "not driven" if step.expect.regime == UNDRIVEN else step.expect.regime
     period = re.compile(rf"period {step.expect.period}(,|$)")  # the evidence behind it gives way where there is no room

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from knobs import Visit, settled, type_into
+from knobs import Visit, play_button, settled, type_into
 from playwright.sync_api import expect
 from server import at_rest
 
@@ -26,7 +26,7 @@ def test_the_chain_moves_is_paused_and_moved_by_a_dragged_cursor(visit: Visit) -
     page.wait_for_function(f"pixels('chain') !== {first}")
     settled(page)
     expect(page.locator("#foot")).to_contain_text("period 1")
-    page.get_by_role("button", name="Play or pause").click()
+    play_button(page).click()
     page.wait_for_function(STANDS_STILL)
     still = page.evaluate("pixels('chain')")
     box = page.locator("#map").bounding_box()
@@ -51,12 +51,12 @@ def test_for_visitors_who_want_less_motion_the_chain_waits(visit: Visit) -> None
     settled(page)
     page.wait_for_function(STANDS_STILL)
     at_rest(page, "asked")  # a page that stands still asks for no animation frames
-    play = page.get_by_role("button", name="Play or pause")
+    play = play_button(page)
     expect(play).to_contain_text("play")
     page.get_by_role("button", name="The run goes on").click()
-    expect(page.locator("#foot b")).to_contain_text("live")
+    expect(page.locator("#foot #regime")).to_contain_text("live")
     page.get_by_role("button", name="The steady state").click()
-    expect(page.locator("#foot b")).to_contain_text("period 1")
+    expect(page.locator("#foot #regime")).to_contain_text("period 1")
     still = page.evaluate("pixels('chain')")
     play.click()
     page.wait_for_function(f"pixels('chain') !== {still}")
@@ -65,7 +65,7 @@ def test_for_visitors_who_want_less_motion_the_chain_waits(visit: Visit) -> None
 def test_a_bead_glows_as_its_column_and_one_at_rest_is_steel(visit: Visit) -> None:
     page = visit("?v=1&scene=fig3b", **MOVING)
     settled(page)
-    page.get_by_role("button", name="Play or pause").click()
+    play_button(page).click()
     box = page.locator("#map").bounding_box()
     assert box is not None
     # half a millisecond into the picture the pulse is in the middle of the chain
@@ -107,8 +107,8 @@ def test_live_frames_advance_stop_when_paused_and_step_by_one_period(visit: Visi
     page.wait_for_function("painted.filter((event) => event.live).length > 10")
     count = page.evaluate("painted.length")
     page.wait_for_function(f"painted.length > {count} + 16")  # how many a second: tests/benchmarks/browser_latency.py
-    expect(page.locator("#foot b")).to_contain_text("live")
-    page.get_by_role("button", name="Play or pause").click()
+    expect(page.locator("#foot #regime")).to_contain_text("live")
+    play_button(page).click()
     count = at_rest(page, "painted.length")
     page.get_by_role("button", name="Forward one drive period").click()
     page.wait_for_function(f"painted.length > {count}")

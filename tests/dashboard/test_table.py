@@ -10,8 +10,9 @@ from urllib.parse import quote
 import pytest
 
 from app import former_names
-from app.dashboard.table import CURVE_NAME, PAGES, TABS, TabSpec, check_names, tab_names
+from app.dashboard.table import PAGES, TABS, TabSpec, check_names, tab_names
 from app.session import share
+from app.session.page_constants import CURVE_NAME
 
 
 @pytest.mark.parametrize("row", [replace(PAGES[0], name=CURVE_NAME), TabSpec(PAGES[0].name, "learn")], ids=["curve", "twice"])
@@ -37,11 +38,6 @@ def test_every_tab_without_a_page_over_the_pictures_is_drawn_by_the_browser_itse
     listed = script.partition("const TABS = {")[2].partition("};")[0]
     drawn = {name.strip('"') for name in re.findall(r'("[^"]+"|\w+):', listed)}
     assert {row.name for row in TABS if not getattr(row, "view", None)} <= drawn <= {row.name for row in TABS}
-
-
-def test_the_browser_calls_the_curve_as_the_server_does() -> None:
-    script = Path(__file__).parents[2] / "app" / "dashboard" / "visibility.js"
-    assert f'const CURVE_NAME = "{CURVE_NAME}";' in script.read_text(encoding="utf-8")
 
 
 def test_a_link_keeps_room_for_what_the_browser_adds() -> None:

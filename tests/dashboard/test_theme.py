@@ -15,12 +15,10 @@ from app.parts.figures.figure_style import bare_axis
 from app.plots.force_lines import DRIVE, INPUT, OUTPUT
 from app.plots.motion import motion
 from app.plots.theme import THEMES, Theme, style_sheet
+from app.scripts import FILES
 from app.session.page_constants import page_constants
 from app.session.share import BROWSER_FIELDS, VIEW_VALUES
 from granchain_core import scene, settle
-
-SCRIPTS = Path(app.__file__).parent / "parts" / "inline_scripts"
-
 
 TEXT_ROLES = ("drive_text", "input_text", "output_text")
 
@@ -114,9 +112,9 @@ def test_the_browser_knows_the_fields_of_a_link_that_only_it_can_fill() -> None:
     assert json.loads(page_constants())["browserFields"] == list(BROWSER_FIELDS)
 
 
-@pytest.mark.parametrize("name", ["themes", "browserFields", "terms"])
-def test_the_inline_scripts_take_each_constant_from_python(name: str) -> None:
-    taken = [path.name for path in SCRIPTS.glob("*.js")
+@pytest.mark.parametrize("name", list(json.loads(page_constants())))
+def test_one_script_takes_each_constant_from_python(name: str) -> None:
+    taken = [path.name for path in FILES.values()
              if re.search(rf"const {{[^}}]*\b{name}\b[^}}]*}} = window\.pageConstants;", path.read_text(encoding="utf-8"))]
     assert len(taken) == 1
 

@@ -88,8 +88,10 @@ def test_a_failure_is_said_and_a_fault_is_told_to_the_host(error: Exception, sen
                                                           task: Task) -> None:
     task.start(failing(error))
     host.run_callbacks_until(lambda: not task.running and not host.callbacks)
-    assert host.said == [("failed", with_fault_id(sentence, host.fault_ids[0]) if told else sentence)]
+    ids = host.fault_ids + [fault for _, fault in host.failed_computations]
+    assert host.said == [("failed", with_fault_id(sentence, ids[0]) if ids else sentence)]
     assert host.faults == ([(error, "")] if told else []) and host.failures == []
+    assert [problem for problem, _ in host.failed_computations] == ([error] if isinstance(error, ComputationError) else [])
 
 
 def test_a_task_whose_thread_cannot_be_started_fails_and_the_next_one_runs(host: SayingHost, task: Task,

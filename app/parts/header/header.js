@@ -8,6 +8,7 @@ import { icon, iconButton } from "./icons.js";
 import { keyPressed } from "./keys.js";
 import { curveButton, knobsButton } from "./phone_buttons.js";
 import { Popovers } from "./popovers.js";
+import { watchScriptErrors } from "./script_errors.js";
 import { SceneChooser } from "./scene_chooser.js";
 import { Tour } from "./tour.js";
 
@@ -70,6 +71,11 @@ class Header {
     this.sound = iconButton(icon("sound", "hear"), "Hear the force at the wall", () => this.toggleSound());
     this.sound.ariaPressed = "false";
     this.more = iconButton(icon("more"), "More controls", () => this.popovers.toggle("menu"), "more");
+    const { popovers } = this;
+    popovers.setOpener(popovers.help, this.help);
+    popovers.setOpener(popovers.link, this.share);
+    popovers.setOpener(popovers.exports, this.exports);
+    popovers.setOpener(popovers.menu, this.more);
   }
 
   makeSceneChooser() {
@@ -104,7 +110,7 @@ class Header {
     for (const control of this.order) root.insertBefore(control, this.scenes.gallery.root);
     this.more.hidden = true;
     while (root.scrollWidth > root.clientWidth && steps.length) steps.shift()();
-    if (this.more.hidden) popovers.menu.hidden = true;
+    if (this.more.hidden && !popovers.menu.hidden) popovers.showOnly(null);
     focused?.focus();
   }
 
@@ -118,7 +124,7 @@ class Header {
   }
 
   makeTimeControls() {
-    this.play = iconButton("", "Play or pause (space)", () => this.setPlaying(!this.playing));
+    this.play = iconButton("", "", () => this.setPlaying(!this.playing));
     this.speed = chooser("drive periods shown per second", "speed", (value) =>
       this.request("speed", value, { value: Number(value) }),
     );
@@ -142,7 +148,8 @@ class Header {
   }
 
   drawPlay() {
-    this.play.innerHTML = icon(this.playing ? "pause" : "play");
+    const words = this.playing ? "Pause (space)" : "Play (space)";
+    Object.assign(this.play, { innerHTML: icon(this.playing ? "pause" : "play"), title: words, ariaLabel: words });
     this.layoutControls();
   }
 
@@ -247,8 +254,9 @@ class Header {
 
 export function render({ model }) {
   const header = new Header(model);
+  watchScriptErrors((what) => model.send_msg({ do: "script-error", what }));
   const tour = new Tour();
-  header.popovers.offer("show the tour again", () => tour.show(0));
+  header.popovers.offer("show the tour again", () => tour.open());
   let toured = false;
   window.granchain.on("painted", () => {
     if (!toured && !window.granchain.connection.lost) tour.begin();

@@ -1,5 +1,28 @@
 // The keys that work everywhere on the page.
 
+const KEPT_AS = "granchain-help-key"; // in the browser, from visit to visit
+
+// Whether the key “?” opens the help. It can be switched off, because those who speak to their computer may cause it
+// by accident (WCAG 2.1.4).
+export const opensHelp = {
+  on: true,
+  get() {
+    try {
+      return localStorage.getItem(KEPT_AS) !== "off";
+    } catch {
+      return this.on;
+    }
+  },
+  set(on) {
+    this.on = on;
+    try {
+      localStorage.setItem(KEPT_AS, on ? "on" : "off");
+    } catch {
+      /* private browsing keeps nothing: it is switched off until the next visit */
+    }
+  },
+};
+
 // Whether the event comes from a field, a list or a button, which needs the key itself.
 const inField = (event) =>
   event.composedPath().some((node) => /^(INPUT|SELECT|BUTTON|TEXTAREA|SUMMARY)$/.test(node.tagName));
@@ -19,7 +42,8 @@ export function keyPressed(event, header) {
     event.preventDefault();
     header.setPlaying(!header.playing);
   }
-  if (event.key === "?" && !event.composedPath().some((node) => node.type === "text")) header.popovers.toggleHelp();
+  if (event.key === "?" && opensHelp.get() && !event.composedPath().some((node) => node.type === "text"))
+    header.popovers.toggleHelp();
   if ((event.ctrlKey || event.metaKey) && !event.altKey) takeStep(event);
   if (event.key === "Escape") {
     header.popovers.close();

@@ -4,8 +4,15 @@ import { icon, iconButton } from "./icons.js";
 
 const has = (name) => document.getElementById("dashboard").classList.contains(name);
 
-export const knobsButton = () =>
-  iconButton(icon("knobs"), "Show or hide the other knobs", () => window.granchain.drawer(!has("drawer")), "of-phone");
+export function knobsButton() {
+  const act = () => window.granchain.drawer(!has("drawer"));
+  const made = iconButton(icon("knobs"), "Show or hide the other knobs", act, "of-phone");
+  made.ariaExpanded = "false";
+  window.granchain.on("drawer", (open) => {
+    made.ariaExpanded = String(open);
+  });
+  return made;
+}
 
 export function curveButton() {
   const act = () => window.granchain.showCurve(!has("curved"));

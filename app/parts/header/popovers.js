@@ -2,9 +2,13 @@
 
 import { button, element } from "../toolkit/dom.js";
 import { exportMenu } from "./export_menu.js";
+import { opensHelp } from "./keys.js";
 
 const HELP = [
-  ["knobs", "Drag, type, or use the arrow keys (Shift: larger steps); double-click for the scene's value."],
+  [
+    "knobs",
+    "Drag, type, or use the arrow keys (Shift: larger steps). Double-click or press Delete for the scene's value.",
+  ],
   ["time", "Runs downwards in all pictures; drag in a picture to stop and move through time, press Space to play."],
   [
     "values",
@@ -22,13 +26,14 @@ const HELP = [
 ];
 
 const KEYS = [
-  ["?", "this help"],
+  ["?", "this help, unless it is switched off below"],
   ["Space", "play or pause"],
   ["Ctrl-Z", "undo; Ctrl-Shift-Z: redo; so do the browser's back and forward"],
   ["Tab", "to the next control; Shift-Tab: back"],
   ["← →", "on a knob: fine steps, with Shift coarse; on tabs: the next tab; on the parameter map: the next cell"],
+  ["Delete", "on a knob: back to the scene's value"],
   ["↑ ↓", "on the time cursor: one sample; Page ↑ and ↓: one drive period; Home and End: the ends"],
-  ["Enter", "on the name of a peak: go there; on a knob's number: take it"],
+  ["Enter", "on the name of a peak: go there; in a knob's number: apply it"],
   ["Esc", "closes what is open"],
 ];
 
@@ -39,6 +44,12 @@ function list(rows) {
   return made;
 }
 
+function helpKeySwitch() {
+  const box = element("input", { type: "checkbox", checked: opensHelp.get() });
+  box.addEventListener("change", () => opensHelp.set(box.checked));
+  return element("label", { className: "help-key" }, box, " The key ? opens this help.");
+}
+
 const title = (textContent) => element("h2", { textContent });
 
 // At most one of them is open. It gets the focus, which goes back to where it was when the box is closed.
@@ -46,12 +57,25 @@ export class Popovers {
   constructor(send, files) {
     this.field = element("input", { readOnly: true, ariaLabel: "link to this picture" });
     this.help = element("div", { className: "popover help", hidden: true, tabIndex: 0 });
-    this.help.append(title("Overview"), list(HELP), title("Keys"), list(KEYS));
+    this.help.append(title("Overview"), list(HELP), title("Keys"), list(KEYS), helpKeySwitch());
     this.copied = element("p", { role: "status" });
     this.link = element("div", { className: "popover", hidden: true }, this.field, this.copied);
     this.exports = element("div", { className: "popover", hidden: true }, exportMenu(send, files));
     this.menu = element("div", { className: "popover menu", hidden: true });
     this.all = [this.help, this.link, this.exports, this.menu];
+    this.openers = new Map();
+  }
+
+  // `opener` is the button of this box and says whether it is open.
+  setOpener(box, opener) {
+    this.openers.set(box, opener);
+    opener.ariaExpanded = "false";
+  }
+
+  // Shows one of the boxes, or none, and hides the others.
+  showOnly(box) {
+    for (const popover of this.all) popover.hidden = popover !== box;
+    for (const [popover, opener] of this.openers) opener.ariaExpanded = String(popover === box);
   }
 
   // A button at the end of the help.
@@ -65,7 +89,7 @@ export class Popovers {
 
   close() {
     const inside = this.hasFocus();
-    for (const popover of this.all) popover.hidden = true;
+    this.showOnly(null);
     if (inside) this.opener?.focus();
   }
 
@@ -77,7 +101,7 @@ export class Popovers {
   // later goes back to the opener of the first.
   open(box, focused) {
     if (!this.hasFocus()) this.opener = window.granchain.focused;
-    for (const popover of this.all) popover.hidden = popover !== box;
+    this.showOnly(box);
     focused.focus();
   }
 

@@ -1,5 +1,5 @@
 // The tour of a first visit: five steps, each beside a part of the page. A visitor can leave it at any time. It comes
-// once and interrupts nothing.
+// once and interrupts nothing: it takes the focus only from the page as a whole, never from a control.
 
 import { button, element, PHONE } from "../toolkit/dom.js";
 
@@ -27,13 +27,18 @@ const remembered = () => {
 export class Tour {
   constructor() {
     this.number = 0;
-    this.words = element("p");
+    this.words = element("p", { ariaLive: "polite" });
     this.count = element("small");
     this.before = button("◀ back", () => this.show(this.number - 1));
     this.next = button("", () => (this.number < STEPS.length - 1 ? this.show(this.number + 1) : this.end("stories")));
     const skip = button("skip", () => this.end());
     const row = element("div", { className: "row" }, this.count, this.before, this.next, skip);
-    this.root = element("div", { id: "tour", className: "bubble", role: "dialog", hidden: true }, this.words, row);
+    this.root = element(
+      "div",
+      { id: "tour", className: "bubble", role: "dialog", tabIndex: -1, hidden: true },
+      this.words,
+      row,
+    );
     this.root.ariaLabel = "tour of the page";
     document.body.append(this.root);
     addEventListener("resize", () => !this.root.hidden && this.place());
@@ -44,7 +49,14 @@ export class Tour {
   begin() {
     const { granchain } = window;
     if (remembered() || granchain.embedded || granchain.address.place.page || granchain.address.place.tab) return;
+    this.open(document.activeElement === document.body);
+  }
+
+  // Shows the first step; the focus goes back to the element that has it now when the tour ends.
+  open(takesFocus = true) {
+    this.opener = window.granchain.focused;
     this.show(0);
+    if (takesFocus) this.root.focus();
   }
 
   show(number) {
@@ -94,7 +106,9 @@ export class Tour {
   }
 
   end(tab) {
+    const inside = this.root.contains(document.activeElement);
     this.root.hidden = true;
+    if (inside) this.opener?.focus();
     this.mark();
     try {
       localStorage.setItem(KEPT_AS, "yes");

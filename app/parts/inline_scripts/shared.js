@@ -16,6 +16,7 @@ window.granchain = (() => {
     "visible", // other pages are looked at: the set of their names
     "story", // a story was opened or left: whether one is shown
     "curved", // on a phone, the curve was shown or hidden: whether it is shown
+    "drawer", // on a phone, the knobs were shown or hidden: whether they are shown
     "steps", // the place in the history has changed: { back, forward }, whether there are such steps
     "lost", // the connection was lost, or is there again: whether it is lost
     "shown", // a picture has come: `granchain.shown`
@@ -231,6 +232,7 @@ window.granchain = (() => {
     drawer(open) {
       if (open) scrollTo({ top: 0 });
       document.getElementById("dashboard").classList.toggle("drawer", open);
+      this.emit("drawer", open);
       if (open) this.showCurve(false);
     }
 

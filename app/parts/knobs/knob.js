@@ -1,5 +1,5 @@
-// One knob: slider, number and unit. Arrow keys move it in small steps, with Shift in large ones; a double click
-// restores the scene's value.
+// One knob: slider, number and unit. Arrow keys move it in small steps, with Shift in large ones. A double click, or
+// Delete or Backspace on the slider or the list, restores the scene's value.
 
 import { element } from "../toolkit/dom.js";
 
@@ -45,8 +45,13 @@ export class Knob {
     );
     this.el.dataset.knob = spec.name;
     this.el.addEventListener("dblclick", (event) => {
-      if (event.target.type === "text") return;
-      this.send({ do: "restore", name: spec.name }, true);
+      if (event.target.type !== "text") this.restore();
+    });
+    this.el.addEventListener("keydown", (event) => {
+      if (event.target.type === "text" || (event.key !== "Delete" && event.key !== "Backspace")) return;
+      event.preventDefault();
+      this.restore();
+      this.announce();
     });
     if (spec.choices.length) this.chooser();
     else this.number();
@@ -55,6 +60,7 @@ export class Knob {
   chooser() {
     const options = this.spec.choices.map((choice) => new Option(choice, choice));
     this.select = element("select", { ariaLabel: this.spec.label }, ...options);
+    this.select.setAttribute("aria-keyshortcuts", "Delete");
     this.select.addEventListener("change", () => this.set(this.select.value, true));
     this.el.append(this.select);
   }
@@ -70,6 +76,7 @@ export class Knob {
       ariaLabel,
     });
     this.slider = element("input", { type: "range", min: 0, max: STEPS, step: 1, ariaLabel: label });
+    this.slider.setAttribute("aria-keyshortcuts", "Delete");
     this.el.append(this.field, element("span", { className: "unit", textContent: unit }), this.slider);
     this.idleNote = element("small", { className: "at-zero" });
     if (at_zero) this.el.append(this.idleNote);
@@ -118,6 +125,18 @@ export class Knob {
     else next = rounded(RANGE[spec.scale].value(RANGE[spec.scale].place(value, spec) + direction * 0.02, spec));
     if (spec.whole) next = Math.round(next) === value ? value + direction : Math.round(next);
     this.set(Math.max(spec.low, Math.min(spec.high, next)));
+  }
+
+  restore() {
+    this.send({ do: "restore", name: this.spec.name }, true);
+  }
+
+  // Tells screen readers that the knob has the scene's value again.
+  announce() {
+    const { label, unit, factor } = this.spec;
+    const { preset } = this;
+    const value = typeof preset === "number" && !this.select ? `${written(preset, factor)} ${unit}` : preset;
+    document.getElementById("announced").textContent = `${label}: back at the scene's value, ${value}`;
   }
 
   set(value, now = false) {

@@ -1,6 +1,6 @@
 // The status line: what is on the screen, how sure it is and what it cost. A click on an entry says what it means.
 
-import { explains, hideMeaning } from "../toolkit/bubble.js";
+import { explainingButton, hideMeaning } from "../toolkit/bubble.js";
 import { button, element, onWidth, PHONE } from "../toolkit/dom.js";
 
 const ENTRIES = [
@@ -31,9 +31,9 @@ function costButton() {
   return element("div", { className: "row" }, button("What accuracy costs in time", open));
 }
 
-function emptyEntry(name, tag = "span") {
-  const entry = element(name === "accuracy" ? "button" : tag, { id: name });
-  explains(entry, () => [entry.title, ...(name === "accuracy" ? [costButton()] : [])]);
+function emptyEntry(name) {
+  const controls = () => (name === "accuracy" ? [costButton()] : []);
+  const entry = explainingButton({ id: name }, () => [entry.title, ...controls()]);
   return entry;
 }
 
@@ -44,7 +44,7 @@ class Line {
     this.pen = document.createElement("canvas").getContext("2d");
     this.fonts = new Map(); // fonts by the entry's name, kept because asking the browser for one costs a layout
     // Elements stay and only their words change: an element that is replaced while it is pressed gets no click.
-    this.regime = emptyEntry("regime", "b");
+    this.regime = emptyEntry("regime");
     this.others = new Map(ENTRIES.map(([name]) => [name, emptyEntry(name)]));
     this.rest = emptyEntry("rest");
     this.rest.textContent = "⋯";

@@ -1,16 +1,18 @@
-// A bubble that says what a term or an entry of the status line means, beside it. The Escape key and a click elsewhere
-// close it, and scrolling that moves what it explains.
+// A bubble beside a term or an entry of the status line that says what it means. It closes on Escape, on a click
+// elsewhere, and when the page scrolls under it. A bubble with controls is a dialog and gets the focus.
 
-import { element } from "./dom.js";
+import { button, element } from "./dom.js";
 
-const bubble = element("div", { id: "term", className: "bubble", role: "tooltip", hidden: true });
+const bubble = element("div", { id: "term", className: "bubble", tabIndex: -1, hidden: true });
 document.body.append(bubble);
 
 let explained = null; // the explained element
 let box = null; // where it was when the bubble was shown
 
 export const hideMeaning = () => {
+  const inside = bubble.contains(document.activeElement);
   bubble.hidden = true;
+  if (inside) explained?.focus();
 };
 
 // The element whose meaning is shown, null if none is.
@@ -43,6 +45,8 @@ export function explainSuccessor(others, meaningOf) {
 // Shows `words` below `anchor`, or above it if there is more room, with `controls` under the words.
 export function showMeaning(anchor, words, ...controls) {
   bubble.replaceChildren(words, ...controls);
+  bubble.role = controls.length ? "dialog" : "tooltip";
+  bubble.ariaLabel = controls.length ? anchor.textContent : null;
   bubble.hidden = false;
   explained = anchor;
   box = anchor.getBoundingClientRect();
@@ -50,16 +54,14 @@ export function showMeaning(anchor, words, ...controls) {
   const { offsetWidth: wide, offsetHeight: tall } = bubble;
   bubble.style.left = `${Math.max(8, Math.min(left, innerWidth - wide - 8))}px`;
   bubble.style.top = `${bottom + tall + 12 < innerHeight ? bottom + 6 : Math.max(8, top - tall - 6)}px`;
+  if (controls.length) bubble.focus();
 }
 
-// A click on `anchor`, or the Enter key, shows what it means; on a touch screen no pointer can rest on it. `meaning`
-// returns the words and the controls.
-export function explains(anchor, meaning) {
-  const show = () => showMeaning(anchor, ...meaning());
-  anchor.addEventListener("click", show);
-  if (anchor.tagName === "BUTTON") return;
-  Object.assign(anchor, { tabIndex: 0, role: "button" });
-  anchor.addEventListener("keydown", ({ key }) => key === "Enter" && show());
+// A button that shows what it means when it is pressed: a touch screen has no hover. `meaning` returns the words and
+// the controls.
+export function explainingButton(properties, meaning) {
+  const made = button("", () => showMeaning(made, ...meaning()), properties);
+  return made;
 }
 
 document.addEventListener("keydown", ({ key }) => key === "Escape" && hideMeaning());

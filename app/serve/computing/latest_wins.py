@@ -122,6 +122,12 @@ class LatestWins:
             if self._stop is stop and self._waiting is not None:
                 stop.set()
 
+    def cancel(self) -> None:
+        """Stop the computation that runs, and drop a request that waits; a later request is computed as usual."""
+        with self._lock:
+            self._waiting = None
+            self._stop.set()
+
     def close(self) -> None:
         """Stop: nothing more is computed or delivered."""
         with self._lock:

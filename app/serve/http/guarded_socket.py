@@ -20,6 +20,7 @@ from tornado.web import HTTPError
 
 from ..connection.leaving import end_session
 from ..document.part_messages import dispatch
+from ..monitoring.faults import session_label
 from ..monitoring.metrics import METRICS
 from .frame_rate import FrameBucket
 from .guard import Guard
@@ -32,6 +33,8 @@ _POLICY_VIOLATION = 1008
 #: Most bytes that wait to be sent when another message is written. Two pictures of the longest chain with the most
 #: rows, in flight to a slow browser, have a little less; other pictures have a hundredth.
 MOST_UNSENT = 64_000_000
+#: Most bytes that wait to be sent to all pages together: several clients that read nothing must not fill the memory.
+MOST_UNSENT_TOGETHER = 256_000_000
 
 
 class GuardedSocket(Guard):
@@ -43,8 +46,8 @@ class GuardedSocket(Guard):
     _fragments: tuple[str, ...] = ()
     _refused = False
     _left = False
-    #: Bytes that were written and that the operating system has not taken yet.
-    _unsent = 0
+    #: The stream, once frames come and go.
+    _stream: IOStream | None = None
     #: The session whose token came with the request, and the same session once it has its connection.
     _offered = _session_id = ""
     _has_connection = False
@@ -96,9 +99,10 @@ class GuardedSocket(Guard):
         """The stream of the websocket, which too many frames or too many unsent bytes close.
 
         Bytes count as unsent until the operating system has taken them, which it does as long as the client reads.
-        Answers to pings count, too.
+        Answers to pings count, too. If too many wait for all pages together, the connection with the most is closed.
         """
         stream: IOStream = super().detach()
+        self._stream, unsent = stream, self.rules.unsent
         read, write, bucket = stream.read_bytes, stream.write, FrameBucket(time.monotonic())
 
         async def read_and_count(*args: Any, **kwargs: Any) -> bytes:
@@ -110,25 +114,30 @@ class GuardedSocket(Guard):
             return data
 
         def write_and_count(data: bytes | memoryview) -> Future[None]:
-            if self._unsent > MOST_UNSENT:
-                self._refuse("too much that waits to be sent")
-                stream.close()  # a closing frame would wait behind the unsent bytes
+            if unsent.of(self) > MOST_UNSENT:
+                self.drop("too much that waits to be sent")
+            elif unsent.total > MOST_UNSENT_TOGETHER:
+                unsent.largest().drop("too much that waits to be sent to all pages together")
+            if stream.closed():
                 unwritten: Future[None] = Future()
                 unwritten.set_exception(StreamClosedError())
                 unwritten.exception()  # mark it as retrieved: not every writer awaits the future
                 return unwritten
             written = write(data)
             if not written.done():
-                self._unsent += len(data)
-                written.add_done_callback(lambda _: self._was_sent(len(data)))
+                unsent.add(self, len(data))
+                written.add_done_callback(lambda _: unsent.remove(self, len(data)))
             return written
 
         stream.read_bytes = read_and_count  # type: ignore[method-assign]
         stream.write = write_and_count  # type: ignore[method-assign]
         return stream
 
-    def _was_sent(self, length: int) -> None:
-        self._unsent -= length
+    def drop(self, reason: str) -> None:
+        """Close the connection without a closing frame, which would wait behind the unsent bytes."""
+        self._refuse(reason)
+        if self._stream is not None:
+            self._stream.close()
 
     def on_message(self, fragment: str | bytes) -> Awaitable[None] | None:
         """Pass whole messages on; a message that no page sends closes the connection."""
@@ -162,8 +171,13 @@ class GuardedSocket(Guard):
             return
         self._refused, self._fragments = True, ()
         METRICS.count("refused_messages")
-        log.warning("refused: %s", reason, extra={"request": self.request_id, "remote": self.request.remote_ip})
+        log.warning("refused: %s", reason, extra=self._log_fields())
         self.close(_POLICY_VIOLATION, reason)  # type: ignore[attr-defined]
+
+    def _log_fields(self) -> dict[str, str]:
+        """Fields of a line of the log: the request's id, the visitor's address, and the session if there is one."""
+        fields = {"request": self.request_id, "remote": str(self.request.remote_ip)}
+        return {**fields, "session": session_label(self._session_id)} if self._session_id else fields
 
     def on_close(self) -> None:
         """The visitor has left: end the page's computations; Bokeh drops the session at its next check.
@@ -193,6 +207,5 @@ class GuardedSocket(Guard):
         if not isinstance(content, dict) or "traceback" not in content:
             return frame
         METRICS.count("errors")
-        log.error("message failed: %s", content.get("text"),
-                  extra={"request": self.request_id, "remote": self.request.remote_ip})
+        log.error("message failed: %s", content.get("text"), extra=self._log_fields())
         return json.dumps({"text": f"The message could not be handled (request {self.request_id}).", "traceback": None})

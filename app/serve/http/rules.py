@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
+from typing import Any
 
 from .limits import USUAL_SESSIONS
 from .sessions import Sessions
+from .unsent import UnsentBytes
 
 
 @dataclass(frozen=True)
 class Rules:
-    """The rules of one server. They do not change; its `sessions` do."""
+    """The rules of one server. They do not change; its `sessions` and its `unsent` bytes do."""
 
     #: Hosts that are served; all hosts if empty.
     hosts: frozenset[str] = frozenset()
@@ -21,11 +23,13 @@ class Rules:
     embedding: tuple[str, ...] = ()
     #: The secret that signs sessions.
     secret: bytes = field(default=b"", repr=False)
-    #: Origins at IPv6 addresses, which Bokeh's own option refuses.
+    #: Origins at IPv6 addresses, which Bokeh's own option refuses, as browsers write them.
     origins: frozenset[str] = frozenset()
     #: Whether a proxy is in front of the server, and the header in which it names the visitor's address, if given.
     proxy: bool = False
     proxy_header: str = ""
+    #: The bytes that wait to be sent, by websocket.
+    unsent: UnsentBytes[Any] = field(default_factory=UnsentBytes)
 
     def headers(self) -> dict[str, str]:
         """The headers of every answer.

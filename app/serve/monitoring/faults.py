@@ -1,9 +1,11 @@
-"""Errors of granchain itself: each is counted, and has an id in the log and in the sentence to the visitor."""
+"""Errors in the log: each has an id, which the sentence to the visitor has as well."""
 
 from __future__ import annotations
 
+import hashlib
 import logging
 import secrets
+from collections.abc import Mapping
 
 from .metrics import METRICS
 
@@ -11,14 +13,33 @@ log = logging.getLogger("granchain")
 
 
 def new_fault_id() -> str:
-    """An id that a visitor can report, as that of a request."""
+    """An id that a visitor can report, like that of a request."""
     return secrets.token_hex(6)
 
 
-def log_fault(error: BaseException, fault: str, message: str = "unexpected failure") -> None:
-    """Log an error with its traceback under the id `fault`, and count it."""
+def session_label(session_id: str) -> str:
+    """A name of a session for the log: nobody can use it to connect, unlike the session's id."""
+    return hashlib.sha256(session_id.encode()).hexdigest()[:12]
+
+
+def log_fault(error: BaseException, fault: str, message: str = "unexpected failure",
+              where: Mapping[str, str] | None = None) -> None:
+    """Log an error of granchain itself with its traceback under the id `fault`, and count it.
+
+    `where` has further fields of the line: the session's label and its share link.
+    """
     METRICS.count("errors")
-    log.error(message, exc_info=error, extra={"fault": fault})
+    log.error(message, exc_info=error, extra={"fault": fault, **(where or {})})
+
+
+def log_failed_computation(error: Exception, fault: str, where: Mapping[str, str]) -> None:
+    """Log a computation that could not be finished, under the id `fault`: in one line, without a traceback."""
+    log.warning("computation failed: %s", error, extra={"fault": fault, **where})
+
+
+def log_script_error(what: str, where: Mapping[str, str]) -> None:
+    """Log an error of a script in a visitor's browser; a stranger may have written its words."""
+    log.warning("script failed: %s", what, extra=dict(where))
 
 
 def with_fault_id(sentence: str, fault: str) -> str:

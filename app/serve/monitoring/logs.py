@@ -19,14 +19,14 @@ INTERNALS = internals(
 )
 
 #: Fields that a line may have besides time, level, logger and message.
-_FIELDS = ("request", "path", "remote", "fault")
+_FIELDS = ("request", "path", "remote", "fault", "session", "link")
 
 
 class JsonFormatter(logging.Formatter):
     """A record as one line of JSON."""
 
     def format(self, record: logging.LogRecord) -> str:
-        """Time in UTC, level, logger, message, the fields of the request or the id of the fault, and the failure."""
+        """Time in UTC, level, logger, message, the fields of the request, fault or session, and the failure."""
         line = {"time": time.strftime("%Y-%m-%dT%H:%M:%S", time.gmtime(record.created)) + f".{int(record.msecs):03d}Z",
                 "level": record.levelname.lower(), "logger": record.name, "message": record.getMessage()}
         line.update((name, getattr(record, name)) for name in _FIELDS if hasattr(record, name))

@@ -46,12 +46,12 @@ def test_a_public_server_needs_origins_and_a_secret(public: list[str], words: li
 
 @pytest.mark.skipif(not _has_ipv6(), reason="this machine has no ::1")
 def test_an_address_of_ipv6_is_served_under_its_own_name() -> None:
-    one = Listening(Access(origins=("[2001:db8::7]:443",)), "::1")
+    one = Listening(Access(origins=("[2001:db8::7]:443", "[2001:DB8:0::9]:443")), "::1")
     try:
         assert one.ask("/")[0] == 200
         hosts = {"[::1]:5006": 200, "[2001:db8::7]": 200, "[::2]:5006": 421}
         assert {host: one.ask("/liveness", Host=host)[0] for host in hosts} == hosts
-        origins = {"https://[2001:db8::7]:443": 101, "https://[2001:db8::8]:443": 403}
+        origins = {"https://[2001:db8::7]:443": 101, "https://[2001:db8::9]:443": 101, "https://[2001:db8::8]:443": 403}
         assert {origin: one.connect(one.token(), Origin=origin) for origin in origins} == origins
     finally:
         one.stop()
@@ -81,6 +81,25 @@ def test_a_secret_that_all_users_can_read_is_a_line_in_the_log(
     with caplog.at_level("WARNING", "granchain"):
         assert main(["serve", "--secret-file", str(secret)]) == 0
     assert ["can read the secret" in one for one in caplog.messages] == [True] * warned
+
+
+@pytest.mark.parametrize(("origin", "warned"), [
+    ("*", True), ("*:5006", True), ("*.*", True), ("*.example.org", False), ("a.example.org", False), ("[2001:db8::7]:443", False)])
+def test_a_pattern_for_all_names_is_a_line_in_the_log(origin: str, warned: bool, monkeypatch: pytest.MonkeyPatch,
+                                                      caplog: pytest.LogCaptureFixture) -> None:
+    monkeypatch.setattr(server, "serve", lambda *args, **kwargs: kwargs["on_ready_to_listen"]())
+    with caplog.at_level("WARNING", "granchain"):
+        assert main(["serve", "--allow-websocket-origin", origin]) == 0
+    assert ["switches off the checks" in one for one in caplog.messages] == [True] * warned
+
+
+def test_an_origin_is_compared_in_lower_case() -> None:
+    one = Listening(Access(origins=("A.Example.org",)))
+    try:
+        assert one.ask("/liveness", Host="a.example.org")[0] == 200
+        assert one.connect(one.token(), Origin="https://a.example.org") == 101
+    finally:
+        one.stop()
 
 
 def test_the_secret_of_cookies_is_given_or_follows_from_that_of_the_sessions(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

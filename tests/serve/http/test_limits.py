@@ -27,10 +27,11 @@ from app.serve.http import frame_rate, guarded_socket, message_rules
 from app.serve.http.frame_rate import FRAME_BURST, FRAME_RATE, FRAME_UNIT
 from app.serve.http.limits import LARGEST_UPLOAD, MOST_UPLOADED_POINTS
 from app.serve.http.message_rules import LARGEST_PLAIN_CONTENT, UPLOAD
+from app.serve.http.unsent import UnsentBytes
 from app.serve.monitoring.metrics import METRICS
 from app.server import Access
 from app.session import starts
-from app.session.budget import FIRST_PICTURE, WHOLE_PICTURE
+from app.session.budget import FIRST_PICTURE, UNASKED_CURVE, WHOLE_PICTURE
 from app.session.share import LONGEST, PINS
 from granchain_core.orbits.branch.branch import MOST_POINTS
 from granchain_core.scene.quantities import QUANTITIES
@@ -59,11 +60,14 @@ def test_the_limits_of_the_document_are_those_of_the_code() -> None:
                             f"{FRAME_UNIT // 1000} kB of it; beyond that the connection is closed (1008)",
         "bytes that wait to be sent to a page": f"{guarded_socket.MOST_UNSENT // 1_000_000} MB when another message is to be "
                                                 "sent, as two pictures of the longest chain; beyond that the connection is closed",
+        "bytes that wait to be sent to all pages": f"{guarded_socket.MOST_UNSENT_TOGETHER // 1_000_000} MB together; beyond "
+                                                   "that the connection with the most is closed",
         "a page that is being loaded": f"{server.UNCONNECTED_MS // 1000} s; at most half of the sessions",
         "a link": f"{LONGEST} characters",
         "sessions at once": f"{Access().max_sessions}",
-        "long computations of a visitor at once": f"{LONG.per_owner_limit} ({LONG.purpose}); more wait",
+        "long computations of a session at once": f"{LONG.per_owner_limit} ({LONG.purpose}); more wait",
         "first picture, steady state": f"{FIRST_PICTURE:g} s (estimated), {WHOLE_PICTURE:g} s of processor time",
+        "a resonance curve": f"{UNASKED_CURVE:g} s (estimated); a longer one is left to `granchain curve`",
         "pictures and curves kept for all visitors": f"{PICTURES_SHARED.memory / 1e6:g} MB and {CURVES_SHARED.memory / 1e6:g} MB",
     } == {limit: value for limit, (value, _) in LIMITS.items()}
 
@@ -231,6 +235,37 @@ def test_a_page_that_does_not_read_is_closed(monkeypatch: pytest.MonkeyPatch) ->
         waiting.until(lambda: not one.server._tornado.get_sessions("/"), 30)
     finally:
         one.stop()
+
+
+def test_the_page_with_the_most_unsent_bytes_is_closed_if_all_pages_have_too_many(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(guarded_socket, "MOST_UNSENT_TOGETHER", 100_000)
+    monkeypatch.setattr(frame_rate, "FRAME_RATE", 1e6)
+    monkeypatch.setattr(frame_rate, "FRAME_BURST", 1e6)
+    one = Listening(Access(secret=SECRET))
+    try:
+        refused = METRICS.counted["refused_messages"]
+        with connected(one) as reading, connected(one) as silent, contextlib.suppress(ConnectionError):
+            silent.settimeout(60)
+            silent.sendall((masked(PONG) + message()) * 500)
+            waiting.until(lambda: METRICS.counted["refused_messages"] > refused, 60)
+            reading.sendall(masked(PING, b"there"))
+            assert b"there" in received(reading, 30, b"there")
+        assert METRICS.counted["refused_messages"] == refused + 1
+    finally:
+        one.stop()
+
+
+def test_unsent_bytes_are_counted_by_connection() -> None:
+    unsent: UnsentBytes[str] = UnsentBytes()
+    unsent.add("a", 5)
+    unsent.add("b", 7)
+    unsent.add("a", 4)
+    assert (unsent.total, unsent.of("a"), unsent.of("b"), unsent.largest()) == (16, 9, 7, "a")
+    unsent.remove("a", 5)
+    assert (unsent.total, unsent.largest()) == (11, "b")
+    unsent.remove("b", 7)
+    unsent.remove("a", 4)
+    assert (unsent.total, unsent.of("a"), unsent.of("b")) == (0, 0, 0)
 
 
 def received(sent: socket.socket, patience: float, until: bytes | None = None) -> bytes:

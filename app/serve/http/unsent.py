@@ -1,0 +1,35 @@
+"""Bytes that wait to be sent, over all websockets of a server."""
+
+from __future__ import annotations
+
+from typing import Generic, TypeVar
+
+Owner = TypeVar("Owner")
+
+
+class UnsentBytes(Generic[Owner]):
+    """How many bytes wait to be sent to each owner, and to all of them together. Used on the event loop alone."""
+
+    def __init__(self) -> None:
+        self.total = 0
+        self._by_owner: dict[Owner, int] = {}
+
+    def of(self, owner: Owner) -> int:
+        """The bytes that wait to be sent to this owner."""
+        return self._by_owner.get(owner, 0)
+
+    def add(self, owner: Owner, count: int) -> None:
+        """These bytes were written, and the operating system has not taken them yet."""
+        self._by_owner[owner] = self.of(owner) + count
+        self.total += count
+
+    def remove(self, owner: Owner, count: int) -> None:
+        """The operating system has taken these bytes, or their connection was closed."""
+        left = self._by_owner.pop(owner) - count
+        if left:
+            self._by_owner[owner] = left
+        self.total -= count
+
+    def largest(self) -> Owner:
+        """The owner to whom most bytes wait to be sent."""
+        return max(self._by_owner, key=self._by_owner.__getitem__)
