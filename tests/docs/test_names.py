@@ -11,7 +11,7 @@ from documents import FENCE, PAGES, ROOT
 
 _TOPS = ("granchain_core", "app", "granchain", "granchain_start", "tests", "tools")
 #: A name with an underscore in it or before it, which is no part of a path.
-_NAME = re.compile(r"(?<![\w./-])(?:_[A-Za-z]\w*|[A-Za-z]\w*_\w*[A-Za-z0-9])(?![\w/-])")
+_NAME = re.compile(r"(?<![\w./-])(?:_[A-Za-z]\w*|[A-Za-z]\w*_\w*[A-Za-z0-9])(?![\w/-]|\.(?:py|md|toml|js)\b)")
 #: A constant or private name and the file that the sentence gives: "`NAME` in `file.py`", "`NAME` (`file.py`)".
 _PLACED = re.compile(r"`(?:\w+\.)?(_\w+|[A-Z][A-Z_0-9]+)`\s+(?:in |of |\()`([\w/]+\.py)`")
 #: Pages that also name settings of other programs, metrics, and results' names that are put together: there only
