@@ -6,6 +6,7 @@ import argparse
 import re
 import textwrap
 
+import granchain
 from app.cli.commands import COMMANDS, module_of
 
 
@@ -23,6 +24,20 @@ def table_of_json() -> str:
     rows = [f"| `{name}` | {_with_marks(row.about)} | `granchain {name} {row.example}` | "
             f"{f'[{name}](#{name})' if '--json' in _help(name) else 'none'} |" for name, row in COMMANDS.items()]
     return "\n".join(["| command | what it does | example | keys |", "|---|---|---|---|", *rows])
+
+
+#: Functions of commands that have another name than these.
+_FUNCTIONS = {"curve": "resonance_curve", "lyapunov": "lyapunov_spectrum", "rotation": "rotation_number",
+              "bifurcation-diagram": "bifurcation_diagram", "map": "parameter_map", "accuracy": "work_precision"}
+
+
+def table_of_functions() -> str:
+    """The table of README.md: the commands with a function, in the order of `granchain --help`."""
+    unknown = {*_FUNCTIONS} - {*COMMANDS} | {*_FUNCTIONS.values()} - {*granchain.__all__}
+    assert not unknown, f"no command or public function: {unknown}"
+    rows = [f"| `{name}` | `{function}` |" for name in COMMANDS
+            if (function := _FUNCTIONS.get(name, name)) in granchain.__all__]
+    return "\n".join(["| command | function |", "|---|---|", *rows])
 
 
 def _with_marks(words: str) -> str:

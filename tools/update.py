@@ -22,7 +22,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from tools import gallery, links, recipes, scales
-from tools.command_tables import commands_with_pictures, table_of_commands, table_of_json
+from tools.command_tables import commands_with_pictures, table_of_commands, table_of_functions, table_of_json
 from tools.dashboard_tables import table_of_messages_of_the_browser, table_of_messages_of_the_server
 from tools.generated import with_part
 from tools.hard_cases import table_of_hard_cases
@@ -85,6 +85,7 @@ _TABLES = (
     ("README.md", "scenes", table_of_scenes),
     ("README.md", "test command", test_command),
     ("README.md", "commands", table_of_commands),
+    ("README.md", "functions", table_of_functions),
     ("docs/command-line.md", "commands", table_of_json),
     ("README.md", "commands with pictures", commands_with_pictures),
     ("docs/scenes.md", "drives", table_of_drives),

@@ -17,6 +17,8 @@ from app.plots.theme import THEMES, style_sheet
 #: Laptops, screens, a beamer, a phone.
 SIZES = ((1024, 768), (1180, 820), (1280, 800), (1280, 720), (1366, 768), (1440, 900), (1536, 864), (1920, 1080),
          (2560, 1440), (390, 844))
+#: One on each side of every limit of the style sheets, at which the layout changes.
+LAYOUTS = ((1024, 768), (1280, 800), (1920, 1080), (390, 844))
 WIDTHS = ((1280, 800), (1920, 1080), (390, 844))
 
 # The title of every horizontal axis beside the map: its words, and how far its box is inside its picture on both sides.
@@ -87,13 +89,14 @@ def test_dark_differs_from_light_in_colours_only() -> None:
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("scene", ["sec2", "fig11-founded"])
-def test_no_control_and_no_word_is_cut_hidden_or_covered(at: Visit, scene: str) -> None:
+@pytest.mark.parametrize(("scene", "sizes"), [("sec2", SIZES), ("fig11-founded", LAYOUTS)])
+def test_no_control_and_no_word_is_cut_hidden_or_covered(at: Visit, scene: str, sizes: tuple[tuple[int, int], ...]) -> None:
+    """At all sizes with one scene; with another, which has a longer equation, in each layout."""
     page = at(f"?v=1&scene={scene}&look=light")
     page.wait_for_selector(".peak-names button", timeout=COMPILED)
     for theme in THEMES:
         expect(page.locator("html")).to_have_attribute("data-theme", theme)
-        for width, height in SIZES if theme != "dark" else ():
+        for width, height in sizes if theme != "dark" else ():
             page.set_viewport_size({"width": width, "height": height})
             fits(page)
         page.set_viewport_size({"width": 1920, "height": 1080})  # where the bar has room for its button

@@ -166,16 +166,17 @@ def test_a_signal_after_the_result_is_written_says_where_it_is(started: Callable
 @pytest.mark.parametrize("number", SENTENCE)
 def test_a_signal_after_the_command_is_done_changes_nothing(number: signal.Signals, started: Callable[..., Command]) -> None:
     """Python takes some time to leave, in which its default would end the process with another status."""
-    program = ("import atexit, time\nfrom app.cli import ending\nending.begin()\n"
-               "atexit.register(lambda: (print('leaving', flush=True), time.sleep(1.0)))\n"
-               "class Late:\n    def __del__(self):\n        time.sleep(1.0)\nlate = Late()\n"
+    program = ("import atexit, os, time\nfrom app.cli import ending\nending.begin()\n"
+               "atexit.register(lambda: (print('leaving', flush=True), time.sleep(0.3)))\n"
+               "class Late:\n    def __del__(self, write=os.write, sleep=time.sleep):\n"
+               "        write(1, b'almost gone\\n')\n        sleep(0.3)\nlate = Late()\n"
                "raise SystemExit(ending.leave(0))\n")
     command = started(program=("-c", program))
-    assert command.process.stdout is not None and command.process.stdout.readline() == "leaving\n"
-    command.send(number)
-    time.sleep(1.2)
-    if command.process.poll() is None:
-        command.send(number)
+    assert command.process.stdout is not None
+    for line in ("leaving\n", "almost gone\n"):
+        assert command.process.stdout.readline() == line
+        if command.process.poll() is None:
+            command.send(number)
     assert command.end() == 0 and command.err == ""
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
 
-_FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ def blocks(page: Path, until: str = "") -> list[Block]:
         assert text.count(until) == 1, f"{page.name} has no one place {until!r}"
         text = text.partition(until)[0]
     found = []
-    for match in _FENCE.finditer(text):
+    for match in FENCE.finditer(text):
         paragraphs = [p for p in text[: match.start()].split("\n\n") if p.strip()]
         found.append(Block(match[1], match[2], " ".join(paragraphs[-1].split()) if paragraphs else ""))
     return found
@@ -73,5 +73,5 @@ def commands(page: Path) -> list[str]:
     text = page.read_text(encoding="utf-8")
     shown = [line[2:] for block in blocks(page) if block.language == "console"
              for line in block.text.splitlines() if line.startswith("$ granchain ")]
-    spoken = re.findall(r"`(granchain \w+ [^`\n]+)`", _FENCE.sub("", text))
+    spoken = re.findall(r"`(granchain \w+ [^`\n]+)`", FENCE.sub("", text))
     return [c for c in shown + spoken if not re.search(r"\[|SCENE", c)]  # those say what a command takes

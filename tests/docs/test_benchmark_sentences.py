@@ -22,6 +22,18 @@ def ratio(section: str, error: str) -> str:
     return f"{min(others) / medians['granchain dop853-root']:.1f}"
 
 
+def test_the_cost_of_the_derivative_is_that_of_the_tables() -> None:
+    """The smallest and largest ratio of all machines, for each number of beads that docs/orbits.md names."""
+    tables = [text.partition("with derivative ms")[2].partition("An orbit of")[0] for text in _PAGE.split("One drive period of ")[1:]]
+    text = " ".join((ROOT / "docs" / "orbits.md").read_text(encoding="utf-8").split())
+    said = re.findall(r"([\d.]+) to ([\d.]+) times (?:the motion alone )?with (\d+)", text)
+    assert len(said) == 3
+    for low, high, beads in said:
+        ratios = [float(ratio) for table in tables
+                  for ratio in re.findall(rf"^{beads} +[\d.]+ +[\d.]+ +([\d.]+) ", table, re.MULTILINE)]
+        assert len(ratios) == len(tables) and (float(low), float(high)) == (min(ratios), max(ratios))
+
+
 def sentence(text: str) -> str:
     """A text in one line."""
     return " ".join(text.split())

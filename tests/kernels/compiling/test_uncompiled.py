@@ -1,0 +1,40 @@
+"""What docs/compiling.md says of functions that a debugger steps through."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from granchain_core import scene
+from granchain_core.integrate import Engine, MethodSetting, fixed
+from granchain_core.kernels.compiling.jit import brief_kernel, inline_llvm, inline_numba, internal, kernel
+
+_PAGE = Path(__file__).resolve().parents[3] / "docs" / "compiling.md"
+
+
+def test_the_example_runs_uncompiled_and_gives_the_same_motion(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(fixed, "_RUN_STEPS", fixed._RUN_STEPS)  # set back after the test
+    (code,) = re.findall(r"^```python\n(.+?)^```$", _PAGE.read_text("utf-8"), re.MULTILINE | re.DOTALL)
+    names: dict[str, Engine] = {}
+    exec(compile(code, _PAGE.name, "exec"), names)
+    monkeypatch.undo()
+    compiled = Engine(scene("sec2"), MethodSetting("rk4-split"), 8)
+    compiled.record(1)
+    # vectors sum in another order
+    np.testing.assert_allclose(names["engine"].y, compiled.y, rtol=0, atol=1e-12 * np.abs(compiled.y).max())
+    assert np.abs(compiled.y).max() > 0.0
+
+
+@pytest.mark.parametrize(("decorator", "compiles"), [
+    (kernel, True), (brief_kernel, True), (inline_numba, True), (internal, False), (inline_llvm, False)])
+def test_what_an_uncompiled_function_calls_runs_as_the_table_says(decorator, compiles: bool) -> None:  # type: ignore[no-untyped-def]
+    def twice(value):  # type: ignore[no-untyped-def]
+        return 2.0 * value
+
+    function = decorator(twice)
+    assert function(1.5) == function.py_func(1.5) == 3.0
+    dispatcher = getattr(function, "dispatcher", function)
+    assert bool(dispatcher.signatures) == compiles
