@@ -28,7 +28,7 @@ from .reports import Reports
 from .sweep import Progress, Sweep
 from .view import CurveFigure
 
-#: Rest of the knobs before a curve is begun [s]: nobody reads a curve while dragging.
+#: Time for which the knobs must rest before a curve is begun [s]: nobody reads a curve while dragging.
 CURVE_QUIET = 0.35
 
 
@@ -67,7 +67,7 @@ class CurveController:
         self._names = PeakNames(host, self._show_names)
 
     def selection(self, scene: Scene) -> str:
-        """What is drawn, as a link has it; "auto" for what the scene shows by itself."""
+        """The selected curves, as a link names them; "auto" for the scene's own selection."""
         chosen = {name for name, wanted in self._wanted.items() if wanted}
         return "auto" if chosen == _own(scene) else joined(chosen)
 
@@ -106,7 +106,7 @@ class CurveController:
         self._quiet.start(self._begin_when_compiled, scene)
 
     def _cancel(self) -> None:
-        """Cancel the curve, and drop reports that wait to be drawn: drawn, they would show a curve under way."""
+        """Cancel the curve, and drop reports not drawn yet: drawing them would show a curve under way."""
         self._task.cancel()
         self._reports.drop()
 
@@ -125,7 +125,7 @@ class CurveController:
             self._begin(scene)
 
     def _say_not_compiled(self, failure: Exception) -> None:
-        """Show no new curve, and say why, once for the same kernels."""
+        """Show no new curve, and give the reason once for each failure."""
         self.stop()
         if failure is not self._uncompiled:
             self._uncompiled = failure
@@ -140,7 +140,7 @@ class CurveController:
         self._placed()
 
     def visibility_changed(self, visible: bool) -> None:
-        """The figure came on the screen or left it."""
+        """The figure has come onto the screen or left it."""
         if visible == self._visible:
             return
         self._visible = visible
@@ -150,7 +150,7 @@ class CurveController:
             self.stop()
 
     def select(self, scene: Scene, selected: str) -> str:
-        """Draw the curves of a link, those of the scene for "auto"; return which."""
+        """Draw the curves that a link names, or for "auto" the scene's own; return the selection."""
         chosen = _own(scene) if selected == "auto" else set(selected.split("."))
         self._wanted = {name: name in chosen for name in self._wanted}
         self._show_features(scene)
@@ -158,7 +158,7 @@ class CurveController:
         return self.selection(scene)
 
     def switch(self, name: str, wanted: bool, scene: Scene) -> None:
-        """Switch the curve of a start, or the stated features, on or off."""
+        """Select or deselect the curve of a start, or the stated features."""
         if name not in self._wanted:
             return
         self._wanted[name] = wanted
@@ -226,7 +226,7 @@ class CurveController:
                 if self._wanted[name] and self._complete_for.get(name) == key}
 
     def _begin(self, scene: Scene) -> None:
-        """Compute the selected curves that are missing; a change of f alone needs no new curve."""
+        """Compute the selected curves that are missing; a change of only f needs no new curve."""
         key = without_frequency(scene)
         missing = [name for name in CURVE_STARTS
                    if self._visible and self._wanted[name] and self._complete_for.get(name) != key]
@@ -293,5 +293,5 @@ class CurveController:
 
 
 def _own(scene: Scene) -> set[str]:
-    """The curves that a scene shows by itself: the paper's rig has stated features."""
+    """The curves that a scene shows by default; the paper's rig also has stated features."""
     return {"rest", "features"} if scene.pattern == rig_beads() else {"rest"}

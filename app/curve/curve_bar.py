@@ -21,7 +21,7 @@ KINDS = [{"name": name, "symbol": SYMBOLS[marker], "colour": colour}
 
 
 class CurveBar(Component):
-    """Which curves are shown, their progress, and a button that stops them."""
+    """The bar of the curve: its selection, its progress, and a button that stops it."""
 
     _esm = module("curve_bar.js")
     _stylesheets = [text("controls.css"), text("curve_bar.css")]  # noqa: RUF012

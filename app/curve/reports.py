@@ -41,7 +41,7 @@ class Reports:
             self._waiting = []
 
     def _hand_over(self) -> None:
-        """With the document locked: draw what waits, now or when the last drawing is long enough ago."""
+        """Draw the waiting reports now, or once enough time has passed since the last drawing; document locked."""
         left = self._drawn + CURVE_EVERY - time.monotonic()
         if left > 0.0:
             self._host.call_later(left, self._hand_over)

@@ -126,7 +126,7 @@ class CurveFigure:
                 renderer.visible = name in starts
 
     def begin(self, starts: list[str]) -> None:
-        """Make the present curves of these starts grey, because new ones will come."""
+        """Turn the present curves of these starts grey, because new ones will come."""
         self._whole = self._whole and "rest" not in starts
         for name in SWEEPS:
             if name in starts:
@@ -146,7 +146,7 @@ class CurveFigure:
         self._draw(start)
 
     def redraw(self, start: str, points: list[CurvePoint]) -> None:
-        """Draw a whole curve in place of the present one, while a knob moves."""
+        """Replace the present curve by a whole new one, while a knob moves."""
         self._whole = self._whole and start != "rest"
         self._points[start] = []
         self.add(start, points, covers=True)
@@ -247,7 +247,7 @@ class CurveFigure:
                         np.array([point.max_output_force for point in points]))
 
     def _rescale(self) -> None:
-        """Fit the force axis to all curves and measured data; in another unit, draw everything anew."""
+        """Fit the force axis to all curves and measured data; redraw everything if its unit changes."""
         curves = (*self._points.values(), *self._grey_points.values())
         forces = [point.max_output_force for points in curves for point in points] + self._pinned.forces
         if self._measurement is not None:

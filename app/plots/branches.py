@@ -105,7 +105,7 @@ class BranchRows:
         self._knob = self._knob or knob_scale(knob, (high,))
 
     def _fresh(self, models: dict[str, dict[str, Any]]) -> dict[str, dict[str, Any]]:
-        """Those properties, with the labels of the axes, that have not been sent yet."""
+        """The properties, with the labels of the axes, that have not been sent yet."""
         assert self._knob is not None and self._force is not None
         models = {**models, "knob": {"axis_label": self._knob.label}, "force": {"axis_label": self._force.label}}
         fresh = {name: properties for name, properties in models.items() if name not in self._models}
@@ -247,7 +247,7 @@ def drawn_orbits(points: list[BranchPoint], special: list[SpecialPoint]) -> list
 
 
 def special_words(special: SpecialPoint, branch: Branch) -> str:
-    """What a special point is, where, and how sure that is."""
+    """The kind of a special point, its place, and how certain both are."""
     scale = knob_scale(branch.axis.knob, (branch.axis.high,))
     low, high = special.interval
     words = (f"{SPECIAL[special.kind].removesuffix(' (torus)')} at {special.knob / scale.factor:.4f} ± "

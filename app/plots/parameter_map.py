@@ -42,7 +42,7 @@ from .themed import apply_theme, empty_figure, themed
 CATEGORIES = (*REGIME_MARKS, "failed")
 COLOURS = [REGIME_MARKS[name][1] if name in REGIME_MARKS else BROWN for name in CATEGORIES]
 _HATCHES = (" ", "/", "-", "|", "+", "\\", "x", ".", "o")
-#: Marks on a bifurcation curve: at most so many, and their width [px].
+#: Marks on a bifurcation curve: their largest number, and their width [px].
 _MOST_MARKS, _MARK_SIZE = 9, 11
 #: Most cells that a browser shows smoothly.
 MOST_DRAWN_CELLS = 40_000

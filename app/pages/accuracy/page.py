@@ -132,7 +132,7 @@ class AccuracyPage(Page):
         self._view.update_state(**WORDS.of(status, sentence), done=self.done)
 
     def _used(self, now: PlacedSetting | None) -> str:
-        """What the page uses, and why the error in the status line is another number."""
+        """The setting that the page uses, and why the status line shows another error."""
         settled = self._host.session.settled
         if now is None:
             return ""

@@ -42,7 +42,7 @@ class Accuracy(StreamedFigure):
         self._naive: Lesson | None = None
 
     def apply_theme(self, theme: Theme) -> None:
-        """Draw the figures, that of the forces too, in another theme."""
+        """Draw the figures, including the one of the forces, in another theme."""
         super().apply_theme(theme)
         if self._naive is not None:
             self.show_naive(self._naive)

@@ -33,7 +33,7 @@ class AnalysisPage(Page):
     """Answers one question at a time; an answer stays, with its scene in the title, until another question is asked.
 
     The address has the question and the values with which it was last computed. A page that is opened with a question
-    in its address offers it again, and computes nothing until the visitor wants it. A page without one answers the
+    in its address offers it again, and computes nothing until the visitor asks for it. A page without one answers the
     first question, which takes no time, for every picture until the visitor asks another.
     """
 

@@ -109,7 +109,7 @@ class DataPage(Page):
             self._tabs.update_state(question=None)
 
     def _answer(self, message: dict[str, Any]) -> None:
-        """What the visitor chose: columns as [quantity, number, unit], and words."""
+        """The visitor's choices: columns as [quantity, number, unit], and words."""
         columns = message.get("columns", [])
         if not isinstance(columns, list) or not all(isinstance(column, list) and len(column) == 3
                                                     for column in columns):

@@ -96,7 +96,7 @@ class MapPage(Page):
         return self._grid is None or self._grid.digest != page_grid(self._host.session.scene).digest
 
     def visibility_changed(self, visible: bool) -> None:
-        """Show the map, and compute its missing cells, as long as somebody looks."""
+        """Show the map, and compute its missing cells, while the page is visible."""
         self._visible = visible
         if not visible:
             self._stop()

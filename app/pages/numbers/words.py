@@ -18,7 +18,7 @@ _MOST_BEADS = 200
 
 
 def summary(run: Run) -> str:
-    """What the pictures show, in a few sentences."""
+    """A summary of the pictures in a few sentences."""
     energy = run.kinetic_energy
     row, bead = map(int, np.unravel_index(int(energy.argmax()), energy.shape))
     far = int(energy[:, -1].argmax())
@@ -46,7 +46,7 @@ def _travel(run: Run) -> str:
 
 
 def _where_energy_goes(run: Run) -> str:
-    """What becomes of the work of the driver in a steady motion, if only the damping of contacts can lose energy.
+    """Where the work of the driver goes in a steady motion, if only the damping of contacts can lose energy.
 
     The wall takes none, because it does not move.
     """

@@ -166,7 +166,7 @@ class ObserverRun:
 
     @property
     def sentence(self) -> str:
-        """What the multiplier predicts, in one sentence."""
+        """The prediction of the multiplier in one sentence."""
         mu, factor = self.leading, self.predicted
         if self.in_step:
             return "The observer agrees with its chain to rounding; nudge it and watch it converge again."

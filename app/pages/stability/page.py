@@ -100,7 +100,7 @@ class StabilityPage(Page):
             self._quiet.start(self._begin)
 
     def visibility_changed(self, visible: bool) -> None:
-        """Analyse the picture when somebody begins to look; cancel the analysis when nobody looks any more."""
+        """Analyse the picture when the page becomes visible; cancel the analysis when it is hidden."""
         self._visible = visible
         if not visible:
             self._give_up()

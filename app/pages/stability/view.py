@@ -225,6 +225,6 @@ def section_points(section: Section, on_the_way: int, orbit: Section | None, bea
 
 
 def section_message(shown: SectionPoints) -> dict[str, Any]:
-    """What the browser puts into its figure, and the ranges of the close view."""
+    """The data that the browser puts into its figure, and the ranges of the close view."""
     return {"type": "section", "drawn": section_state(shown), "near": close_up(shown), "count": len(shown.points),
             "own": len(shown.own)}

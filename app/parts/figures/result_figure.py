@@ -47,7 +47,7 @@ class ResultFigure(Component):
         self.send(type="clear", place=place)
 
     def apply_theme(self, theme: Theme) -> None:
-        """Draw all figures anew in another theme."""
+        """Redraw all figures in another theme."""
         if theme != self._theme:
             self._theme = theme
             for place in self._drawn:

@@ -38,7 +38,7 @@ class StreamedFigure(Component):
         self.theme = THEMES["light"]
 
     def apply_theme(self, theme: Theme) -> None:
-        """Draw the figures anew in another theme."""
+        """Redraw the figures in another theme."""
         if theme != self.theme:
             self.theme = theme
             if self.figures:
