@@ -99,7 +99,7 @@ def serve(port: int = 5006, address: str = "127.0.0.1", access: Access | None = 
     print(f"granchain is at http://{shown}:{port}/ (stop it with Ctrl+C)", flush=True)
     COMPILER.prepare(Session().scene)
     settings.perform_document_validation.set_value(False)  # 40 ms for each page; the tests find such errors
-    if hasattr(settings, "perform_error_diagnostics"):
+    if hasattr(settings, "perform_error_diagnostics"):  # since 3.9; Panel asks for a missing name at each change
         settings.perform_error_diagnostics.set_value(False)
     install_defaults_cache()
     install_resources_cache()

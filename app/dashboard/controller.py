@@ -217,7 +217,7 @@ class Controller:
     # Events of the parts
 
     def picture_ready(self, settled: Settled) -> None:
-        """A settled picture is ready: notify header and pins now, and the pages once the picture is offered."""
+        """Notify header and pins of a settled picture now, and the pages once the picture is offered."""
         self.views.header.show_picture_start(settled.start, self.session)
         self.pinned.picture_ready(settled)
         self._scenes.picture_ready(settled)

@@ -79,8 +79,8 @@ class MainPicture:
         self._numbers = itertools.count(1)
         #: The number of the last request whose picture has come.
         self._answered = 0
-        #: Frames of the last pictures. The cache of `prepared_frames` has weak references alone, and the event loop
-        #: would otherwise prepare these frames again.
+        #: Frames of the last pictures. The cache of `prepared_frames` has only weak references, so without these the
+        #: event loop would prepare the frames again.
         self._frames: deque[Frames] = deque(maxlen=2)
         host.on_close(self._close)
 

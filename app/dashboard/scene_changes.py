@@ -117,7 +117,7 @@ class SceneChanges:
         self.show_preset(None, "")
 
     def _go(self, message: dict[str, Any]) -> None:
-        """A step back or forward: set the session from the address, and its picture to the last digit.
+        """Set the session, and its picture to the last digit, from the address of a step back or forward.
 
         The browser is notified in any case. Until then it takes every change for a part of the step (`Steps.returning`
         of address.js), and the visitor could undo no further change.

@@ -95,7 +95,7 @@ class Sentences:
         return where
 
     def _script_error(self, message: dict[str, Any]) -> None:
-        """Log an error of a script in the browser, as one line: anybody may send anything as its words."""
+        """Log an error of a script in the browser as one line, because anybody may send any text as its words."""
         words = message.get("what")
         if not isinstance(words, str) or self._script_errors >= MOST_SCRIPT_ERRORS:
             return

@@ -50,14 +50,14 @@ class AnalysisPage(Page):
         self.address_applied()
 
     def scene_changed(self) -> None:
-        """The knobs have moved: the work under way and the values in the fields belong to another scene."""
+        """Drop the work under way and the values in the fields: they belong to the scene before the knobs moved."""
         self._stop()
         if self._question is not None:
             self._fields = offered_fields(self._question, self._host.session.scene, self._fields)
             self._view.offer(self._fields)
 
     def visibility_changed(self, visible: bool) -> None:
-        """When the page is opened without a question, answer the first one."""
+        """Answer the first question if the page is opened without one."""
         self._visible = visible
         self._unasked = self._unasked or (visible and self._question is None)
         self._begin_unasked()

@@ -1,4 +1,4 @@
-"""The Numbers tab of one session: a summary of every settled picture, and tables while the tab is looked at."""
+"""The Numbers tab of one session: a summary of every settled picture, and tables while the tab is visible."""
 
 from __future__ import annotations
 

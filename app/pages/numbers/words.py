@@ -39,7 +39,7 @@ def _forces(run: Run) -> str:
 
 
 def _travel(run: Run) -> str:
-    """How far beads move from rest."""
+    """The largest displacements of the beads from rest."""
     far = np.abs(run.displacement).max(axis=0)
     most = int(far.argmax())
     return f"The bead that moves farthest, number {most + 1}, goes {in_words(float(far[most]), 'm', 3)} from its place."
