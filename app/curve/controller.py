@@ -61,7 +61,7 @@ class CurveController:
         #: computed, from 0 to 1; -1 if nothing is under way.
         self._missing: list[str] = []
         self._done = -1.0
-        #: Why the kernels of the present knobs could not be compiled.
+        #: The reason why the kernels of the present knobs could not be compiled.
         self._uncompiled: Exception | None = None
         self._kernels = Requests(COMPILER)
         self._names = PeakNames(host, self._show_names)
@@ -89,7 +89,7 @@ class CurveController:
         return self.selection(scene)
 
     def knob_moved(self, scene: Scene) -> None:
-        """A knob moved. Any knob but f changes the curve: a draft comes at once, the curve when the knobs rest."""
+        """Follow a moved knob. If it is not f, draw a draft of the new curve at once, and the curve when the knobs rest."""
         if without_frequency(scene) == self._wanted_for:
             return
         self._names.forget()
@@ -98,7 +98,7 @@ class CurveController:
             self._drafts.submit(scene)
 
     def restart_when_quiet(self, scene: Scene) -> None:
-        """The scene or the selection has changed: cancel the curve, and start again when the knobs rest."""
+        """Cancel the curve and start again when the knobs rest, because the scene or the selection has changed."""
         self._cancel()
         self._wanted_for = without_frequency(scene)
         self._figure.expected = self._visible and self._wanted["rest"] and curve_affordable(scene)
@@ -184,7 +184,7 @@ class CurveController:
         return 0.0 <= self._done < 1.0
 
     def activities(self) -> list[Activity]:
-        """Name, state and detail of the curve of every start, as it is at this moment."""
+        """Name, state and detail of the curve of every start at this moment."""
         rows = []
         for name in CURVE_STARTS:
             title = f"resonance curve, {SWEEPS[name].words}"
@@ -207,7 +207,7 @@ class CurveController:
         return rows
 
     def measured(self, measured: Measured | None) -> Difference | None:
-        """Draw the visitor's own data, or none; return their difference from a complete curve from rest."""
+        """Draw the visitor's data, or remove them; return their difference from a complete curve from rest."""
         self._figure.measured(measured)
         return self._figure.difference
 
@@ -248,7 +248,7 @@ class CurveController:
             self._task.cancel()
 
     def _draft_drawn(self) -> None:
-        """The curve from rest has been replaced by a draft; it must be computed again even for the same knobs."""
+        """Compute the curve from rest again even for the same knobs, because a draft has replaced it."""
         self._complete_for.pop("rest", None)
 
     def _show_features(self, scene: Scene) -> None:

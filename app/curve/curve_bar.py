@@ -12,7 +12,7 @@ from ..plots.curve import SWEEPS
 from ..plots.regimes import REGIME_MARKS, SYMBOLS
 from ..scripts import module
 
-#: What may be shown: name, label and meaning.
+#: The curves that can be selected: name, label and meaning.
 CHOICES = (*((name, style.label, f"{style.meaning.capitalize()}.") for name, style in SWEEPS.items()),
            ("features", "paper’s features ┊", "Frequencies the paper states for its rig; it gives no forces."))
 #: Every mark that a curve may have, for the key and for the tab “regimes”.

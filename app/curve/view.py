@@ -37,7 +37,7 @@ class CurveFigure:
         self._grey_points: dict[str, list[CurvePoint]] = {name: [] for name in SWEEPS}
         self._scale = (1.0, "")
         self._whole = False
-        #: Whether a curve from rest is being computed or will be, without being asked for.
+        #: Whether a curve from rest is being computed, or will be computed unasked.
         self.expected = False
         self._ordered: tuple[np.ndarray, np.ndarray, list[int | None]] | None = None
         self._shown: tuple[float, float | None] = (0.0, None)
@@ -84,7 +84,7 @@ class CurveFigure:
         return source
 
     def _bring_forward(self) -> None:
-        """Draw what the paper states in front of the curves, in whichever order they came."""
+        """Draw the paper's statements in front of the curves, whatever the order in which they were made."""
         others = [renderer for renderer in self.figure.renderers if renderer is not self._stated]
         self.figure.renderers = [*others, self._stated]
 
@@ -225,7 +225,7 @@ class CurveFigure:
         self._rescale()
 
     def measured(self, measured: Measured | None) -> None:
-        """Show the visitor's own data with error bars, or none."""
+        """Show the visitor's data with error bars, or remove them."""
         self._measurement = measured
         self._rescale()
         if measured is None:

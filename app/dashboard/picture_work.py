@@ -1,4 +1,4 @@
-"""The computation of the main picture: what its threads do. `main_picture.py` requests it and shows the results."""
+"""The computation of the main picture in threads; `main_picture.py` requests it and shows the results."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from ..session.live import LiveRun, LiveStep
 
 
 def size_of(settled: Settled) -> int:
-    """Memory of a picture [bytes]: its arrays, and a little more."""
+    """Memory of a picture [bytes]: its arrays and a small overhead."""
     arrays = [*vars(settled.run).values(), settled.state.displacement, settled.state.velocity]
     return 4096 + sum(array.nbytes for array in arrays if isinstance(array, np.ndarray))
 
@@ -60,7 +60,7 @@ class SettledRequest:
     """The values of a request for a settled picture. Workers do not read the session, so they are kept here."""
 
     scene: Scene
-    #: Where the motion begins; None is rest.
+    #: The state in which the motion begins; None means rest.
     initial_state: State | None
     #: Whether the picture is computed no matter how long it takes.
     insisted: bool

@@ -1,4 +1,4 @@
-"""Error against processor time for every method, both logarithmic, with the accuracy asked for and the cheapest row."""
+"""Error against processor time for every method, both logarithmic, with the requested accuracy and the cheapest row."""
 
 from __future__ import annotations
 

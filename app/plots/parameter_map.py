@@ -38,7 +38,7 @@ from .regimes import REGIME_MARKS, regime_key
 from .theme import BROWN, GREY, MARK_COLOUR, MARK_EDGE, Theme
 from .themed import apply_theme, empty_figure, themed
 
-#: What a cell may be, in the curve's colours, each with a hatch of its own.
+#: The kinds of a cell, in the curve's colours, each with its own hatch.
 CATEGORIES = (*REGIME_MARKS, "failed")
 COLOURS = [REGIME_MARKS[name][1] if name in REGIME_MARKS else BROWN for name in CATEGORIES]
 _HATCHES = (" ", "/", "-", "|", "+", "\\", "x", ".", "o")

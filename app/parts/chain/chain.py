@@ -15,7 +15,7 @@ from ...scripts import module
 from ...session.share import VIEW_VALUES, encode
 from ..toolkit.component import Component, text
 
-#: The scales of the pictures: what a button says, and what it means.
+#: The scales of the pictures: the word on a button, and its meaning.
 _SCALES = {
     "same": ("same scale", "One scale for all pictures of this scene: its axes and colours end at the largest values "
              "at any drive frequency, so that strong and weak motions can be compared. A larger motion widens it; "

@@ -45,6 +45,6 @@ class StreamedFigure(Component):
                 self.figures = self.empty_figures(theme)
 
     def need_figures(self) -> None:
-        """Send the figures if they have not been sent; to be called before the first data."""
+        """Send the figures unless they have been sent; called before the first data."""
         if not self.figures:
             self.figures = self.empty_figures(self.theme)
