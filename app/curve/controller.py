@@ -89,7 +89,7 @@ class CurveController:
         return self.selection(scene)
 
     def knob_moved(self, scene: Scene) -> None:
-        """Follow a moved knob. If it is not f, draw a draft of the new curve at once, and the curve when the knobs rest."""
+        """Follow a moved knob. For any knob except f, draw a draft at once, and the curve when the knobs rest."""
         if without_frequency(scene) == self._wanted_for:
             return
         self._names.forget()
