@@ -96,7 +96,7 @@ def do(arguments: argparse.Namespace) -> None:
 
 
 def _target(arguments: argparse.Namespace, chosen: Scene) -> Any:
-    """What is compared."""
+    """The quantities that are compared."""
     import numpy as np
 
     from granchain_core.experiment import stated_features

@@ -112,7 +112,7 @@ def _hatched(plot: figure, source: ColumnDataSource) -> list[LegendItem]:
 
 
 def shown_models(shown: str) -> dict[str, dict[str, Any]]:
-    """What is visible of the figure where `shown` is "force" or "regime", by the names of models."""
+    """The visibility of the figure's models where `shown` is "force" or "regime", by the names of models."""
     force = shown == "force"
     return {**{name: {"visible": force} for name in ("force", "own force", "bar")},
             **{name: {"visible": not force}
