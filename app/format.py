@@ -35,7 +35,7 @@ _SMALLEST_PLAIN, _LARGEST_PLAIN = 1e-6, 1e9
 
 
 def with_figures(value: float, figures: int) -> str:
-    """A number to so many significant figures, zeros included, "5.040", "150"; very large and small ones in powers."""
+    """A number to `figures` significant figures, with zeros: "5.040", "150"; very large and small ones in powers."""
     if not math.isfinite(value):
         return f"{value}"
     if value and not _SMALLEST_PLAIN <= abs(value) < _LARGEST_PLAIN:

@@ -21,7 +21,7 @@ _MOST_ROWS = 384
 _ROW_STEP = 48
 #: Rows per contact time 1/φ; a pulse passes a bead in about three contact times.
 _ROWS_PER_CONTACT_TIME = 1.5
-#: Most values of one quantity in a picture; beyond that, rows are left out, which nobody would see.
+#: Most values of one quantity in a picture; beyond that, rows are dropped; the difference is not visible.
 _MOST_VALUES = 60_000
 
 #: Drive periods in a live picture, and at least in a settled picture; a longer orbit is shown once.

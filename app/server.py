@@ -58,7 +58,7 @@ SESSION_CHECK_MS = 1000
 
 @dataclass(frozen=True)
 class Access:
-    """Who may use the server; docs/security.md has the meaning of each field. By default only this machine may.
+    """Who may use the server, by default only this machine; docs/security.md explains each field.
 
     `secret` signs sessions; without it a server makes a random one. `origins` are the names under which browsers reach
     the server (`HOST` or `HOST:PORT`), `sign_in` the keyword arguments of Panel's `serve` for basic authentication or
@@ -75,7 +75,7 @@ class Access:
 
 
 def is_loopback(address: str) -> bool:
-    """Whether a server at this address can be reached from this machine alone."""
+    """Whether a server at this address can be reached only from this machine."""
     if address == "localhost":
         return True
     try:
@@ -98,17 +98,17 @@ def serve(port: int = 5006, address: str = "127.0.0.1", access: Access | None = 
     shown = "localhost" if address in ("0.0.0.0", "127.0.0.1", "") else _in_url(address)
     print(f"granchain is at http://{shown}:{port}/ (stop it with Ctrl+C)", flush=True)
     COMPILER.prepare(Session().scene)
-    settings.perform_document_validation.set_value(False)  # 40 ms of every opening; the tests find such errors
-    if hasattr(settings, "perform_error_diagnostics"):  # since 3.9; at every change Panel asks for a missing name
+    settings.perform_document_validation.set_value(False)  # 40 ms for each page; the tests find such errors
+    if hasattr(settings, "perform_error_diagnostics"):  # since 3.9; Panel asks for a missing name at each change
         settings.perform_error_diagnostics.set_value(False)
     install_defaults_cache()
     install_resources_cache()
     sys.setswitchinterval(SWITCH_INTERVAL)
-    gc.freeze()  # a search for garbage skips what all pages share, and no longer takes 120 ms
+    gc.freeze()  # garbage collection then skips the objects that all pages share, and no longer takes 120 ms
     gc.enable()  # app/cli/serve.py has disabled it before its imports
     server.start()
     server.io_loop.spawn_callback(METRICS.watch)
-    # Until a signal ends the process (app/cli/ending.py). Bokeh's `run_until_shutdown` would wait for its threads.
+    # Runs until a signal ends the process (app/cli/ending.py). Bokeh's `run_until_shutdown` would wait for its threads.
     server.io_loop.start()
 
 
@@ -198,6 +198,6 @@ def _as_browsers_write(origin: str) -> str:
 
 
 def _name_of(origin: str) -> str:
-    """The host of HOST, HOST:PORT or [IPv6]:PORT, without brackets."""
+    """The host in HOST, HOST:PORT or [IPv6]:PORT, without brackets."""
     name = origin.lower().rpartition("://")[2]
     return name[1:].partition("]")[0] if name.startswith("[") else name.partition(":")[0]

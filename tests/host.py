@@ -1,4 +1,4 @@
-"""A dashboard's host in tests: what it is asked to call is called when the test says so."""
+"""A fake host of a dashboard, which queues callbacks until the test runs them."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from granchain_core import CurvePoint
 
 
 class Pending:
-    """What is to be called, in order: it waits until the test says so. Any thread may add to `callbacks`."""
+    """A queue of callbacks, which the test runs in order. Any thread may add to `callbacks`."""
 
     def __init__(self) -> None:
         self.callbacks: list[Callable[[], None]] = []
 
     def call_waiting(self) -> None:
-        """Call what waits now; what that asks for waits."""
-        waiting, self.callbacks = self.callbacks, []
-        for callback in waiting:
+        """Run the callbacks queued so far; callbacks that they queue stay in the queue."""
+        queued, self.callbacks = self.callbacks, []
+        for callback in queued:
             callback()
 
     def run_callbacks_until(self, until: Callable[[], bool], seconds: float = 20.0) -> None:
-        """Call what waits until something holds."""
+        """Run callbacks until a condition holds."""
         waiting.until(until, seconds, self._call_all)
 
     def _call_all(self) -> None:
@@ -51,28 +51,28 @@ class FakeHost(Pending):
         self.closing: list[Callable[[], object]] = []
 
     def next_tick(self, action: Callable[..., None], *args: Any) -> None:
-        """From any thread."""
+        """Queue an action, from any thread."""
         self.callbacks.append(lambda: action(*args))
 
     def call_later(self, seconds: float, action: Callable[..., None], *args: Any) -> None:
-        """The time passes when the callbacks are worked off."""
+        """Queue an action at once: the delay passes when the test runs the callbacks."""
         self.next_tick(action, *args)
 
     def on_close(self, action: Callable[[], object]) -> None:
-        """What is called when the visitor leaves."""
+        """Keep an action for `leave`."""
         self.closing.append(action)
 
     def leave(self) -> None:
-        """The visitor leaves."""
+        """End the session, as when the visitor leaves."""
         for action in self.closing:
             action()
 
     def show_failure(self, error: Exception) -> None:
-        """What has no place on a page."""
+        """Keep an error for which a page has no place."""
         self.failures.append(error)
 
     def report_fault(self, error: Exception, sentence: str, fault: str = "") -> None:
-        """An error of granchain itself, what is said of it beside the page, and its id."""
+        """Keep an error of granchain itself, the message outside the page, and its id."""
         self.faults.append((error, sentence))
         self.fault_ids.append(fault)
 

@@ -24,7 +24,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def entry() -> int:
-    """What `granchain` and `python -m app.cli` run: `main` in a process of its own, which signals may end."""
+    """The entry of `granchain` and `python -m app.cli`: `main` in a whole process, which signals may end."""
     try:
         from . import ending
 

@@ -62,7 +62,7 @@ def do(arguments: argparse.Namespace) -> None:
 
 
 def branch_json(branch: Branch) -> dict[str, Any]:
-    """What `--json` prints."""
+    """The output of `--json`."""
     return {
         "knob": [p.knob for p in branch.points],
         "max_output_force_elastic": [p.max_output_force_elastic for p in branch.points],

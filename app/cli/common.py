@@ -1,4 +1,4 @@
-"""What all commands share: the scene from the options, messages on stderr, JSON on stdout."""
+"""Shared by all commands: the scene from the options, messages on stderr, JSON on stdout."""
 
 from __future__ import annotations
 

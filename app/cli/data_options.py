@@ -53,7 +53,7 @@ def chosen_amplitude(arguments: argparse.Namespace, scene: Scene) -> Amplitude |
 
 
 def with_answers(arguments: argparse.Namespace, read: Callable[[Answers], Found]) -> Found:
-    """What `read` gives for the answers; where a question is left, the first rows are shown before it."""
+    """The result of `read` for the answers; the first rows are shown before a question that is left."""
     from granchain_core.experiment import Unclear, answers_of
 
     answers = answers_of(arguments.column, arguments.decimal, arguments.separator, arguments.dataset,

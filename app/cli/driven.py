@@ -24,7 +24,7 @@ PERIODIC = {"periods": 100, "record": 20, "samples": 96, "method": None, "resume
 
 
 def do_driven(arguments: argparse.Namespace, chosen: Scene) -> None:
-    """Run a scene with the signal of --drive in place of its own drive."""
+    """Run a scene with the signal of --drive instead of its own drive."""
     from granchain_core import drive
     from granchain_core.experiment import Sensors, compared_forces
     from granchain_core.store import check_writable
@@ -159,7 +159,7 @@ def _measured(path: str, answers: Answers, gap: str) -> tuple[Signal, Series]:
 
 
 def _uses(series: Series) -> str:
-    """What is done with each column of a series."""
+    """The treatment of each column of a series."""
     from granchain_core.experiment.compare_forces import FORCES
 
     moves = "velocity" if series.velocity is not None else "displacement"

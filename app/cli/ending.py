@@ -131,7 +131,7 @@ def status() -> int:
 
 
 def word() -> str:
-    """What has happened to a cancelled command, in a word."""
+    """The outcome of a cancelled command in a word."""
     return _WORDS[status()]
 
 

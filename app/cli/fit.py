@@ -96,7 +96,7 @@ def do(arguments: argparse.Namespace) -> None:
 
 
 def _target(arguments: argparse.Namespace, chosen: Scene) -> Any:
-    """What is compared."""
+    """The quantities that are compared."""
     import numpy as np
 
     from granchain_core.experiment import stated_features
@@ -120,7 +120,7 @@ def _target(arguments: argparse.Namespace, chosen: Scene) -> Any:
 
 
 def _measured_target(arguments: argparse.Namespace) -> Any:
-    """What was measured: a curve, a series, or series at several frequencies."""
+    """The measurement: a curve, a series, or series at several frequencies."""
     from granchain_core.experiment import Measured, Series, read_experiment
     from granchain_core.fitting import CurveTarget, RecordsTarget, SeriesTarget
 

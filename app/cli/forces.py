@@ -1,4 +1,4 @@
-"""What commands say of a chain in motion, in JSON and in words: the scene, the largest forces, the errors, the cost."""
+"""The output for a chain in motion, in JSON and in words: the scene, the largest forces, the errors, the cost."""
 
 from __future__ import annotations
 

@@ -90,7 +90,7 @@ def _show_multipliers(title: str, multipliers: Any, errors: Any) -> None:
 
 
 def _search(chosen: Scene, arguments: argparse.Namespace) -> Callable[[Stop], Orbit]:
-    """What finds the orbit."""
+    """The method that finds the orbit."""
     from granchain_core.orbits import orbit_near_motion, periodic_orbit
 
     if arguments.start == "near":

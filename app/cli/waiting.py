@@ -1,4 +1,4 @@
-"""What a browser is shown while `granchain serve` starts: the page's skeleton, then the page, as soon as there is one.
+"""Answers a browser while `granchain serve` starts: with the page's skeleton, then the page, as soon as there is one.
 
 The server needs some seconds for its imports. Until then a thread of the standard library alone answers every request
 with status 503, so that a health check waits. It listens on this machine only.

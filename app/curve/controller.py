@@ -28,7 +28,7 @@ from .reports import Reports
 from .sweep import Progress, Sweep
 from .view import CurveFigure
 
-#: Rest of the knobs before a curve is begun [s]: nobody reads a curve while dragging.
+#: Time for which the knobs must rest before a curve is begun [s]: nobody reads a curve while dragging.
 CURVE_QUIET = 0.35
 
 
@@ -61,13 +61,13 @@ class CurveController:
         #: computed, from 0 to 1; -1 if nothing is under way.
         self._missing: list[str] = []
         self._done = -1.0
-        #: Why the kernels of the present knobs could not be compiled.
+        #: The reason why the kernels of the present knobs could not be compiled.
         self._uncompiled: Exception | None = None
         self._kernels = Requests(COMPILER)
         self._names = PeakNames(host, self._show_names)
 
     def selection(self, scene: Scene) -> str:
-        """What is drawn, as a link has it; "auto" for what the scene shows by itself."""
+        """The selected curves, as a link names them; "auto" for the scene's own selection."""
         chosen = {name for name, wanted in self._wanted.items() if wanted}
         return "auto" if chosen == _own(scene) else joined(chosen)
 
@@ -89,7 +89,7 @@ class CurveController:
         return self.selection(scene)
 
     def knob_moved(self, scene: Scene) -> None:
-        """A knob moved. Any knob but f changes the curve: a draft comes at once, the curve when the knobs rest."""
+        """Follow a moved knob. For any knob except f, draw a draft at once, and the curve when the knobs rest."""
         if without_frequency(scene) == self._wanted_for:
             return
         self._names.forget()
@@ -98,7 +98,7 @@ class CurveController:
             self._drafts.submit(scene)
 
     def restart_when_quiet(self, scene: Scene) -> None:
-        """The scene or the selection has changed: cancel the curve, and start again when the knobs rest."""
+        """Cancel the curve and start again when the knobs rest, because the scene or the selection has changed."""
         self._cancel()
         self._wanted_for = without_frequency(scene)
         self._figure.expected = self._visible and self._wanted["rest"] and curve_affordable(scene)
@@ -106,7 +106,7 @@ class CurveController:
         self._quiet.start(self._begin_when_compiled, scene)
 
     def _cancel(self) -> None:
-        """Cancel the curve, and drop reports that wait to be drawn: drawn, they would show a curve under way."""
+        """Cancel the curve, and drop reports not drawn yet: drawing them would show a curve under way."""
         self._task.cancel()
         self._reports.drop()
 
@@ -125,7 +125,7 @@ class CurveController:
             self._begin(scene)
 
     def _say_not_compiled(self, failure: Exception) -> None:
-        """Show no new curve, and say why, once for the same kernels."""
+        """Show no new curve, and give the reason once for each failure."""
         self.stop()
         if failure is not self._uncompiled:
             self._uncompiled = failure
@@ -140,7 +140,7 @@ class CurveController:
         self._placed()
 
     def visibility_changed(self, visible: bool) -> None:
-        """The figure came on the screen or left it."""
+        """The figure has come onto the screen or left it."""
         if visible == self._visible:
             return
         self._visible = visible
@@ -150,7 +150,7 @@ class CurveController:
             self.stop()
 
     def select(self, scene: Scene, selected: str) -> str:
-        """Draw the curves of a link, those of the scene for "auto"; return which."""
+        """Draw the curves that a link names, or for "auto" the scene's own; return the selection."""
         chosen = _own(scene) if selected == "auto" else set(selected.split("."))
         self._wanted = {name: name in chosen for name in self._wanted}
         self._show_features(scene)
@@ -158,7 +158,7 @@ class CurveController:
         return self.selection(scene)
 
     def switch(self, name: str, wanted: bool, scene: Scene) -> None:
-        """Switch the curve of a start, or the stated features, on or off."""
+        """Select or deselect the curve of a start, or the stated features."""
         if name not in self._wanted:
             return
         self._wanted[name] = wanted
@@ -184,7 +184,7 @@ class CurveController:
         return 0.0 <= self._done < 1.0
 
     def activities(self) -> list[Activity]:
-        """Name, state and detail of the curve of every start, as it is at this moment."""
+        """Name, state and detail of the curve of every start at this moment."""
         rows = []
         for name in CURVE_STARTS:
             title = f"resonance curve, {SWEEPS[name].words}"
@@ -207,7 +207,7 @@ class CurveController:
         return rows
 
     def measured(self, measured: Measured | None) -> Difference | None:
-        """Draw the visitor's own data, or none; return their difference from a complete curve from rest."""
+        """Draw the visitor's data, or remove them; return their difference from a complete curve from rest."""
         self._figure.measured(measured)
         return self._figure.difference
 
@@ -226,7 +226,7 @@ class CurveController:
                 if self._wanted[name] and self._complete_for.get(name) == key}
 
     def _begin(self, scene: Scene) -> None:
-        """Compute the selected curves that are missing; a change of f alone needs no new curve."""
+        """Compute the selected curves that are missing; a change of only f needs no new curve."""
         key = without_frequency(scene)
         missing = [name for name in CURVE_STARTS
                    if self._visible and self._wanted[name] and self._complete_for.get(name) != key]
@@ -248,7 +248,7 @@ class CurveController:
             self._task.cancel()
 
     def _draft_drawn(self) -> None:
-        """The curve from rest has been replaced by a draft; it must be computed again even for the same knobs."""
+        """Compute the curve from rest again even for the same knobs, because a draft has replaced it."""
         self._complete_for.pop("rest", None)
 
     def _show_features(self, scene: Scene) -> None:
@@ -293,5 +293,5 @@ class CurveController:
 
 
 def _own(scene: Scene) -> set[str]:
-    """The curves that a scene shows by itself: the paper's rig has stated features."""
+    """The curves that a scene shows by default; the paper's rig also has stated features."""
     return {"rest", "features"} if scene.pattern == rig_beads() else {"rest"}

@@ -12,7 +12,7 @@ from ..plots.curve import SWEEPS
 from ..plots.regimes import REGIME_MARKS, SYMBOLS
 from ..scripts import module
 
-#: What may be shown: name, label and meaning.
+#: The curves that can be selected: name, label and meaning.
 CHOICES = (*((name, style.label, f"{style.meaning.capitalize()}.") for name, style in SWEEPS.items()),
            ("features", "paper’s features ┊", "Frequencies the paper states for its rig; it gives no forces."))
 #: Every mark that a curve may have, for the key and for the tab “regimes”.
@@ -21,7 +21,7 @@ KINDS = [{"name": name, "symbol": SYMBOLS[marker], "colour": colour}
 
 
 class CurveBar(Component):
-    """Which curves are shown, their progress, and a button that stops them."""
+    """The bar of the curve: its selection, its progress, and a button that stops it."""
 
     _esm = module("curve_bar.js")
     _stylesheets = [text("controls.css"), text("curve_bar.css")]  # noqa: RUF012

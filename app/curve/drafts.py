@@ -26,7 +26,7 @@ class Drafts:
         self._drawn = drawn
         self._jobs = LatestWins(partial(host.next_tick, self._draw), partial(host.next_tick, host.show_failure),
                                 host.session.cpu_time)
-        #: How often drafts were dropped; a draft that was submitted before the last time is out of date.
+        #: How many times drafts were dropped; a draft submitted before the last time is out of date.
         self._dropped = 0
         host.on_close(self._jobs.close)
 
@@ -35,7 +35,7 @@ class Drafts:
         self._jobs.submit(partial(self._computed, scene, self._dropped))
 
     def drop(self) -> None:
-        """Draw no draft that was submitted before, and stop computing it: the figure shows something else now."""
+        """Drop every draft submitted so far, because the figure shows something else now."""
         self._dropped += 1
         self._jobs.cancel()
 

@@ -59,7 +59,7 @@ def stop_band(points: Sequence[CurvePoint]) -> tuple[CurvePoint, CurvePoint] | N
 
 
 def extremum_name(kind: str, point: CurvePoint, scene: Scene, stop: Stop | None = None) -> dict[str, Any] | None:
-    """The name of an extremum, from the motion there; None where that has none. Raises `Cancelled`."""
+    """The name of an extremum, from the motion there; None if the motion has none. Raises `Cancelled`."""
     at = scene.evolve(f=round(point.frequency, 1))
     pushed = pushes(settle(at, samples=samples_for(at), stop=stop).run)
     if pushed is None or (kind == "valley" and pushed != (1, 1)):
@@ -86,7 +86,7 @@ def stated_name(feature: Feature) -> dict[str, Any]:
 
 def _extremum_names(extremes: Sequence[tuple[str, CurvePoint]], scene: Scene,
                     stop: TurnFlag) -> Iterator[dict[str, Any] | None]:
-    """The name of one extremum after the other. Raises `Cancelled`."""
+    """The names of the extrema, one after another. Raises `Cancelled`."""
     for kind, point in extremes:
         yield extremum_name(kind, point, scene, stop)
 
@@ -104,7 +104,7 @@ class PeakNames:
         self._task = Task(host, ANALYSES, report_nothing, "Naming the peaks of the curve", report_to_host=True)
 
     def forget(self) -> None:
-        """Show no names, because the curve has changed."""
+        """Remove the names, because the curve has changed."""
         self._task.cancel()
         self._show([])
 

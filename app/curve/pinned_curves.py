@@ -31,11 +31,11 @@ class PinnedCurves:
 
     @property
     def forces(self) -> list[float]:
-        """All forces that are to be in the picture [N]."""
+        """All forces that must fit into the picture [N]."""
         return [force for *_, force in self.places] + [p.max_output_force for points in self._curves for p in points]
 
     def take(self, curves: Sequence[list[CurvePoint]]) -> bool:
-        """Take the curves of the pins, in their order; return whether there is anything new to draw."""
+        """Set the curves of the pins, in their order; return whether there is anything new to draw."""
         if [*map(len, curves)] == [*map(len, self._curves)] == [0] * len(curves):
             return False
         self._curves = [[point for point in points if np.isfinite(point.max_output_force)] for points in curves]

@@ -1,4 +1,4 @@
-"""Reports of a curve that grows, on their way from the worker thread to the figure."""
+"""Passes the reports of a growing curve from the worker thread to the figure."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from collections.abc import Callable
 from ..session.host import PageHost
 from .sweep import Progress
 
-#: Time between two drawings of a curve that grows [s]: each has all its points.
+#: Interval between drawings of a growing curve [s]; each draws all its points.
 CURVE_EVERY = 0.1
 
 
@@ -41,7 +41,7 @@ class Reports:
             self._waiting = []
 
     def _hand_over(self) -> None:
-        """With the document locked: draw what waits, now or when the last drawing is long enough ago."""
+        """Draw the waiting reports now, or once enough time has passed since the last drawing; document locked."""
         left = self._drawn + CURVE_EVERY - time.monotonic()
         if left > 0.0:
             self._host.call_later(left, self._hand_over)

@@ -22,13 +22,13 @@ from ..session.task import Job
 COARSE = 75
 #: Frequencies of a sweep, which has one pass: each point begins where the last one ended.
 _SWEEP = 150
-#: Further passes over a curve from rest, each between the points of those before.
+#: Further passes over a curve from rest, each between the points of the earlier ones.
 _FINER_PASSES = 2
 
 
 @dataclass
 class Progress:
-    """How far the curve of one start is, `done` from 0 to 1; `points` are new since the last report.
+    """The progress of the curve of one start, `done` from 0 to 1; `points` are new since the last report.
 
     `covers` says that points lie over the whole range, `complete` that no more will come.
     """
@@ -63,7 +63,7 @@ def midpoints(points: list[CurvePoint], low_step: float) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Sweep:
-    """The work of one request on a worker thread: the curves of some starts of one scene, one after the other.
+    """The work of one request on a worker thread: the curves of some starts of one scene, one after another.
 
     It waits while `busy` returns True. Sessions at the same knobs share one computation.
     """
@@ -75,7 +75,7 @@ class Sweep:
     cpu_time: CpuTime
 
     def __call__(self, job: Job) -> None:
-        """Report everything as it comes; what was reported stays when the job is cancelled."""
+        """Report everything as it comes; reported points stay when the job is cancelled."""
         for start in self.starts:
             key = without_frequency(self.scene), start
             with closing(CURVES_SHARED.follow(key, partial(_computed, self.scene, start), job.stop,

@@ -37,7 +37,7 @@ class CurveFigure:
         self._grey_points: dict[str, list[CurvePoint]] = {name: [] for name in SWEEPS}
         self._scale = (1.0, "")
         self._whole = False
-        #: Whether a curve from rest is being computed or will be, without being asked for.
+        #: Whether a curve from rest is being computed, or will be computed unasked.
         self.expected = False
         self._ordered: tuple[np.ndarray, np.ndarray, list[int | None]] | None = None
         self._shown: tuple[float, float | None] = (0.0, None)
@@ -84,7 +84,7 @@ class CurveFigure:
         return source
 
     def _bring_forward(self) -> None:
-        """Draw what the paper states in front of the curves, in whichever order they came."""
+        """Draw the paper's statements in front of the curves, whatever the order in which they were made."""
         others = [renderer for renderer in self.figure.renderers if renderer is not self._stated]
         self.figure.renderers = [*others, self._stated]
 
@@ -126,7 +126,7 @@ class CurveFigure:
                 renderer.visible = name in starts
 
     def begin(self, starts: list[str]) -> None:
-        """Make the present curves of these starts grey, because new ones will come."""
+        """Turn the present curves of these starts grey, because new ones will come."""
         self._whole = self._whole and "rest" not in starts
         for name in SWEEPS:
             if name in starts:
@@ -146,7 +146,7 @@ class CurveFigure:
         self._draw(start)
 
     def redraw(self, start: str, points: list[CurvePoint]) -> None:
-        """Draw a whole curve in place of the present one, while a knob moves."""
+        """Replace the present curve by a whole new one, while a knob moves."""
         self._whole = self._whole and start != "rest"
         self._points[start] = []
         self.add(start, points, covers=True)
@@ -225,7 +225,7 @@ class CurveFigure:
         self._rescale()
 
     def measured(self, measured: Measured | None) -> None:
-        """Show the visitor's own data with error bars, or none."""
+        """Show the visitor's data with error bars, or remove them."""
         self._measurement = measured
         self._rescale()
         if measured is None:
@@ -247,7 +247,7 @@ class CurveFigure:
                         np.array([point.max_output_force for point in points]))
 
     def _rescale(self) -> None:
-        """Fit the force axis to all curves and measured data; in another unit, draw everything anew."""
+        """Fit the force axis to all curves and measured data; redraw everything if its unit changes."""
         curves = (*self._points.values(), *self._grey_points.values())
         forces = [point.max_output_force for points in curves for point in points] + self._pinned.forces
         if self._measurement is not None:

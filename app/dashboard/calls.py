@@ -54,7 +54,7 @@ class Calls:
         self._closing.append(action)
 
     def close(self) -> None:
-        """The session has ended: call the actions of `on_close`, and no action after that.
+        """Call the actions of `on_close`, and no action after that, because the session has ended.
 
         A failing action does not prevent the next from being called.
         """

@@ -50,8 +50,8 @@ class Controller:
                  make_calls: Callable[[Document, Callable[[Exception], None]], Calls] = Calls) -> None:
         """Make views, parts and pages, connect them, and collect their actions.
 
-        The motion of the first picture begins in `initial_state`, if that is given. `make_calls` makes the `Calls`;
-        tests pass another class.
+        The motion of the first picture begins in `initial_state` if one is given. `make_calls` makes the `Calls`; tests
+        pass another class.
         """
         self._document = document
         self._calls = make_calls(document, self.show_failure)
@@ -93,7 +93,7 @@ class Controller:
     # Messages
 
     def received(self, message: dict[str, Any]) -> None:
-        """Pass a message of the browser to its action; the action trusts no value in it."""
+        """Pass a message from the browser to its action, which must check every value in it."""
         name = message.get("do")
         action = self._actions.get(name) if isinstance(name, str) else None
         if action is None:
@@ -120,7 +120,7 @@ class Controller:
         looked_at.visibility_changed(visible)
 
     def _send_gallery(self, _: dict[str, Any]) -> None:
-        """Send the cards once: the page keeps them, and no other short message has such a large answer."""
+        """Send the cards only once: the page keeps them, and no other short message has so large an answer."""
         if not self._gallery_sent:
             self._gallery_sent = True
             self.views.header.send(type="gallery", cards=cards())
@@ -140,7 +140,7 @@ class Controller:
         self._calls.on_close(action)
 
     def show_message(self, sentence: str) -> None:
-        """Show the visitor one sentence until the next valid action; an empty text removes the sentence."""
+        """Show the visitor a message until the next valid action; an empty text removes it."""
         self.sentences.show_message(sentence)
 
     def show_failure(self, error: Exception) -> None:
@@ -160,7 +160,7 @@ class Controller:
         self.close()
 
     def close(self) -> None:
-        """The session has ended: end all computations of this page, and call no further action."""
+        """End all computations of this page and call no further action, because the session has ended."""
         self._calls.close()
 
     @property
@@ -217,7 +217,7 @@ class Controller:
     # Events of the parts
 
     def picture_ready(self, settled: Settled) -> None:
-        """A settled picture is ready: notify header and pins now, and the pages once the picture is offered."""
+        """Notify header and pins of a settled picture now, and the pages once the picture is offered."""
         self.views.header.show_picture_start(settled.start, self.session)
         self.pinned.picture_ready(settled)
         self._scenes.picture_ready(settled)

@@ -28,7 +28,7 @@ class DisplayChoices:
         }
 
     def set_theme(self, name: object) -> None:
-        """Take the colours and line widths of a theme. An unknown theme is ignored."""
+        """Apply the colours and line widths of a theme; ignore an unknown theme."""
         theme = THEMES.get(str(name))
         if theme is not None:
             self._views.apply_theme(theme)

@@ -39,7 +39,7 @@ class Exports:
         self.actions: Actions = {"share": self._share, "export": self._export}
 
     def _share(self, _: dict[str, Any]) -> None:
-        """Send the link, and name the pins for which the link has no room."""
+        """Send the link, and name the pins that do not fit into it."""
         self._views.header.send(type="link", query=self._host.session.link)
         if sentence := self._host.session.pins_left_out:
             raise BadInput(sentence)

@@ -79,8 +79,8 @@ class MainPicture:
         self._numbers = itertools.count(1)
         #: The number of the last request whose picture has come.
         self._answered = 0
-        #: Frames of the last pictures. The cache of `prepared_frames` has weak references alone, and the event loop
-        #: would otherwise prepare these frames again.
+        #: Frames of the last pictures. The cache of `prepared_frames` has only weak references, so without these the
+        #: event loop would prepare the frames again.
         self._frames: deque[Frames] = deque(maxlen=2)
         host.on_close(self._close)
 
@@ -133,7 +133,7 @@ class MainPicture:
                 session.energy_account)))
 
     def advance(self, samples: int | None = None) -> None:
-        """Take the next step of the live run: `samples`, or as many as belong to the viewing time."""
+        """Take the next step of the live run: by `samples`, or by the viewing time that has passed."""
         self._submit(partial(self._work.live_step, lambda: self.live, samples, self._session.speed,
                              self._session.insisted))
 
@@ -171,7 +171,7 @@ class MainPicture:
             stages = None
 
     def _keep_newest(self, result: object) -> None:
-        """Keep a new picture for the event loop, in place of an older picture that the loop has not fetched."""
+        """Keep a new picture for the event loop; it replaces an older one that the loop has not fetched yet."""
         assert isinstance(result, _Answer)
         if isinstance(result.picture, Settled):
             self._frames.append(prepared_frames(result.picture.run))
@@ -212,7 +212,7 @@ class MainPicture:
         self._accepted = result
         self._pacer.offer(result)
         if live:
-            self.next_live_step()  # two are in flight from the first step on, not only once a knob was moved
+            self.next_live_step()  # so that two are in flight from the first step on, before any knob is moved
 
     def _failed(self, error: Exception) -> None:
         """Report a failure; later live steps answer no request."""
@@ -242,12 +242,12 @@ class MainPicture:
             show_live(self._views, number, result, self._session.playing)
 
     def show_regime(self) -> None:
-        """Write the status line again: the curve may now tell on which peak or valley the motion lies."""
+        """Update the status line: the curve may now show on which peak or valley the motion lies."""
         if self._sent is not None:
             show_regime(self._views, self._sent)
 
     def painted(self, number: object, browser_ms: object = None) -> None:
-        """The browser says that picture `number` is on the screen, and how long its script had the picture [ms]."""
+        """Picture `number` is on the screen; the browser's script took `browser_ms` to draw it [ms]."""
         if not isinstance(number, int):
             return
         if number in self._in_flight:
@@ -256,7 +256,7 @@ class MainPicture:
         self._pacer.painted(number)
 
     def redraw(self) -> None:
-        """Send the picture on the screen again, to be drawn in another way; a running chain sends the next anyway."""
+        """Send the picture on the screen again, drawn differently; a running chain sends its next one anyway."""
         shown, live = self._accepted, self.live is not None
         if shown is None or isinstance(shown, LiveStep) != live or (live and self._session.playing):
             return
@@ -264,7 +264,7 @@ class MainPicture:
             self._pacer.offer(shown)
 
     def restart(self) -> None:
-        """The page is visible again: expect no acknowledgements of pictures in flight."""
+        """The page is visible again: stop waiting for acknowledgements of pictures in flight."""
         self._in_flight.clear()
         self._pacer.restart()
 

@@ -1,4 +1,4 @@
-"""The computation of the main picture: what its threads do. `main_picture.py` requests it and shows the results."""
+"""The computation of the main picture in threads; `main_picture.py` requests it and shows the results."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from ..session.live import LiveRun, LiveStep
 
 
 def size_of(settled: Settled) -> int:
-    """Memory of a picture [bytes]: its arrays, and a little more."""
+    """Memory of a picture [bytes]: its arrays and a small overhead."""
     arrays = [*vars(settled.run).values(), settled.state.displacement, settled.state.velocity]
     return 4096 + sum(array.nbytes for array in arrays if isinstance(array, np.ndarray))
 
@@ -39,7 +39,7 @@ PICTURES_SHARED: Shared[Settled] = Shared(PICTURES, 100_000_000, size_of, lambda
 
 def _computed(scene: Scene, initial_state: State | None, most: float, stages: PictureStages,
               stop: TurnFlag) -> Iterator[Settled]:
-    """Pictures on the way to the steady state; `TooLong` after `most` seconds of computing."""
+    """Successive pictures on the way to the steady state; `TooLong` after `most` seconds of computing."""
     began = time.thread_time()
     pictures = settling(scene, start=initial_state, samples=samples_for(scene), stop=stop)
     first = next(pictures)
@@ -60,9 +60,9 @@ class SettledRequest:
     """The values of a request for a settled picture. Workers do not read the session, so they are kept here."""
 
     scene: Scene
-    #: Where the motion begins; None is rest.
+    #: The state in which the motion begins; None means rest.
     initial_state: State | None
-    #: Whether the picture is computed however long it takes.
+    #: Whether the picture is computed no matter how long it takes.
     insisted: bool
     #: Whether the energy residual is computed, too.
     account: bool
@@ -78,7 +78,7 @@ def _refusing(scene: Scene) -> Iterator[None]:
 
 
 class PictureWork:
-    """What a thread does for one session's pictures. It reads nothing of the session and writes nothing of the page.
+    """The work of threads for one session's pictures. It neither reads the session nor writes to the page.
 
     `show_notice` and `begun_from` are called with the document locked: with a sentence, and with the state in which a
     settled motion begins (None is rest).
@@ -120,7 +120,7 @@ class PictureWork:
 
     def live_step(self, newest_run: Callable[[], LiveRun | None], samples: int | None, speed: float,
                   insisted: Scene | None, stages: PictureStages, stop: TurnFlag) -> Iterator[LiveStep]:
-        """The next step of the live run: `samples`, or as many as belong to the viewing time at `speed`."""
+        """The next step of the live run: by `samples`, or by the viewing time that has passed at `speed`."""
         live = newest_run()  # another run may have begun while this step waited
         if live is None:
             return

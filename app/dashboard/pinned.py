@@ -54,7 +54,7 @@ class Pinned:
         self.scene_changed()
 
     def scene_changed(self) -> None:
-        """Knobs have moved: draw the curve of each pin that differs from the present curve."""
+        """Draw the curve of each pin that differs from the present curve, because knobs have moved."""
         others = self._other_curves()
         missing = [key for key in others if key and key not in self._curves and curve_affordable(key)]
         if missing:
@@ -64,7 +64,7 @@ class Pinned:
         self._views.curve.pinned_curves([self._curves.get(key, []) if key else [] for key in others])
 
     def picture_ready(self, settled: Settled) -> None:
-        """Compare the pins with another picture."""
+        """Compare the pins with a new picture."""
         if self._session.pins and settled.final:
             self._show()
 

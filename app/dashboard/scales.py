@@ -33,7 +33,7 @@ def _of_scenes() -> dict[str, Extremes]:
 
 
 class PictureScales:
-    """The scales of the pictures of one session, which has the visitor's choice, "same" or "fit"."""
+    """The scales of the pictures of one session, according to the visitor's choice, "same" or "fit"."""
 
     def __init__(self, session: Session) -> None:
         self._session = session

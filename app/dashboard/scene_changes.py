@@ -19,7 +19,7 @@ from .pinned import Pinned
 
 
 class SceneChanges:
-    """Turns the knobs of one session, opens scenes, and notifies pages and parts of the dashboard."""
+    """Sets the knobs of one session, opens scenes, and notifies pages and parts of the dashboard."""
 
     def __init__(self, session: Session, views: Views, pictures: MainPicture, curves: CurveController, pinned: Pinned,
                  pages: Sequence[Page], show_message: Callable[[str], None],
@@ -37,14 +37,14 @@ class SceneChanges:
         self.actions: Actions = {"set": self._set, "restore": self._restore, "scene": self._scene, "go": self._go}
 
     def show(self, scene: Scene, state: State | None, mode: str) -> None:
-        """Turn the knobs to `scene` and show its motion; see `PageHost.show`."""
+        """Set the knobs to `scene` and show its motion; see `PageHost.show`."""
         self._session.set_mode(mode)
         self._session.scene = scene
         self._follow_mode(state)
         self._show_turned_knobs(state)
 
     def open(self, scene: Scene, state: State | None, curves: str) -> None:
-        """Open a scene, maybe another preset; see `PageHost.open`."""
+        """Open a scene, possibly another preset; see `PageHost.open`."""
         session = self._session
         another = scene.name != session.scene.name
         session.open(scene)
@@ -74,7 +74,7 @@ class SceneChanges:
         self.request_picture(initial_state)
 
     def choose_frequency(self, frequency: object) -> None:
-        """Turn the knob f to a frequency that was clicked on the curve."""
+        """Set the knob f to a frequency that was clicked on the curve."""
         self._session.change("f", clicked_frequency(self._session.scene, frequency))
         self._send_knob_values()
         self._follow_knobs()
@@ -117,7 +117,7 @@ class SceneChanges:
         self.show_preset(None, "")
 
     def _go(self, message: dict[str, Any]) -> None:
-        """A step back or forward: set the session from the address, and its picture to the last digit.
+        """Set the session, and its picture to the last digit, from the address of a step back or forward.
 
         The browser is notified in any case. Until then it takes every change for a part of the step (`Steps.returning`
         of address.js), and the visitor could undo no further change.
@@ -153,13 +153,13 @@ class SceneChanges:
             self._pictures.begin_live(state)
 
     def _show_turned_knobs(self, initial_state: State | None) -> None:
-        """The knobs were turned, but not by the visitor: header and knobs have to show the new values."""
+        """Show the new values in header and knobs, because something other than the visitor has set them."""
         self._views.header.show_session(self._session)
         self._send_knob_values()
         self._follow_knobs(initial_state)
 
     def _follow_knobs(self, initial_state: State | None = None) -> None:
-        """The knobs were turned: request a picture first, then notify the pages and the curve."""
+        """Request a picture for the new knobs, then notify the pages and the curve."""
         self.request_picture(initial_state)
         if self._session.sentence:
             self._show_message("")

@@ -1,4 +1,4 @@
-"""Sentences to the visitor, their lines in the log, and the button that computes a refused picture anyway."""
+"""Messages to the visitor, their lines in the log, and the button that computes a refused picture anyway."""
 
 from __future__ import annotations
 
@@ -41,21 +41,21 @@ class Sentences:
                                  "script-error": self._script_error}
 
     def show_message(self, sentence: str, refused: Scene | None = None) -> None:
-        """Show one sentence until the next valid action; an empty text removes the sentence.
+        """Show a message until the next valid action; an empty text removes it.
 
-        A button beside the sentence computes the scene that was `refused` because it takes long.
+        A button beside the message computes the scene that was `refused` because it takes long.
         """
         self._session.sentence = sentence
         self._refused = refused
         self._show()
 
     def show_notice(self, notice: str) -> None:
-        """Show one sentence until the next picture."""
+        """Show a message until the next picture."""
         self._session.notice = notice
         self._show()
 
     def show_failure(self, error: Exception) -> None:
-        """Show a failure as one sentence; the last good picture stays."""
+        """Show a failure as a message; the last good picture stays."""
         if isinstance(error, RefusedPicture):
             METRICS.count("refused_pictures")
             if error.scene == self._session.scene:  # otherwise a knob has moved since
@@ -95,7 +95,7 @@ class Sentences:
         return where
 
     def _script_error(self, message: dict[str, Any]) -> None:
-        """Log an error of a script in the browser, as one line: anybody may send anything as its words."""
+        """Log an error of a script in the browser as one line, because anybody may send any text as its words."""
         words = message.get("what")
         if not isinstance(words, str) or self._script_errors >= MOST_SCRIPT_ERRORS:
             return

@@ -29,7 +29,7 @@ def show_settled(views: Views, number: int, settled: Settled) -> None:
 
 
 def show_regime(views: Views, settled: Settled) -> None:
-    """Write the status line; a complete curve tells on which peak or valley the motion lies."""
+    """Update the status line; a complete curve shows on which peak or valley the motion lies."""
     run = settled.run
     force = views.trains.output_words(run.max_output_force, run.force_errors.output)
     views.status_line.update_state(**settled_entries(settled, views.curve.place(run), force))

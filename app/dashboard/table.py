@@ -38,7 +38,7 @@ Height = Literal["usual", "taller", "tallest"]
 
 @dataclass(frozen=True)
 class TabSpec:
-    """A tab without a page. The fields have the meaning that they have in `PageSpec`."""
+    """A tab without a page. The fields have the same meaning as in `PageSpec`."""
 
     name: str
     group: str
@@ -117,7 +117,7 @@ def described_tabs() -> list[dict[str, Any]]:
 
 
 def watched_pages() -> dict[str, dict[str, bool]]:
-    """The pages for the browser, which finds out which of them are looked at."""
+    """The pages for the browser, which determines which of them are visible."""
     return {row.name: {"overlay": row.view is not None, "works_hidden": row.works_hidden,
                        "needs_curve": row.needs_curve} for row in PAGES}
 

@@ -18,7 +18,7 @@ import { explainTerms } from "./terms.js";
 import { watchVisibility } from "./visibility.js";
 
 // Functions that make the tabs. If a function returns `show`, it draws the tab again when its page publishes something.
-// A tab that `updatesItself` is not made anew when the state changes, so what is under the pointer stays. A tab without
+// A tab that `updatesItself` is not rebuilt when the state changes, so the element under the pointer stays. A tab without
 // an overlay needs its function here (tests/dashboard/test_table.py).
 const TABS = {
   stories: storiesTab,
@@ -49,7 +49,7 @@ function plainTab({ state: { pages } }, { name, placeholder }) {
 
 const READABLE = 250; // ms between two changes of the numbers
 
-// The button that gives the tabs the place of the curve, or gives it back.
+// The button that lets the tabs take the place of the curve, or return it.
 class LargerButton {
   constructor() {
     this.wanted = false; // whether the visitor asked for it
@@ -184,7 +184,7 @@ export function render({ model }) {
     window.granchain.closePage();
     tabs.choose("numbers");
   });
-  // While a knob moves, numbers come faster than one can read, and drawing tables takes time from the pictures.
+  // While a knob moves, numbers come faster than anybody can read, and drawing tables takes time from the pictures.
   let waiting = 0;
   window.granchain.on("numbers-received", () => {
     if (waiting) return;

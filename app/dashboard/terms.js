@@ -11,7 +11,7 @@ function termOf(words, name, meaning) {
   term.dataset.meaning = `${name}: ${meaning}`;
   const show = () => showMeaning(term, term.dataset.meaning);
   for (const begin of ["focus", "click"]) term.addEventListener(begin, show);
-  // A pointer that is still while the page moves under it shows nothing.
+  // A resting pointer under which the page moves shows nothing.
   term.addEventListener("pointermove", ({ movementX, movementY }) => {
     if (movementX || movementY) show();
   });
@@ -43,7 +43,7 @@ function inText(node, seen) {
   inText(rest, seen);
 }
 
-// Marks the terms of a text. If the text was made anew under a pointer that rests on a term, the definition stays.
+// Marks the terms of a text. If the text is replaced under a pointer that rests on a term, the definition stays.
 export function explainTerms(root) {
   const seen = new Set();
   for (const text of root.querySelectorAll(TEXTS))

@@ -1,4 +1,4 @@
-// Which pages somebody looks at, since most of them compute and move only then.
+// Which pages are visible to the visitor: most of them compute and move only then.
 
 import { onScreen, PHONE } from "../parts/toolkit/dom.js";
 

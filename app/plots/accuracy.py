@@ -1,4 +1,4 @@
-"""Error against processor time for every method, both logarithmic, with the accuracy asked for and the cheapest row."""
+"""Error against processor time for every method, both logarithmic, with the requested accuracy and the cheapest row."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _COLUMNS = ("ms", "error", "setting", "tooltip")
 
 @dataclass(frozen=True)
 class Annotations:
-    """What belongs to the figure but is not a measurement.
+    """The parts of the figure that are not measurements.
 
     accuracy : asked for, a fraction of the largest displacement. agreement : of the two references, or None.
     cheapest : seconds and error of the row that reaches it first; now : those of the page's own setting.

@@ -63,7 +63,7 @@ from .spectrum import spectrum
 from .theme import THEMES, Theme
 from .transfer import transfer
 
-#: Width of a figure for which none is given [px]: that of a notebook's cell.
+#: Width of a figure for which none is given [px]: the width of a notebook's cell.
 WIDTH = 900
 #: Height of such a figure [px].
 HEIGHT = 420
@@ -134,7 +134,7 @@ _TOGETHER: dict[type, Callable[..., LayoutDOM]] = {Curve: curve, Branch: branche
 
 def bokeh_figure_of(result: Any, theme: str = "light", width: int | None = None, height: int | None = None,
                     kind: str = "", **options: Any) -> LayoutDOM:
-    """The figure of a result with a size of its own; the docstring of `granchain.figure` describes it."""
+    """The figure of a result with its own size; the docstring of `granchain.figure` describes it."""
     drawn, size = _drawn(result, theme, kind, options)
     drawn.update(sizing_mode="fixed", width=width or size[0], height=height or size[1])
     return drawn

@@ -30,7 +30,7 @@ SPECIAL_STYLES: dict[str, dict[str, Any]] = {
     "multiplier_one": {"marker": "square", "size": 12, "colour": AMBER, "filled": False},
     "grazing": {"marker": "cross", "size": 9, "colour": GREY, "filled": True},
 }
-#: What begins at a bifurcation that is sub- or supercritical.
+#: The motions that begin at a sub- or supercritical bifurcation.
 _BORN = {"period_doubling": "an orbit of twice the period", "neimark_sacker": "a closed curve of the map"}
 #: Width and dash.
 LINES = {"stable": (2.6, "solid"), "unstable": (1.8, [6, 4])}
@@ -86,7 +86,7 @@ class BranchRows:
                 "models": self._fresh({f"legend of {s.kind}": {"visible": True} for s in special})}
 
     def curve(self, points: Sequence[CurvePoint]) -> dict[str, Any] | None:
-        """What the resonance curve adds, in order of frequency; None if it was added before, or there is none."""
+        """The new points of the resonance curve, in order of frequency; None if there are none."""
         points = [point for point in points if np.isfinite(point.max_output_force_elastic)]
         if self._curve_shown or not points:
             return None
@@ -105,7 +105,7 @@ class BranchRows:
         self._knob = self._knob or knob_scale(knob, (high,))
 
     def _fresh(self, models: dict[str, dict[str, Any]]) -> dict[str, dict[str, Any]]:
-        """Those properties, with the labels of the axes, that have not been sent yet."""
+        """The properties, with the labels of the axes, that have not been sent yet."""
         assert self._knob is not None and self._force is not None
         models = {**models, "knob": {"axis_label": self._knob.label}, "force": {"axis_label": self._force.label}}
         fresh = {name: properties for name, properties in models.items() if name not in self._models}
@@ -165,7 +165,7 @@ def branches(drawn: Sequence[Branch], theme: Theme, now: float | None = None, co
 
 
 def _put(data: Columns, added: dict[str, Any]) -> None:
-    """Append what a piece adds to the columns."""
+    """Append the points of a piece to the columns."""
     for name, columns in added["rows"].items():
         for column, values in columns.items():
             data[name][column].extend(values)
@@ -247,7 +247,7 @@ def drawn_orbits(points: list[BranchPoint], special: list[SpecialPoint]) -> list
 
 
 def special_words(special: SpecialPoint, branch: Branch) -> str:
-    """What a special point is, where, and how sure that is."""
+    """The kind of a special point, its place, and how certain both are."""
     scale = knob_scale(branch.axis.knob, (branch.axis.high,))
     low, high = special.interval
     words = (f"{SPECIAL[special.kind].removesuffix(' (torus)')} at {special.knob / scale.factor:.4f} ± "

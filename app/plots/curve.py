@@ -81,7 +81,7 @@ SWEEPS = {
     "down": SweepStyle("sweep down", "sweep down ─○", "second", "violet", 1.4, 0.9, "glyph", False, 6,
                        "frequency falling, the state carried along"),
 }
-#: What the lines mean, in a sentence.
+#: The meaning of the lines in a sentence.
 KEY = "; ".join(f"{style.line_words}: {style.words}" for style in SWEEPS.values()).capitalize() + "."
 #: A tooltip's lines for the columns of `forces_in_words`.
 FORCES = [("largest output force", "@total"), ("its elastic part", "@elastic"), ("largest input force", "@input")]

@@ -25,7 +25,7 @@ def energy_mapper(high: float) -> LinearColorMapper:
 
 
 def energy_hover(time_unit: str, energy_unit: str) -> list[tuple[str, str]]:
-    """What is told of the place under the pointer."""
+    """The text for the place under the pointer."""
     return [("bead", "$x{0}"), ("time", f"$y{{0.000}} {time_unit}"),
             ("kinetic energy", f"@image{{0.000}} {energy_unit}")]
 

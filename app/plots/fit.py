@@ -24,7 +24,7 @@ from .themed import apply_theme, empty_figure, themed
 _MOST_LANDSCAPES = 4
 #: Most drive periods of a series that are drawn.
 _MOST_PERIODS = 3
-#: Height of the residuals over that of the data.
+#: Height of the residuals divided by the height of the data.
 _RESIDUALS_HEIGHT = 0.42
 #: Least rise above the minimum that is drawn on the logarithmic axis.
 _SMALLEST_RISE = 1e-2

@@ -19,7 +19,7 @@ def figure_item(figure: LayoutDOM) -> dict[str, Any]:
 
 
 def with_own_document(make: Callable[[], T]) -> T:
-    """What `make` returns, called with a document of its own as Bokeh's current one.
+    """The result of `make`, called with a new document as Bokeh's current one.
 
     Bokeh asks for the current document and keeps only a weak reference to it. An error in the document of another
     session may have left that one current for the whole process; once that session has ended, asking for it fails.

@@ -39,7 +39,7 @@ def measured_columns(measured: Measured, factor: float, residuals: np.ndarray | 
 
 
 def measured_over(plot: figure, measured: Measured, factor: float, sigma: np.ndarray | None = None) -> None:
-    """Draw a measurement in front of what is there."""
+    """Draw a measurement in front of everything else."""
     source = ColumnDataSource(name="measured", data=measured_columns(measured, factor, None, sigma))
     themed(plot.segment("frequency", "low", "frequency", "high", source=source, level="overlay"), line_color="ink",
            line_width=1.0)

@@ -150,7 +150,7 @@ def energy_panel(run: Recorded, index: np.ndarray, time: Range1d, units: Units, 
 
 
 def _named(run: Recorded) -> str:
-    """What drives the chain, and the regime where there is one."""
+    """The drive of the chain and, if there is one, the regime."""
     if not isinstance(run, Run):
         return run.signal.words
     if not run.scene.is_driven:

@@ -38,11 +38,11 @@ from .regimes import REGIME_MARKS, regime_key
 from .theme import BROWN, GREY, MARK_COLOUR, MARK_EDGE, Theme
 from .themed import apply_theme, empty_figure, themed
 
-#: What a cell may be, in the curve's colours, each with a hatch of its own.
+#: The kinds of a cell, in the curve's colours, each with its own hatch.
 CATEGORIES = (*REGIME_MARKS, "failed")
 COLOURS = [REGIME_MARKS[name][1] if name in REGIME_MARKS else BROWN for name in CATEGORIES]
 _HATCHES = (" ", "/", "-", "|", "+", "\\", "x", ".", "o")
-#: Marks on a bifurcation curve: at most so many, and their width [px].
+#: Marks on a bifurcation curve: their largest number, and their width [px].
 _MOST_MARKS, _MARK_SIZE = 9, 11
 #: Most cells that a browser shows smoothly.
 MOST_DRAWN_CELLS = 40_000
@@ -112,7 +112,7 @@ def _hatched(plot: figure, source: ColumnDataSource) -> list[LegendItem]:
 
 
 def shown_models(shown: str) -> dict[str, dict[str, Any]]:
-    """What is visible of the figure where `shown` is "force" or "regime", by the names of models."""
+    """The visibility of the figure's models where `shown` is "force" or "regime", by the names of models."""
     force = shown == "force"
     return {**{name: {"visible": force} for name in ("force", "own force", "bar")},
             **{name: {"visible": not force}

@@ -20,7 +20,7 @@ _MOST_JOINED = 60
 
 @dataclass(frozen=True, eq=False)
 class SectionPoints:
-    """What is drawn of a section.
+    """The points and labels of a drawn section.
 
     points : (T, 2) displacement and velocity in `units`, one row a drive period. own : (n, 2), those of the orbit.
     transient : how many points come before the motion has settled. period : of the settled motion, 0 where it does not
@@ -97,7 +97,7 @@ def _dots(points: np.ndarray, number: np.ndarray, size: float) -> dict[str, Any]
 
 
 def _short(values: np.ndarray) -> list[float]:
-    """The values to seven digits: a section is sent anew with every step of the slider of the phase."""
+    """The values to seven digits: a section is sent again with every step of the slider of the phase."""
     return [float(f"{value:.7g}") for value in values]
 
 

@@ -10,7 +10,7 @@ from granchain_core.runs.budget import picture_seconds, refuse_long_picture
 from ..frames import PERIODS, samples_for
 from .scene_facts import slider_range
 
-#: Longest time of a first picture unless the visitor insists [s].
+#: Longest time of a first picture, unless the visitor asks for it anyway [s].
 FIRST_PICTURE = 5.0
 #: Processor time after which the search for the steady state of one picture is given up [s].
 WHOLE_PICTURE = 120.0
@@ -24,12 +24,12 @@ _CURVE_PERIODS = 10_000
 
 
 def check_first_picture(scene: Scene) -> None:
-    """Raise `OverBudget` if the first picture would take too long; its sentence says what would fit."""
+    """Raise `OverBudget` if the first picture would take too long; its message says what would fit."""
     refuse_long_picture(scene, _FIRST_PICTURE_PERIODS, samples_for(scene), FIRST_PICTURE)
 
 
 class RefusedPicture(BadInput):
-    """The picture of a scene would take too long, or took too long; the visitor may insist on it."""
+    """The picture of a scene would take too long, or took too long; the visitor may ask for it anyway."""
 
     def __init__(self, scene: Scene, sentence: str) -> None:
         super().__init__(sentence)

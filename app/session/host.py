@@ -29,7 +29,7 @@ class Caller(Protocol):
 
 
 class WorkHost(Caller, Protocol):
-    """The host of background work: calls, whether work has to wait for the picture, and reports of errors.
+    """The host of background work: it calls back, says whether work must wait for the picture, and reports errors.
 
     A `Task` waits while `awaiting_picture`. Peak names, pins and sweeps compute much, and also wait for a live step
     (`busy`).
@@ -49,7 +49,7 @@ class WorkHost(Caller, Protocol):
     def report_fault(self, error: Exception, sentence: str, fault: str = "") -> None:
         """Log an error of granchain itself, and show `sentence` with an id.
 
-        The sentence is empty if a page shows a sentence of its own, which has the id `fault`.
+        The sentence is empty if the page itself shows one, with the id `fault`.
         """
 
     def log_failed_computation(self, error: Exception, fault: str) -> None:
@@ -77,16 +77,16 @@ class PageHost(WorkHost, Protocol):
         """The complete resonance curve from rest of the present knobs, in order of frequency; otherwise empty."""
 
     def show_measured_curve(self, measured: Measured | None) -> Difference | None:
-        """Draw a measured curve over the resonance curve, or none; return how it differs from a complete curve."""
+        """Draw a measured curve over the resonance curve, or remove it; return its difference from a complete curve."""
 
     def show_measured_series(self, overlay: Overlay | None) -> None:
-        """Draw a measured series over the force trains, or none."""
+        """Draw a measured series over the force trains, or remove it."""
 
     def activities(self) -> list[Activity]:
         """All computations of this session, including those that are switched off."""
 
     def show(self, scene: Scene, state: State | None = None, mode: str = "settled") -> None:
-        """Turn the knobs to `scene` and show its motion, from `state` or from the start that the visitor chose.
+        """Set the knobs to `scene` and show its motion, from `state` or from the start that the visitor chose.
 
         In live mode the run goes on with the new knobs, unless a state is given. `mode` is "settled" or "live"; raises
         `BadInput` for any other.
@@ -96,7 +96,7 @@ class PageHost(WorkHost, Protocol):
         """Send the page its new address: a field of the link other than a knob has changed."""
 
     def open(self, scene: Scene, state: State | None, curves: str) -> None:
-        """Open a scene, maybe another preset, settled from `state` or from rest.
+        """Open a scene, possibly another preset, settled from `state` or from rest.
 
         `curves` is the field of a link; an empty text leaves the curves as they are.
         """

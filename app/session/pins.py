@@ -1,4 +1,4 @@
-"""Pinned motions as links, and their numbers beside the numbers of the present motion."""
+"""Pinned motions as links, and their numbers compared with those of the present motion."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _NOTHING = ["", "", ""]
 
 @dataclass(frozen=True, eq=False)
 class Pin:
-    """A settled motion: its scene, and the state in which it began; None is rest."""
+    """A settled motion: its scene, and the state in which it began; None means rest."""
 
     scene: Scene
     initial_state: State | None = None

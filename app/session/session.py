@@ -27,7 +27,7 @@ STARTS = VIEW_VALUES["start"]
 
 @dataclass
 class Session:
-    """The state of one page. A method changes the state, or raises `BadInput` and leaves the state as it was.
+    """The state of one open page. A method changes the state, or raises `BadInput` and leaves the state unchanged.
 
     share.py lists the values of the fields that a link has (`VIEW`).
     """
@@ -51,27 +51,27 @@ class Session:
     speed: float = 1.0
     #: Whether the motion is played; a live run that is paused computes nothing.
     playing: bool = True
-    #: The last settled picture, maybe of knobs that have moved since; None until there is one of this preset.
+    #: The last settled picture; the knobs may have moved since. None until this preset has one.
     settled: Settled | None = None
     #: The state in which the motion on the screen began; None for rest.
     initial_state: State | None = None
-    #: A sentence for the visitor until the next valid action, for instance why a value was refused.
+    #: A message to the visitor until the next valid action, such as the reason why a value was refused.
     sentence: str = ""
-    #: A sentence for the visitor until the next picture, for instance that kernels are being compiled.
+    #: A message to the visitor until the next picture, such as that kernels are being compiled.
     notice: str = ""
     #: Whether the energy account is computed after each settled picture.
     energy_account: bool = False
-    #: Values of knobs before their effect was switched off; they return when the effect is switched on again.
+    #: Values that knobs had before their effect was switched off; switching it on again restores them.
     remembered: dict[str, Any] = field(default_factory=dict)
-    #: The processor time of the session's pictures, by which sessions take turns.
+    #: The processor time used by the session's pictures; it decides whose turn is next.
     cpu_time: CpuTime = field(default_factory=CpuTime)
-    #: The scene on whose picture the visitor has insisted, however long it takes.
+    #: The scene whose picture the visitor has asked for no matter how long it takes.
     insisted: Scene | None = None
     #: The visitor's measurement, which is drawn over the figures and saved with a run.
     measured: Measured | Series | None = None
     #: The pinned pictures.
     pins: tuple[Pin, ...] = ()
-    #: The step of a story that is told, "NAME.STEP"; empty for none.
+    #: The step of a story that is shown, "NAME.STEP"; empty for none.
     story: str = ""
     #: Whether the frequencies of `StoryStep.via` must still be settled before the motion of that step is known.
     story_to_settle: bool = False
@@ -82,7 +82,7 @@ class Session:
 
     @property
     def link(self) -> str:
-        """The query string that brings back the screen: scene, knobs, initial state and view."""
+        """The query string that restores the screen: scene, knobs, initial state and view."""
         view = {name: setting.text(getattr(self, setting.attribute))
                 for name, setting in VIEW.items() if name not in BROWSER_FIELDS}
         began = self.initial_state if self.mode == "settled" else None
@@ -90,7 +90,7 @@ class Session:
         return encode(self.scene, view, texts)
 
     def apply_view(self, fields: Mapping[str, str]) -> None:
-        """Take over the view settings of a link; a setting that the link does not have gets its default."""
+        """Apply the view settings of a link; a setting that the link does not have gets its default."""
         for name, setting in VIEW.items():
             setattr(self, setting.attribute, setting.read(fields.get(name, setting.values[0])))
 
@@ -105,7 +105,7 @@ class Session:
                 f"take much of it: {'the last is' if left == 1 else 'the others are'} not in the link.")
 
     def change(self, name: str, value: object) -> None:
-        """Turn knob `name` to `value`."""
+        """Set knob `name` to `value`."""
         self.scene = self.scene.evolve(**{name: value})
 
     def switch(self, name: str, on: bool) -> None:
@@ -120,7 +120,7 @@ class Session:
             self.remembered.update(before)
 
     def restore(self, name: str) -> None:
-        """Turn knob `name` back to its value in the preset."""
+        """Restore knob `name` to its value in the preset."""
         preset = scene(self.scene.name).knobs
         if name not in preset:
             raise BadInput(f"There is no knob {quoted(name)} to put back.")
@@ -133,7 +133,7 @@ class Session:
         self.remembered.clear()
 
     def open(self, opened: Scene) -> None:
-        """Show a scene, maybe of another preset, settled from rest."""
+        """Show a scene, possibly of another preset, settled from rest."""
         if opened.name != self.scene.name:
             self.settled = None
             self.remembered.clear()
@@ -159,7 +159,7 @@ class Session:
         self.speed = float(speed)
 
     def previous_state(self, scene: Scene) -> State | None:
-        """The state from which the next settled picture of `scene` starts; None is rest."""
+        """The state from which the next settled picture of `scene` starts; None means rest."""
         if self.start == "rest" or self.settled is None:
             return None
         state = self.settled.state

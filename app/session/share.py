@@ -75,13 +75,13 @@ PINS = ("pin", "pin2", "pin3")
 QUESTION = "question"
 #: Most characters of a link.
 LONGEST = 4500
-#: Characters of a link that are kept free for `BROWSER_FIELDS`; tests/dashboard/test_table.py compares this number with
+#: Characters of a link that are reserved for `BROWSER_FIELDS`; tests/dashboard/test_table.py compares this number with
 #: the longest values.
 _ADDED_BY_BROWSER = 100
 
 
 def encode(shown: Scene, view: Mapping[str, str], texts: Mapping[str, str] | None = None) -> str:
-    """The query string (without "?") that brings back this scene and view.
+    """The query string (without "?") that restores this scene and view.
 
     `texts` has `START`, `PINS`, `QUESTION` and "story". If there is no room for all pins, the last pins are left out
     (`pins_in`).

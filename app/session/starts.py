@@ -1,6 +1,6 @@
 """The state in which a motion began, as text in a link.
 
-If several motions are possible, the start decides which motion is reached. A picture cannot be repeated without its
+If several motions are possible, the start decides which one is reached. A picture cannot be repeated without its
 start. The text has little-endian doubles in base64 for addresses: drive phase, N displacements [m], N velocities [m/s].
 """
 
@@ -14,7 +14,7 @@ import numpy as np
 from granchain_core import BadInput, Scene, State
 from granchain_core.integrate.start import nearest_fraction
 
-#: Beads of the longest chain whose state a link has room for.
+#: Beads of the longest chain whose state fits into a link.
 MOST_BEADS = 40
 
 

@@ -25,7 +25,7 @@ FOLDER = ASSETS / "stories"
 
 #: Parts of the main page that a step may point to, by the names of their elements.
 LOOKS = ("chain", "left", "map", "right", "curve")
-#: Allowed relative difference of a computed force from the force in a story, if the motion repeats.
+#: Allowed relative difference between a computed force and the force in a story, if the motion repeats.
 TOLERANCE = 5e-3
 #: The same for a motion that does not repeat: its largest force depends on the periods that are recorded.
 IRREGULAR_TOLERANCE = 0.1
@@ -56,7 +56,7 @@ class Expect:
 
 @dataclass(frozen=True)
 class StoryStep:
-    """One step. `via` are frequencies [Hz] at which the chain is settled before, one after the other, from rest.
+    """One step. `via` has the frequencies [Hz] at which the chain settles first, one after another, from rest.
 
     `look` is the part of the main page that the step points to, `page` the overlay that the step offers to open.
     """
@@ -143,7 +143,7 @@ def told_words(story: Story, number: int, words: str) -> str:
 
 
 def state_before(step: StoryStep, stop: Stop | None = None) -> State | None:
-    """The state in which the motion of a step begins: that after the last frequency of `via`; None is rest."""
+    """The state in which the motion of a step begins, reached at the last frequency of `via`; None means rest."""
     state: State | None = None
     for frequency in step.via:
         state = settle(step.scene.evolve(f=frequency), start=state, stop=stop).state

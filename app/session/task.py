@@ -28,7 +28,7 @@ Report = Callable[[Status, str], None]
 
 
 def report_nothing(status: Status, sentence: str) -> None:
-    """Show no status: for a task whose result alone is shown, and whose failures the host reports."""
+    """Show no status: for a task that shows only its result and whose failures the host reports."""
 
 
 class Job:
@@ -53,7 +53,7 @@ class Job:
         self.next_tick(self._report, status, "")
 
     def compile(self, scene: Scene, *pieces: str) -> None:
-        """Wait until these kernels are compiled and loaded, and report "compiling" meanwhile. Raises `Cancelled`."""
+        """Wait until these kernels are compiled and loaded; report "compiling" meanwhile. Raises `Cancelled`."""
         for piece in pieces:
             if not COMPILER.has(scene, piece):
                 self.report("compiling")
@@ -64,8 +64,8 @@ class Job:
     def give_way(self, waits: Callable[[], bool] | None = None) -> None:
         """Wait while `waits` returns True; without it, while the picture for a moved knob is being computed.
 
-        The longer the wait, the rarer the checks: each check takes the GIL from all other threads. Nothing wakes the
-        thread, because `waits` may depend on anything of the page.
+        The longer the wait, the rarer the checks, since each check takes the GIL from all other threads. The thread has
+        to poll, because `waits` may depend on anything in the page.
         """
         must_wait, pause = waits or (lambda: self._host.awaiting_picture), _PICTURE_CHECK_INTERVAL
         while must_wait() and not self.stop:

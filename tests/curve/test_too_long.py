@@ -1,4 +1,4 @@
-"""A chain whose curve would take too long has none: that of the chain before goes, and the bar says why."""
+"""A chain whose curve would take too long has none: the curve of the chain before is removed, and the bar says why."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tests.host import FakeHost
 
 
 class Host(FakeHost):
-    """With a visitor."""
+    """A host with the default session."""
 
     session = Session()
 

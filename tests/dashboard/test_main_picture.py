@@ -38,8 +38,7 @@ def test_a_picture_is_saved_in_the_background(dashboard: Dashboard, monkeypatch:
 
 
 def test_a_refusal_belongs_to_the_scene_that_was_refused(dashboard: Dashboard) -> None:
-    """A knob may have moved before the refusal arrives: what is computed anyway is then not what the sentence is about.
-    """
+    """The refusal may arrive after the knob has moved; “Compute it anyway” must not be offered for the new value."""
     refused = dashboard.session.scene.evolve(N=10_000)
     dashboard.show_failure(RefusedPicture(refused, "It would take long."))
     assert dashboard.session.sentence == "" and not dashboard.views.status_line.state.get("insist")

@@ -6,7 +6,7 @@ import { BokehFigure, fillModels } from "../../parts/figures/bokeh_figure.js";
 
 const STALE = "The knobs have moved; open the page to measure again.";
 
-// Error against time, as far as it is measured: points by method, the requested accuracy, the cheapest setting, and the
+// Error against time, as far as it has been measured: points by method, the requested accuracy, the cheapest setting, and the
 // one in use.
 export function fillAccuracy(figure, { drawn, asked }) {
   for (const [name, data] of Object.entries(drawn)) figure.set(name, { data });

@@ -3,7 +3,7 @@
 import { element } from "../../parts/toolkit/dom.js";
 import { BokehFigure } from "../../parts/figures/bokeh_figure.js";
 
-// Steps in a drive period that are chosen first.
+// The initial number of steps in a drive period.
 const USUAL_STEPS = 200;
 
 const percent = (error) =>

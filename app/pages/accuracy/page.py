@@ -26,12 +26,12 @@ WORDS = StatusWords("the kernels of all methods", ACCURACY_KERNELS, kept="the me
 
 
 def measured_for(scene: Scene) -> str:
-    """Identifies what was measured: the scene without the accuracy asked for, which changes no row."""
+    """The key of a measurement: the scene without the requested accuracy, which changes no row."""
     return scene.evolve(accuracy=1e-6).digest
 
 
 class AccuracyPage(Page):
-    """One measurement at a time; it goes on in the background until it is done, is stopped or the session ends."""
+    """Runs one measurement at a time in the background, until it is done or stopped or the session ends."""
 
     def __init__(self, host: PageHost, view: Accuracy) -> None:
         self._host = host
@@ -59,7 +59,7 @@ class AccuracyPage(Page):
         return "accuracy of all methods", COMPUTING if self.running else READY if self.rows else OFF, words
 
     def scene_changed(self) -> None:
-        """A knob moved: another accuracy is asked for, or the rows belong to another chain."""
+        """Follow a moved knob: it has changed the requested accuracy, or the rows belong to another chain."""
         if self.status != "none":  # until it is opened there is nothing to see
             self.describe()
 
@@ -69,7 +69,7 @@ class AccuracyPage(Page):
             self.describe()
 
     def describe(self) -> None:
-        """Show the accuracy asked for, the cheapest row, the present setting, and whether the rows still hold."""
+        """Show the requested accuracy, the cheapest row, the present setting, and whether the rows are still valid."""
         scene, session = self._host.session.scene, self._host.session
         now = locate(shown_setting(scene, session.settled, session.mode == "live"), self.rows)
         best = cheapest(self.rows, scene.accuracy)
@@ -104,7 +104,7 @@ class AccuracyPage(Page):
         self._task.start(partial(self._work, scene))
 
     def _work(self, scene: Scene, job: Job) -> None:
-        """In the measuring thread: the kernels first, then one row after the other."""
+        """In the measuring thread: load the kernels, then measure one row after another."""
 
         def report(result: WorkPrecision) -> None:
             job.next_tick(self._show, list(result.rows), result.lesson, described_reference(result), result.agreement)
@@ -132,7 +132,7 @@ class AccuracyPage(Page):
         self._view.update_state(**WORDS.of(status, sentence), done=self.done)
 
     def _used(self, now: PlacedSetting | None) -> str:
-        """What the page uses, and why the error in the status line is another number."""
+        """The setting that the page uses, and why the status line shows another error."""
         settled = self._host.session.settled
         if now is None:
             return ""

@@ -42,7 +42,7 @@ class Accuracy(StreamedFigure):
         self._naive: Lesson | None = None
 
     def apply_theme(self, theme: Theme) -> None:
-        """Draw the figures, that of the forces too, in another theme."""
+        """Draw the figures, including the one of the forces, in another theme."""
         super().apply_theme(theme)
         if self._naive is not None:
             self.show_naive(self._naive)
@@ -53,7 +53,7 @@ class Accuracy(StreamedFigure):
         self.update_state(rows=described_rows(rows), drawn=points(rows), **reference)
 
     def mark(self, rows: list[Row], annotations: Annotations, stale: bool, sentence: str, used: str) -> None:
-        """Mark the accuracy asked for, the cheapest setting and the one used now.
+        """Mark the requested accuracy, the cheapest setting and the present one.
 
         `stale`: the rows belong to another chain. `sentence` tells the cheapest, `used` what is used now.
         """
@@ -78,7 +78,7 @@ def described_methods() -> list[dict[str, Any]]:
 
 
 def described_rows(rows: list[Row]) -> list[dict[str, Any]]:
-    """The rows without a finite error for the table: the setting, and a sentence that says why."""
+    """The rows without a finite error for the table: the setting, and a sentence with the reason."""
     failed = [(row, row.failure or "Its numbers are not finite.") for row in rows
               if row.failure or not math.isfinite(row.error)]
     return [{"way": row.method, "setting": row.setting, "failure": failure} for row, failure in failed]

@@ -33,7 +33,7 @@ class AnalysisPage(Page):
     """Answers one question at a time; an answer stays, with its scene in the title, until another question is asked.
 
     The address has the question and the values with which it was last computed. A page that is opened with a question
-    in its address offers it again, and computes nothing until the visitor wants it. A page without one answers the
+    in its address offers it again, and computes nothing until the visitor asks for it. A page without one answers the
     first question, which takes no time, for every picture until the visitor asks another.
     """
 
@@ -50,14 +50,14 @@ class AnalysisPage(Page):
         self.address_applied()
 
     def scene_changed(self) -> None:
-        """The knobs have moved: the work under way and the values in the fields belong to another scene."""
+        """Drop the work under way and the values in the fields: they belong to the scene before the knobs moved."""
         self._stop()
         if self._question is not None:
             self._fields = offered_fields(self._question, self._host.session.scene, self._fields)
             self._view.offer(self._fields)
 
     def visibility_changed(self, visible: bool) -> None:
-        """When the page is opened without a question, answer the first one."""
+        """Answer the first question if the page is opened without one."""
         self._visible = visible
         self._unasked = self._unasked or (visible and self._question is None)
         self._begin_unasked()

@@ -60,7 +60,7 @@ class Field:
 
 @dataclass(frozen=True)
 class Plan:
-    """A question with everything chosen.
+    """A question with all its choices made.
 
     `command` recomputes it, `kernels` are the scenes and pieces that have to be compiled, `compute` takes a stop and
     a progress and returns a result with a `summary`, and `draw` makes its figure.
@@ -274,7 +274,7 @@ QUESTIONS = {question.name: question for question in (
 
 
 def question_of(name: object) -> AnalysisQuestion:
-    """The question of this name. Raises `BadInput` for another one."""
+    """The question of this name. Raises `BadInput` if there is none."""
     if not isinstance(name, str) or name not in QUESTIONS:
         raise unknown_name("question", str(name), tuple(QUESTIONS))
     return QUESTIONS[name]

@@ -34,7 +34,7 @@ class Analysis(ResultFigure):
                                    "choices": list(field.choices), "chosen": field.chosen} for field in fields])
 
     def clear(self) -> None:
-        """Take the figure away."""
+        """Remove the figure."""
         self.update_state(title="", words=[], command="")
         self.clear_figure()
 

@@ -116,7 +116,7 @@ class BranchesPage {
     this.figure.set("legend", { ncols: this.host.clientWidth < NARROW ? 2 : 6 });
   }
 
-  // Shows only the frequencies of the branch, which can be short compared with the curve.
+  // Shows only the frequencies of the branch, which may cover a small part of the curve.
   zoomIn() {
     const plot = this.figure.model("branches");
     const { x, y } = this.data.rows.orbits;

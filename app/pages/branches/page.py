@@ -1,4 +1,4 @@
-"""The Branches page of one session: follow the orbit on the screen in the frequency, and load any orbit found."""
+"""The Branches page of one session: continues the orbit on the screen in the frequency, and loads any orbit found."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ NOT_PERIODIC = ("The motion on the screen does not repeat, so it lies on no bran
 
 @dataclass
 class _Drawn:
-    """A half-branch, and how many of its points and special points the page has been sent."""
+    """A half-branch, and how many of its points and special points have been sent to the page."""
 
     branch: Branch
     half: HalfBranch
@@ -83,7 +83,7 @@ class BranchesPage(Page):
             self._draw_curve()
 
     def stop(self) -> None:
-        """Stop; what has been computed stays and can be continued."""
+        """Stop; the points computed so far stay and can be continued."""
         if self._task.cancel():
             self._show_status("stopped")
 
@@ -100,7 +100,7 @@ class BranchesPage(Page):
             self._begin()
 
     def _begin(self) -> None:
-        """Follow the orbit on the screen, if there is one and its branch may be computed without being asked for."""
+        """Follow the orbit on the screen, if there is one and its branch may be computed unasked."""
         self._begun, self._waits = True, False
         scene, settled = self._host.session.scene, self._host.session.settled
         if settled is None or not scene.is_driven or not curve_affordable(scene):
@@ -138,7 +138,7 @@ class BranchesPage(Page):
         self._submit(lambda stop: [switch_to_doubled(branch, special, stop)], branch.axis.scene)
 
     def _load_orbit(self, message: dict[str, Any]) -> None:
-        """Show an orbit on the main page: a stable one settled, an unstable one live, to be seen leaving."""
+        """Show an orbit on the main page: a stable one settled, an unstable one live, so that its instability shows."""
         half: Any = message.get("arm")
         drawn = check_index("branch", self._drawn, half)
         point = check_index("orbit", self._rows.orbits.get(half, []), message.get("place"))

@@ -12,7 +12,7 @@ from ...plots.branches import SPECIAL, branches
 from ...plots.theme import Theme
 from ...scripts import module
 
-#: Longest period that can be asked for here, in drive periods.
+#: Longest period that the page offers, in drive periods.
 LONGEST_BRANCH_PERIOD = 8
 
 

@@ -23,7 +23,7 @@ async function sendFile(model, [chosen]) {
   else model.send_msg({ do: "measurement", name: chosen.name, content: await base64Of(chosen) });
 }
 
-// Has the browser save the server's sample file.
+// Makes the browser save the sample file from the server.
 export function saveSample({ type, name, text }) {
   if (type !== "sample") return;
   download(name, new Blob([text], { type: "text/csv" }));
@@ -32,7 +32,7 @@ export function saveSample({ type, name, text }) {
 const options = (values, chosen) =>
   values.map(([value, text]) => element("option", { value, textContent: text, selected: value === chosen }));
 
-// The visitor's choices for the question `asked`, kept while the tab is drawn again.
+// The visitor's choices for the question `asked`, kept while the tab is redrawn.
 let questionAsked = "";
 let answers = {};
 
@@ -90,7 +90,7 @@ function select(ariaLabel, values, kept, name) {
   return made;
 }
 
-// The questions about a file: its first rows, quantity and unit of every column, and a button that has it read.
+// The questions about a file: its first rows, quantity and unit of every column, and a button that reads it with these.
 function questionForm(model, question) {
   const kept = answersTo(question);
   const about = (what) => question.about.includes(what);

@@ -1,4 +1,4 @@
-"""The visitor's own measurement: read in the background, with questions if unclear, and compared with the curve."""
+"""The visitor's measurement: read in the background, with questions if it is unclear, and compared with the curve."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ from ...session.task import Job, Task, report_nothing
 if TYPE_CHECKING:
     from granchain_core.fitting.overlay import Overlay
 
-#: What a column of a curve or of a series may hold.
+#: The quantities that a column of a curve or of a series may hold.
 CHOICES = {"frequency": "frequency", "force": "largest force", "error": "error of the force", "time": "time",
            "input_force": "input force", "output_force": "output force", "velocity": "shaker velocity"}
 #: The name of a virtual experiment's data on the page.
@@ -87,7 +87,7 @@ class DataPage(Page):
                                  "measurement-bandwidth": self._set_bandwidth}
 
     def picture_ready(self, settled: Settled) -> None:
-        """Lay the series over the new picture; over a preview, no difference is stated."""
+        """Draw the series over the new picture; no difference is stated for a preview."""
         series = self._host.session.measured
         if not isinstance(series, Series):
             return
@@ -103,13 +103,13 @@ class DataPage(Page):
         self._reading.start(partial(self._read_in_thread, content, self._name, self._answers))
 
     def _replace(self, name: str) -> None:
-        """Other data: withdraw a question about the earlier data."""
+        """Withdraw a question about earlier data, because there are other data now."""
         self._name, self._content, self._answers = name, b"", Answers()
         if self._tabs.state.get("question"):
             self._tabs.update_state(question=None)
 
     def _answer(self, message: dict[str, Any]) -> None:
-        """What the visitor chose: columns as [quantity, number, unit], and words."""
+        """The visitor's choices: columns as [quantity, number, unit], and words."""
         columns = message.get("columns", [])
         if not isinstance(columns, list) or not all(isinstance(column, list) and len(column) == 3
                                                     for column in columns):
@@ -144,7 +144,7 @@ class DataPage(Page):
             "units": {name: list(UNITS[QUANTITIES[name]]) for name in CHOICES}})
 
     def _set_bandwidth(self, message: dict[str, Any]) -> None:
-        """Take the bandwidth of the force sensors [Hz], without one when the field is empty, and compare again."""
+        """Set the bandwidth of the force sensors [Hz], or none if the field is empty, and compare again."""
         given = message.get("value")
         text = given.strip() if isinstance(given, str) else "?"
         value = number_in(text) if text else math.inf
@@ -157,7 +157,7 @@ class DataPage(Page):
             self.picture_ready(self._host.session.settled)
 
     def _overlay_in_thread(self, series: Series, run: Run, sensors: Sensors, job: Job) -> None:
-        """In a worker thread: where the series lies over the run."""
+        """In a worker thread: align the series with the run."""
         from granchain_core.fitting.overlay import overlay  # imported late: only a fit needs it
 
         job.next_tick(self._show_overlay, overlay(series, run, sensors))
@@ -168,7 +168,7 @@ class DataPage(Page):
                                 {"sentence": overlay.sentence, "rows": [], "left": 0})
 
     def _show(self, measured: Measured | Series) -> None:
-        """Draw a curve over the curve, or a series over the force trains."""
+        """Draw a measured curve over the resonance curve, or a measured series over the force trains."""
         self._content = b""
         self._host.session.measured = measured
         difference = self._host.show_measured_curve(measured if isinstance(measured, Measured) else None)
@@ -190,7 +190,7 @@ class DataPage(Page):
         self._tabs.send(type="sample", name=path.name, text=path.read_text(encoding="utf-8"))
 
     def _virtual(self, _: dict[str, Any]) -> None:
-        """Make a series of the present scene with simulated sensors, in place of a file."""
+        """Make a series of the present scene with simulated sensors instead of reading a file."""
         refuse_undriven(self._host.session.scene)
         self._reading.cancel()
         self._replace(VIRTUAL_FILE)
@@ -227,7 +227,7 @@ class DataPage(Page):
 
 
 def _settled(scene: Scene, stop: Stop) -> Settled:
-    """The steady state, of which a virtual experiment needs the largest force."""
+    """The steady state, whose largest force a virtual experiment needs."""
     began = time.thread_time()
     for settled in settling(scene, stop=stop):
         if time.thread_time() - began > WHOLE_PICTURE and not settled.final:
@@ -237,7 +237,7 @@ def _settled(scene: Scene, stop: Stop) -> Settled:
 
 
 def _content(message: dict[str, Any]) -> bytes:
-    """The bytes of the file: the page sends them in base64, so that every encoding arrives as it is."""
+    """The bytes of the file, which the page sends in base64, so that any encoding arrives unchanged."""
     coded = message.get("content")
     try:
         content = base64.b64decode(coded if isinstance(coded, str) else "!", validate=True)

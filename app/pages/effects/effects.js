@@ -1,4 +1,4 @@
-// The Effects tab: a switch for every effect, its slot in the compiled kernel and its cost, and what is computed now.
+// The Effects tab: a switch for every effect, its slot in the compiled kernel and its cost, and the running computations.
 
 import { element, paragraph } from "../../parts/toolkit/dom.js";
 

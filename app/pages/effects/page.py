@@ -24,14 +24,14 @@ from ...session.progress import COMPUTING, READY, UNDER_WAY
 from ...session.switches import SWITCHES, present, refusal, variants
 from ...session.task import Job, Task
 
-#: Time between two lists of what is being computed, while somebody looks [s].
+#: Interval at which the running computations are listed while the page is visible [s].
 _LIST_EVERY = 0.4
-#: Rest of the knobs before the cost of an effect is measured [s].
+#: Time for which the knobs must rest before the cost of an effect is measured [s].
 _QUIET = 0.7
 
 
 class EffectsPage(Page):
-    """Lists the running computations and measures the cost of one effect after the other, while it is on the screen."""
+    """Lists the running computations and measures the cost of one effect after another while it is visible."""
 
     def __init__(self, host: PageHost, view: Component) -> None:
         self._host = host
@@ -64,7 +64,7 @@ class EffectsPage(Page):
         return f"{len(self._costs)} of {possible} effects measured"
 
     def scene_changed(self) -> None:
-        """A knob has moved: measure nothing for a while, and forget the costs of another kernel."""
+        """Pause the measurements, because a knob has moved, and forget the costs of another kernel."""
         self._quiet.start(self._next)
         scene = self._host.session.scene
         key = (structure(scene), scene.knobs["N"])
@@ -76,7 +76,7 @@ class EffectsPage(Page):
             self._show()
 
     def visibility_changed(self, visible: bool) -> None:
-        """List the running computations, and measure, while somebody looks."""
+        """List the running computations, and measure, while the page is visible."""
         self._visible = visible
         self._round += 1
         if visible:

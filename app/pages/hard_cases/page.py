@@ -24,7 +24,7 @@ WORDS = StatusWords()
 
 
 class HardCasesPage(Page):
-    """Runs the requested cases one after the other; results stay until a case is run again."""
+    """Runs the requested cases one after another; results stay until a case is run again."""
 
     def __init__(self, host: PageHost, view: HardCases) -> None:
         self._view = view
@@ -109,7 +109,7 @@ class HardCasesPage(Page):
             self._view.draw(name, data)
 
     def _end(self, status: Status, sentence: str) -> None:
-        """The first waiting case has ended or failed: begin the next one."""
+        """Begin the next case after the first waiting one has ended or failed."""
         name = self.waiting.pop(0)
         if self.waiting:
             self._begin_next()

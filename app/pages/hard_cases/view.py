@@ -29,7 +29,7 @@ class HardCases(ResultFigure):
         super().__init__(received, state={"cases": described_cases(), "about": ABOUT}, **params)
 
     def draw(self, name: str, data: Picture) -> None:
-        """Show the figure of a case in place of an earlier one."""
+        """Replace the figure of a case by another."""
         labels = "; ".join(trace.label for trace in data.traces)
         self.show_figure(partial(check, data), f"{data.y_label} over {data.x_label}: {labels}", place=name)
 
@@ -47,7 +47,7 @@ def digits_of(value: float, digits: int) -> str:
 
 
 def value_beside(value: float, limit: float) -> str:
-    """A value to two digits, or to as many as it takes to see on which side of its limit it is."""
+    """A value to two digits, or to more if they are needed to see on which side of its limit it is."""
     if not math.isfinite(value):
         return "no number" if math.isnan(value) else "infinite"
     for digits in range(2, 17):

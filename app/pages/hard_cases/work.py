@@ -13,7 +13,7 @@ from granchain_core.execution.child_processes import end_with_parent, starting
 from granchain_core.execution.stop import Stop
 from granchain_core.hard_cases import CASES, Case, Check, Picture, run_case
 
-#: Time between two checks of the stop flag while the process of a case works [s].
+#: Interval between checks of the stop flag while the process of a case works [s].
 _STOP_CHECK_INTERVAL = 0.05
 
 

@@ -51,7 +51,7 @@ class MapTab {
     this.redraw();
   }
 
-  // Turns the knobs to the values of a cell.
+  // Sets the knobs to the values of a cell.
   pick(row) {
     if (row < 0) return;
     this.line.textContent = MAP.cells.rows.cells.tooltip[row];

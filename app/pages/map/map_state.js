@@ -21,7 +21,7 @@ export const MAP = {
   redraw: () => {},
 };
 
-// Why a computation failed or, if it did not, how far it is.
+// The reason why a computation failed or, if it has not, its progress.
 const wordsOf = ({ failure, progress }) => failure || progress;
 
 export function mapMessage(message) {

@@ -1,4 +1,4 @@
-"""The Map tab of one session: the parameter map over f and A0 while it is looked at, and the search for attractors."""
+"""The Map tab of one session: the parameter map over f and A0 while it is visible, and the search for attractors."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from ...session.scene_facts import slider_range
 from ...session.task import Job, Task
 from .view import cells_message, described_attractor, head_message
 
-#: Rest of the knobs before a new map is begun [s].
+#: Time for which the knobs must rest before a new map is begun [s].
 _QUIET = 0.7
 #: Time between two messages while a map grows [s].
 _MESSAGE_EVERY = 0.25
@@ -38,9 +38,9 @@ _MESSAGE_EVERY = 0.25
 #: Cells along f and A0: few enough to be computed in about ten seconds on one core.
 COLUMNS = 60
 ROWS = 40
-#: Random states from which attractors are looked for.
+#: Number of random states from which attractors are searched for.
 _RANDOM_STATES = 64
-#: Random states for a scene that cannot be computed in batches.
+#: Number of random states for a scene that cannot be computed in batches.
 _FEW_RANDOM_STATES = 12
 
 WORDS = StatusWords(kept="the cells computed so far")
@@ -49,7 +49,7 @@ SEARCH_WORDS = StatusWords(
 
 
 def page_grid(scene: Scene) -> Grid:
-    """The map of a scene over the ranges of its sliders; it is the same wherever f and A0 stand."""
+    """The map of a scene over the ranges of its sliders; it does not depend on the present f and A0."""
     (f0, f1), (a0, a1) = slider_range(scene, "f"), slider_range(scene, "A0")
     low = scene.evolve(f=f0, A0=a0)
     return Grid(low, Axis.of("f", np.linspace(f0, f1, COLUMNS)), Axis.of("A0", np.geomspace(a0, a1, ROWS).tolist()))
@@ -82,7 +82,7 @@ class MapPage(Page):
         }
 
     def scene_changed(self) -> None:
-        """A knob has moved: any but f and A0 changes the map, and any at all changes the attractors."""
+        """Follow a moved knob: any except f and A0 changes the map, and every knob changes the attractors."""
         self._forget_outdated_attractors()
         if not self._visible:
             return
@@ -96,7 +96,7 @@ class MapPage(Page):
         return self._grid is None or self._grid.digest != page_grid(self._host.session.scene).digest
 
     def visibility_changed(self, visible: bool) -> None:
-        """Show the map, and compute its missing cells, as long as somebody looks."""
+        """Show the map, and compute its missing cells, while the page is visible."""
         self._visible = visible
         if not visible:
             self._stop()
@@ -188,7 +188,7 @@ class MapPage(Page):
         self._send(**message)
 
     def _choose(self, message: dict[str, Any]) -> None:
-        """A place of the map was clicked: set f and A0 to its values."""
+        """Set f and A0 to the values of the place in the map that was clicked."""
         session = self._host.session
         self._host.show(session.scene.evolve(f=message.get("x"), A0=message.get("y")), mode=session.mode)
 

@@ -6,7 +6,7 @@ const INVITES = "Pin a picture and move a knob: its lines stay, dashed and grey,
 
 let comparison = { pins: [], rows: [], full: false };
 
-// Takes the server's message. With pins, the key over the force trains says what the grey lines are.
+// Takes the server's message. With pins, the key over the force trains explains the grey lines.
 export function compareMessage(message) {
   if (message.type !== "compare") return;
   comparison = message;

@@ -22,7 +22,7 @@ export function numbersMessage(message) {
   window.granchain.emit("numbers-received");
 }
 
-// The rows of the curve come from what its figure draws.
+// The rows of the curve come from the data of its figure.
 function curveRows() {
   const [figure] = modelsNamed(CURVE);
   const points = (figure?.renderers ?? [])

@@ -1,4 +1,4 @@
-"""The Numbers tab of one session: a summary of every settled picture, and tables while the tab is looked at."""
+"""The Numbers tab of one session: a summary of every settled picture, and tables while the tab is visible."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .words import beads, forces_over_time, summary
 
 
 class NumbersPage(Page):
-    """It has no view: its tab is drawn by the tabs, and the summary also describes the pictures."""
+    """Computes the tables and the summary. It has no view: the script of the tabs draws its tab."""
 
     def __init__(self, host: PageHost, view: Component) -> None:
         self._host = host
@@ -27,7 +27,7 @@ class NumbersPage(Page):
             self._view.send(type="numbers", summary=summary(run), **tables)
 
     def visibility_changed(self, visible: bool) -> None:
-        """Compute the tables only while somebody looks."""
+        """Compute the tables only while the page is visible."""
         self._visible = visible
         settled = self._host.session.settled
         if visible and settled is not None:

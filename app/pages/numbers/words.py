@@ -18,7 +18,7 @@ _MOST_BEADS = 200
 
 
 def summary(run: Run) -> str:
-    """What the pictures show, in a few sentences."""
+    """A summary of the pictures in a few sentences."""
     energy = run.kinetic_energy
     row, bead = map(int, np.unravel_index(int(energy.argmax()), energy.shape))
     far = int(energy[:, -1].argmax())
@@ -39,14 +39,14 @@ def _forces(run: Run) -> str:
 
 
 def _travel(run: Run) -> str:
-    """How far beads move from rest."""
+    """The largest displacements of the beads from rest."""
     far = np.abs(run.displacement).max(axis=0)
     most = int(far.argmax())
     return f"The bead that moves farthest, number {most + 1}, goes {in_words(float(far[most]), 'm', 3)} from its place."
 
 
 def _where_energy_goes(run: Run) -> str:
-    """What becomes of the work of the driver in a steady motion, if only the damping of contacts can lose energy.
+    """Where the work of the driver goes in a steady motion, if only the damping of contacts can lose energy.
 
     The wall takes none, because it does not move.
     """

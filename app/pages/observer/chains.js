@@ -3,7 +3,7 @@
 import { ChainDrawing } from "../../parts/chain/chain_drawing.js";
 import { element } from "../../parts/toolkit/dom.js";
 
-// A chain on a canvas of its own, without the words of the main picture.
+// A chain on a separate canvas, without the words of the main picture.
 class WholeChain extends ChainDrawing {
   measure() {
     const box = this.canvas.getBoundingClientRect();
@@ -13,7 +13,7 @@ class WholeChain extends ChainDrawing {
   words() {}
 }
 
-// The observer. In place of the driver it has an arrow whose length shows the force.
+// The observer. Instead of a driver it has an arrow whose length shows the force.
 class PushedChain extends WholeChain {
   constructor(...words) {
     super(...words);
@@ -93,7 +93,7 @@ function drawForce(canvas, { message, chain }, row) {
 const label = (text, detail) =>
   element("div", { className: "label" }, element("b", { textContent: text }), element("span", {}, detail));
 
-// The three drawings, one above the other.
+// The three drawings, one above another.
 export class Chains {
   constructor(palette) {
     const [above, between, below] = ["chain", "force", "observer"].map((name) =>

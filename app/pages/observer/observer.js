@@ -108,7 +108,7 @@ class ObserverPage {
     this.showDistance();
   }
 
-  // Requests an animation frame. Each requests the next while somebody looks at the page or its tab.
+  // Requests an animation frame. Each requests the next while the page or its tab is visible.
   wake() {
     this.requested ||= requestAnimationFrame((time) => {
       this.requested = 0;

@@ -1,4 +1,4 @@
-"""The Observer page of one session: computes a drive period for each one that the browser has shown."""
+"""The Observer page of one session: computes a drive period for each period that the browser has shown."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class ObserverPage(Page):
         }
 
     def scene_changed(self) -> None:
-        """A knob moved: the page's own control follows, and the next period belongs to the new chain."""
+        """Update the page's control after a knob has moved; the next period belongs to the new chain."""
         scene = self._host.session.scene
         self._view.update_state(kappa=scene.kappa)
         if self._run is not None and self._run.scene.digest != scene.digest:

@@ -52,7 +52,7 @@ class ObserverStep:
 
 
 class ObserverRun:
-    """One chain with one observer; it starts from the states of `previous`, the run before a knob was turned."""
+    """One chain with one observer; it starts from the states of `previous`, the run before a knob was moved."""
 
     def __init__(self, scene: Scene, settled: Settled | None, stop: Stop, previous: ObserverRun | None) -> None:
         self.scene = scene
@@ -71,14 +71,14 @@ class ObserverRun:
             self._begin(start, observer_start(scene, start, NUDGE))
 
     def _begin(self, chain: State, observer: State) -> None:
-        """Continue both chains from these states, and forget what was measured before."""
+        """Continue both chains from these states, and forget earlier measurements."""
         self.pair.start(State(chain.displacement, chain.velocity), State(observer.displacement, observer.velocity))
         self.since = self.number
         self.strobes: list[np.ndarray] = []
         self.in_step = False
 
     def nudge(self) -> None:
-        """Move the observer's beads by a little, always in the same way."""
+        """Displace the observer's beads slightly, always in the same way."""
         chain, observer = self.pair.states
         moved = observer_start(self.scene, chain, NUDGE)
         self._begin(chain, State(observer.displacement + moved.displacement - chain.displacement, observer.velocity))
@@ -166,7 +166,7 @@ class ObserverRun:
 
     @property
     def sentence(self) -> str:
-        """What the multiplier predicts, in one sentence."""
+        """The prediction of the multiplier in one sentence."""
         mu, factor = self.leading, self.predicted
         if self.in_step:
             return "The observer agrees with its chain to rounding; nudge it and watch it converge again."

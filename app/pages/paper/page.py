@@ -23,7 +23,7 @@ _KERNELS: dict[str, tuple[tuple[str, tuple[str, ...]], ...]] = {
     "6": (("rig", (*MOTION_KERNELS, CURVE_KERNELS)),), "7": _TRAINS, "9": _FED, "10": _FED, "12": _TRAINS,
     "11": tuple((name, (*MOTION_KERNELS, ORBIT_KERNELS, OBSERVER_KERNELS)) for name in ("fig11-free", "fig11-founded")),
 }
-#: The figure that the page begins with: the resonance curve of section 2, which takes a second.
+#: The figure that the page shows first: the resonance curve of section 2, which takes a second.
 _FIRST_FIGURE = "2"
 
 WORDS = StatusWords("the figure's kernels", ORBIT_KERNELS)
@@ -40,7 +40,7 @@ class PaperPage(Page):
         self.actions: Actions = {"paper-show": self._show, "paper-stop": lambda _: self._stop()}
 
     def visibility_changed(self, visible: bool) -> None:
-        """When the page is opened for the first time, show a figure rather than nothing."""
+        """Show a figure rather than nothing when the page is opened for the first time."""
         if visible and not self._chosen:
             self._show({"figure": _FIRST_FIGURE})
 

@@ -25,7 +25,7 @@ class Paper(ResultFigure):
             {"number": figure.number, "title": figure.title} for figure in FIGURES.values()]}, **params)
 
     def choose(self, figure: PaperFigure) -> None:
-        """Show the words of a figure without its drawing."""
+        """Show the text of a figure without its drawing."""
         self.clear_figure()
         self.update_state(chosen=figure.number, title=figure.title, caption=figure.caption, rows=rows_of(figure.number))
 

@@ -1,4 +1,4 @@
-"""The Probe page of one session: the chosen bead, and whether the page is looked at."""
+"""The Probe page of one session: the chosen bead, and whether the page is visible."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .view import Probe
 
 
 class ProbePage(Page):
-    """Follows the settled picture while it is on the screen; at other times it costs nothing."""
+    """Follows the settled picture while the page is visible; at other times it costs nothing."""
 
     def __init__(self, host: PageHost, view: Probe) -> None:
         self._host = host
@@ -27,7 +27,7 @@ class ProbePage(Page):
         self._draw(settled)
 
     def visibility_changed(self, visible: bool) -> None:
-        """Draw the present motion when somebody begins to look."""
+        """Draw the present motion when the page becomes visible."""
         self._visible = visible
         self._draw(self._host.session.settled)
 

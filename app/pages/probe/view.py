@@ -42,7 +42,7 @@ class Probe(StreamedFigure):
 
 
 def words(motion: Run, bead: int) -> str:
-    """What the bead does, in one sentence."""
+    """The motion of the bead in one sentence."""
     u, v = (abs(values[:, bead - 1]).max() for values in (motion.displacement, motion.velocity))
     lasting = motion.time[-1] - motion.time[0]
     shut = [sum(end - begin for contact, begin, end in closed_spells(motion) if contact == beside) / lasting

@@ -6,7 +6,7 @@ import { round3, ticks } from "../../parts/toolkit/round_numbers.js";
 import { draw, frame, words } from "../../parts/toolkit/svg.js";
 
 class DisturbedChain extends ChainDrawing {
-  // A mode has no size of its own: its largest displacement is drawn as this part of the distance of two beads.
+  // The size of a mode is arbitrary: its largest displacement is drawn as this part of the distance of two beads.
   load(frames) {
     this.rest(frames.radii);
     this.exaggeration = 0.42;
@@ -75,7 +75,7 @@ export class ModeView {
     );
   }
 
-  // Says which disturbance it is. `rank` is that of the chosen multiplier; 0 is the largest.
+  // Names the disturbance. `rank` is the rank of the chosen multiplier; 0 is the largest.
   showTitle(rank) {
     const leading = this.mode?.size < 1 ? "the slowest-decaying disturbance" : "the fastest-growing disturbance";
     this.title.textContent = this.mode ? (rank ? "the chosen disturbance" : leading) : "mode";

@@ -1,4 +1,4 @@
-// The row with the search for an unstable orbit nearby, and the way back from an orbit that was found.
+// The row with the search for an unstable orbit nearby, and the button that leads back from the orbit found.
 
 import { button, element } from "../../parts/toolkit/dom.js";
 

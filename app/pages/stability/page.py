@@ -41,7 +41,7 @@ WORDS = StatusWords("the tangent flow", ORBIT_KERNELS)
 
 
 class StabilityPage(Page):
-    """Analyses every picture that stays, while it is on the screen; a moving knob cancels the analysis."""
+    """Analyses every picture that stays, while the page is visible; a moving knob cancels the analysis."""
 
     def __init__(self, host: PageHost, view: Stability) -> None:
         self._host = host
@@ -80,7 +80,7 @@ class StabilityPage(Page):
     # The picture in front
 
     def picture_requested(self) -> None:
-        """Another picture is being computed: cancel the analysis, and grey the last one."""
+        """Cancel the analysis and grey the last one, because another picture is being computed."""
         self._give_up()
         self._settled = None
         if self._visible and self._host.session.mode == "live":
@@ -89,7 +89,7 @@ class StabilityPage(Page):
             self._view.update_state(stale=True)
 
     def picture_ready(self, settled: Settled) -> None:
-        """A picture has arrived: if it is the final one for these knobs, analyse it if it stays."""
+        """Analyse a picture that has arrived, if it is the final one for these knobs and stays."""
         if not settled.final:
             return
         # the same picture, with its energy account
@@ -100,7 +100,7 @@ class StabilityPage(Page):
             self._quiet.start(self._begin)
 
     def visibility_changed(self, visible: bool) -> None:
-        """Analyse the picture when somebody begins to look; cancel the analysis when nobody looks any more."""
+        """Analyse the picture when the page becomes visible; cancel the analysis when it is hidden."""
         self._visible = visible
         if not visible:
             self._give_up()
@@ -117,7 +117,7 @@ class StabilityPage(Page):
         self.status = "none"
 
     def _begin(self) -> None:
-        """Analyse the picture, unless there is none, it has been analysed, or nobody looks."""
+        """Analyse the picture, unless there is none, it has been analysed, or the page is hidden."""
         settled = self._settled
         if not self._visible or settled is None or self._analysed is settled.state:
             return
@@ -211,7 +211,7 @@ class StabilityPage(Page):
             self._view.update_state(evidence=evidence(self._settled, self._analysis, self._section))
 
     def _clear(self, sentence: str) -> None:
-        """Show no multipliers, and a sentence that says why."""
+        """Show a sentence with the reason instead of multipliers."""
         self._analysis, self.status = None, "none"
         self._view.update_state(**WORDS.of("none"), stale=False, sentence=sentence,
                                 plane=plane_state(None), count=0, chosen="", searched=False, evidence=[],
@@ -241,7 +241,7 @@ class StabilityPage(Page):
         self._again()
 
     def _again(self) -> None:
-        """Analyse the same orbit with what the visitor chose."""
+        """Analyse the same orbit with the visitor's new choices."""
         if self._visible and self._target is not None and self._settled is not None:
             self._follow(self._target)
 

@@ -11,7 +11,7 @@ _SAME_SET = 1e-4
 
 
 class Trail:
-    """Sets of multipliers with the period of their orbit, oldest first; another scene begins anew."""
+    """Sets of multipliers with the period of their orbit, oldest first; another scene starts a new trail."""
 
     def __init__(self) -> None:
         self._sets: list[tuple[int, np.ndarray]] = []

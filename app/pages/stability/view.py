@@ -52,7 +52,7 @@ class Stability(StreamedFigure):
         super().__init__(received, state={"longest_period": LONGEST_LOCKED_PERIOD, "phases": PHASES}, **params)
 
     def section(self, shown: SectionPoints) -> None:
-        """Show a section in place of an earlier one."""
+        """Replace the section shown by another."""
         self.need_figures()
         self.send(**section_message(shown))
 
@@ -64,7 +64,7 @@ def period_words(orbit: Orbit) -> str:
 
 
 def verdict(orbit: Orbit) -> str:
-    """Whether a disturbance of the orbit dies out and, if not, in which way it grows."""
+    """Whether a disturbance of the orbit dies out or, if it does not, how it grows."""
     leading = complex(orbit.multipliers[0])
     size = abs(leading)
     if orbit.multiplier_errors is not None and not orbit.stability_certain:
@@ -101,7 +101,7 @@ def _leaves(leading: complex) -> str:
 
 
 def no_multipliers(settled: Settled) -> str:
-    """Why a motion that does not repeat has no multipliers."""
+    """The reason why a motion that does not repeat has no multipliers."""
     regime = settled.regime
     if not regime.driven:
         return "No multipliers: nothing drives the chain, and only a motion that repeats has them."
@@ -225,6 +225,6 @@ def section_points(section: Section, on_the_way: int, orbit: Section | None, bea
 
 
 def section_message(shown: SectionPoints) -> dict[str, Any]:
-    """What the browser puts into its figure, and the ranges of the close view."""
+    """The data that the browser puts into its figure, and the ranges of the close view."""
     return {"type": "section", "drawn": section_state(shown), "near": close_up(shown), "count": len(shown.points),
             "own": len(shown.own)}

@@ -1,4 +1,4 @@
-"""What the Stability page computes in the background: an orbit with its mode, a section, a search."""
+"""Background computations of the Stability page: an orbit with its mode, a section, a search."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ def _stories_read(overlays: tuple[str, ...]) -> tuple[tuple[Story, ...], tuple[s
 
 
 def story_places(overlays: tuple[str, ...]) -> tuple[str, ...]:
-    """Every step of every story by the name it has in a link, "coexisting.2"; `overlays` are those there are."""
+    """Every step of every story by its name in a link, "coexisting.2"; `overlays` names the existing overlays."""
     return tuple(f"{story.name}.{number}" for story in _stories_read(overlays)[0]
                  for number in range(1, len(story.steps) + 1))
 
@@ -35,7 +35,7 @@ def story_step(place: str, overlays: tuple[str, ...]) -> StoryStep:
 
 
 class StoriesPage(Page):
-    """It turns the knobs of the dashboard to a step, and sends the tab its words."""
+    """Shows a step of a story: sets its scene and sends its text to the tab."""
 
     def __init__(self, host: PageHost, view: Component) -> None:
         self._host = host
@@ -49,7 +49,7 @@ class StoriesPage(Page):
         self.address_applied()
 
     def scene_changed(self) -> None:
-        """The knobs have moved: a step that is still being settled will not be shown."""
+        """Drop a step that is still being settled, because the knobs have moved."""
         self._task.cancel()
 
     def picture_ready(self, settled: Settled) -> None:

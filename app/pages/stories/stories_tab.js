@@ -7,7 +7,7 @@ const INVITES = "A story turns the knobs, says where to look, and asks. All cont
 let revealed = ""; // the step whose answer is shown
 let shownStep = ""; // the step that was shown last
 
-// Puts a frame around the part of the page that a step is about.
+// Frames the part of the page that a step is about.
 function point(look, inStory = false) {
   document.getElementById("curves").classList.toggle("in-story", inStory);
   window.granchain.emit("story", inStory);
@@ -54,7 +54,7 @@ function shownStory(model, story) {
   return [row, element("h3", { textContent: title }), paragraph(say), paragraph(ask, "ask"), ...open, answered];
 }
 
-// On a phone a step that begins is scrolled to the top of the screen.
+// On a phone, scrolls a new step to the top of the screen.
 function comeUp(story) {
   const step = story ? `${story.name} ${story.step}` : "";
   if (step === shownStep) return;
@@ -71,5 +71,5 @@ export function storiesTab(model) {
   return { content: story ? shownStory(model, story) : chooser(model) };
 }
 
-// When another tab is opened, nothing has a frame.
+// Opening another tab removes the frame.
 export const leaveStories = () => point("");

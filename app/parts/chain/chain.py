@@ -15,7 +15,7 @@ from ...scripts import module
 from ...session.share import VIEW_VALUES, encode
 from ..toolkit.component import Component, text
 
-#: The scales of the pictures: what a button says, and what it means.
+#: The scales of the pictures: the word on a button, and its meaning.
 _SCALES = {
     "same": ("same scale", "One scale for all pictures of this scene: its axes and colours end at the largest values "
              "at any drive frequency, so that strong and weak motions can be compared. A larger motion widens it; "
@@ -34,7 +34,7 @@ class ChainPart(Component):
 
 def frames_message(number: int, frames: Frames, scene: Scene, scale: Extremes, fit: bool,
                    peaks: list[list[str]], live: bool, running: bool, final: bool) -> dict[str, Any]:
-    """What the browser needs to draw the chain at every instant; of a live run, the present alone.
+    """The data with which the browser draws the chain at every instant; of a live run, only at the present one.
 
     `scale` has the largest values that the chain and its colours are drawn to; a fitted chain finds its own. `peaks`
     are the largest and the smallest input and output force in words. No better picture of these knobs follows a
@@ -70,7 +70,7 @@ def _present(frames: Frames) -> np.ndarray:
 
 
 def energy_labels(high: float) -> list[str]:
-    """What stands at the beginning, in the middle and at the end of the colour bar up to `high` [J].
+    """The labels at the beginning, in the middle and at the end of a colour bar up to `high` [J].
 
     The bar is even in the square root of the energy, so a quarter of it is in the middle.
     """
@@ -79,5 +79,5 @@ def energy_labels(high: float) -> list[str]:
 
 
 def drawn_chain(scene: Scene) -> dict[str, Any]:
-    """What chain_drawing.js draws of a chain besides its motion."""
+    """The properties of a chain, besides its motion, that chain_drawing.js draws."""
     return {"beads": scene.N, "radii": [bead.radius for bead in scene.beads], "foundation": scene.k > 0.0}

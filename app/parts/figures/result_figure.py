@@ -23,7 +23,7 @@ class _Drawn:
 
 
 class ResultFigure(Component):
-    """A component whose figures come whole, with all their points: when there is a result, and again in another theme.
+    """A component whose figures are sent whole, with all their points, once there is a result and for each theme.
 
     Each has a place on the page, whose name its `ResultFigure` of result_figure.js has, too. A figure that grows, or is
     filled in the browser, is a `StreamedFigure` instead.
@@ -37,17 +37,17 @@ class ResultFigure(Component):
         self._drawn: dict[str, _Drawn] = {}
 
     def show_figure(self, draw: Callable[[Theme], LayoutDOM], words: str, shape: float = 0.0, place: str = "") -> None:
-        """Show a figure in its place instead of an earlier one."""
+        """Show a figure, which replaces an earlier one in its place."""
         self._drawn[place] = _Drawn(draw, words, shape)
         self._send_figure(place)
 
     def clear_figure(self, place: str = "") -> None:
-        """Take the figure away."""
+        """Remove the figure."""
         self._drawn.pop(place, None)
         self.send(type="clear", place=place)
 
     def apply_theme(self, theme: Theme) -> None:
-        """Draw all figures anew in another theme."""
+        """Redraw all figures in another theme."""
         if theme != self._theme:
             self._theme = theme
             for place in self._drawn:

@@ -38,13 +38,13 @@ class StreamedFigure(Component):
         self.theme = THEMES["light"]
 
     def apply_theme(self, theme: Theme) -> None:
-        """Draw the figures anew in another theme."""
+        """Redraw the figures in another theme."""
         if theme != self.theme:
             self.theme = theme
             if self.figures:
                 self.figures = self.empty_figures(theme)
 
     def need_figures(self) -> None:
-        """Send the figures if they have not been sent; to be called before the first data."""
+        """Send the figures unless they have been sent; called before the first data."""
         if not self.figures:
             self.figures = self.empty_figures(self.theme)

@@ -1,4 +1,4 @@
-// The bar on top. What concerns only the replay stays in the browser; everything else sends one message.
+// The bar on top. Controls of the replay act in the browser alone; all others send one message.
 
 import { markAnotherScene } from "./another_scene.js";
 import { repaintFigures } from "../figures/bokeh.js";
@@ -87,7 +87,7 @@ class Header {
     );
   }
 
-  // Moves controls into the menu “⋯” until the bar has room for the others, the least needed first.
+  // Moves controls into the menu “⋯”, the least needed first, until the others fit on the bar.
   layoutControls() {
     const { root, popovers } = this;
     const focused = root.getRootNode().activeElement;
@@ -195,14 +195,14 @@ class Header {
     this.begun = true;
   }
 
-  // The replay runs or pauses as before a lost connection. If the browser is set to less motion, it begins paused.
+  // The replay runs or pauses as before a lost connection. If the visitor prefers reduced motion, it begins paused.
   begin() {
     const again = window.granchain.connection.takeResumeState();
     if (again) this.restore(again);
     else if (matchMedia("(prefers-reduced-motion: reduce)").matches) this.setPlaying(false);
   }
 
-  // Only the first state sets the theme, that of the link; later only the button changes it.
+  // Only the first state sets the theme, to the one of the link; later only the button changes it.
   takeTheme(theme) {
     if (this.themed || !theme) return;
     this.themed = true;
@@ -238,7 +238,7 @@ class Header {
     window.granchain.connection.carryOver({ playing });
   }
 
-  // After a lost connection: sends what the share link does not contain.
+  // After a lost connection: sends the state that the share link does not contain.
   restore({ playing = true, uploaded = false }) {
     this.send("reconnected", { playing, uploaded });
   }

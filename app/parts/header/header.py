@@ -17,7 +17,7 @@ _MODES = {
     "live": "The run goes on while you move the knobs",
 }
 _STARTS = {"rest": "start: from rest", "previous": "start: previous state"}
-#: Stands in place of “from rest” while the motion on the screen began in another state, of a story, a map or a branch.
+#: Replaces “from rest” while the motion on the screen began in another state: of a story, a map or a branch.
 _STARTED_ELSEWHERE = "start: a given state"
 
 
@@ -38,13 +38,13 @@ class Header(Component):
         self._picture_start = "rest"
 
     def show_picture_start(self, start: str, session: Session) -> None:
-        """The picture on the screen has another start, as `Settled.start` names it."""
+        """Show where the picture on the screen started, as `Settled.start` names it."""
         if start != self._picture_start:
             self._picture_start = start
             self.show_session(session)
 
     def show_session(self, session: Session) -> None:
-        """Show what the session chose, and the start of the picture on the screen."""
+        """Show the session's choices, and the start of the picture on the screen."""
         self.update_state(
             scenes=presets(), scene=session.scene.name, mode=session.mode, start=session.start, theme=session.theme,
             picture_start=self._picture_start, driven=session.scene.is_driven, speed=session.speed,

@@ -2,8 +2,7 @@
 
 const KEPT_AS = "granchain-help-key"; // in the browser, from visit to visit
 
-// Whether the key “?” opens the help. It can be switched off, because those who speak to their computer may cause it
-// by accident (WCAG 2.1.4).
+// Whether the key “?” opens the help. It can be switched off, because speech input may type it by accident (WCAG 2.1.4).
 export const opensHelp = {
   on: true,
   get() {

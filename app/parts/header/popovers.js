@@ -52,7 +52,7 @@ function helpKeySwitch() {
 
 const title = (textContent) => element("h2", { textContent });
 
-// At most one of them is open. It gets the focus, which goes back to where it was when the box is closed.
+// At most one of them is open. It gets the focus; when it is closed, the focus goes back to where it was.
 export class Popovers {
   constructor(send, files) {
     this.field = element("input", { readOnly: true, ariaLabel: "link to this picture" });

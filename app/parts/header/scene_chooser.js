@@ -15,7 +15,7 @@ export class SceneChooser {
     this.button = iconButton(icon("scenes"), "Scenes with pictures", () => this.gallery.open(this.list.value));
   }
 
-  // While a scene is chosen its name is whole, and the list keeps its width.
+  // While a scene is being chosen, its name is not cut, and the list keeps its width.
   openList() {
     const { width } = this.list.getBoundingClientRect();
     this.name(true);

@@ -3,7 +3,7 @@
   const { granchain } = window;
 
   const { browserFields: BROWSER_FIELDS } = window.pageConstants; // `BROWSER_FIELDS` of app/session/share.py
-  const FOLLOW_AFTER = 400; // ms; a browser limits how many changes it takes a second
+  const FOLLOW_AFTER = 400; // ms; browsers limit the number of changes per second
   const NEWEST = "granchain-newest";
 
   // The part of an address that the server knows.
@@ -13,7 +13,7 @@
     return query.toString();
   };
 
-  /** The page's place in the browser's history, whose steps are those of undo and redo. */
+  /** The page's place in the browser's history; the steps of the history are the steps of undo and redo. */
   class Steps {
     #at = 0;
     #newest = 0;
@@ -34,7 +34,7 @@
       return this.#returning;
     }
 
-    /** Finds the place. The browser forgets it at a reload after a lost connection; `again` has it then. */
+    /** Finds the place. After a lost connection the browser has forgotten it; then it is in `again`. */
     begin(again) {
       this.#at = history.state?.at ?? again?.at ?? 0;
       this.#newest = history.state || again ? Math.max(this.#at, Steps.#kept()) : this.#at;
@@ -55,7 +55,7 @@
       history.replaceState({ ...history.state, at: this.#at }, "", url);
     }
 
-    /** The browser has gone to another step, that of this `history.state`. */
+    /** The browser has gone to the step with this `history.state`. */
     moved(state) {
       this.#at = state?.at ?? 0;
       this.#returning = !granchain.connection.lost;
@@ -109,7 +109,7 @@
     #viewFields = []; // the fields of a link that belong to no scene
     #place;
     #timer = 0;
-    #acted = false; // whether the visitor has done something since the last step
+    #acted = false; // whether the visitor has changed anything since the last step
 
     constructor(steps) {
       this.#steps = steps;
@@ -120,7 +120,7 @@
       addEventListener("popstate", ({ state }) => this.#known && this.#moved(state));
     }
 
-    /** Where the visitor is: the tab below the curve and the overlay, empty for the first tab and none. */
+    /** The open tab and overlay; an empty text means the first tab, or no overlay. */
     get place() {
       return this.#place;
     }
@@ -133,8 +133,8 @@
     }
 
     /**
-     * A request is on its way to the server. Knobs that were asked for before belong to the scene before; and a name
-     * moves to the end, because of k and kappa the later one counts (`url`).
+     * A request is on its way to the server. Choosing a scene discards earlier requests, whose knobs belong to the
+     * scene before. The name moves to the end, because the later one of k and kappa counts (`url`).
      */
     requested(name, value) {
       if (name === "scene") this.#unanswered.clear();
@@ -144,7 +144,7 @@
 
     /** The server has sent a share link, which answers the requests of these names. */
     linkReceived(query, answered, viewFields = this.#viewFields) {
-      // A link that answers a request is a step of the history, even if it is the first one or has come in parts.
+      // A link that answers a request is a step of the history, even if it is the first link or comes in parts.
       const acted = answered.some((name) => this.#unanswered.has(name)) || (this.#known && query !== this.#link);
       this.#link = query;
       this.#viewFields = viewFields;
@@ -153,7 +153,7 @@
       this.#follow(acted);
     }
 
-    /** The server has sent a link that only makes the present address more precise. It is not a step of its own. */
+    /** The server has sent a link that only makes the present address more precise, which is not a new step. */
     linkRefined(query) {
       this.#link = query;
       this.#known = true;
@@ -166,7 +166,7 @@
       this.#steps.arrived();
     }
 
-    /** The address of what the visitor has asked for. */
+    /** The address that describes everything the visitor has asked for. */
     url() {
       const url = new URL(location.href);
       const query = new URLSearchParams(this.#link);
@@ -200,7 +200,7 @@
       return query.toString();
     }
 
-    // Gives the browser the address after a rest, as a step of its own if the visitor has acted.
+    // Gives the browser the address after a rest, as a new step if the visitor has acted.
     #follow(acted) {
       this.#acted ||= acted && !this.#steps.returning;
       clearTimeout(this.#timer);
@@ -213,7 +213,7 @@
       }, FOLLOW_AFTER);
     }
 
-    // The visitor has gone back or forward: has the server show the address that the browser has now.
+    // The visitor has gone back or forward: asks the server to show the address that the browser has now.
     #moved(state) {
       clearTimeout(this.#timer);
       this.#acted = false;

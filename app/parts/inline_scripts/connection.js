@@ -1,5 +1,5 @@
-// Watches the connection. While the server does not answer, pictures and knobs may not belong together. So the pictures
-// are grey, the knobs are disabled, and a banner says so. Once the server is back, the page reloads from its link.
+// Watches the connection. While the server does not answer, the pictures may not match the knobs. So the pictures turn
+// grey, the knobs are disabled, and a banner says so. Once the server is back, the page reloads from its link.
 (() => {
   const { granchain } = window;
   // All in milliseconds. For PING_EVERY + PING_TIMEOUT a page without its server still looks alive, so this stays below
@@ -13,12 +13,12 @@
   const LOST = "Connection lost – trying again … The pictures may be out of date.";
   const FULL = "The server is full – your place opens as soon as one is free, with your settings …";
   const BACK = "Connected again – restoring your settings …";
-  // Keys of the browser's storage. The pictures have one of their own: if they do not fit, the rest is kept all the same.
+  // Keys of the browser's storage. The pictures have a separate key: if they do not fit, the rest is still kept.
   const RESUME = "granchain-resume";
   const PICTURES = "granchain-pictures";
   const PARTS = ["bar", "side", "stage", "curves", "overlay", "foot"];
 
-  // What has no room in the storage, or what the browser allows to no page, is missing after the reload.
+  // A value that does not fit into the storage, or that the browser refuses to store, is missing after the reload.
   const attempt = (store) => {
     try {
       store();
@@ -33,7 +33,7 @@
     banner.hidden = !sentence;
   };
 
-  /** The last pictures as one image, which a reloaded page shows in grey until it has its own. */
+  /** The last pictures as one image, which a reloaded page shows in grey until it has new ones. */
   class LastPictures {
     #image;
 
@@ -49,7 +49,7 @@
       this.#image.remove();
     }
 
-    /** The pictures that are on the screen, as the address of an image. */
+    /** The pictures on the screen, as the address of an image. */
     static capture() {
       const canvas = Object.assign(document.createElement("canvas"), { width: innerWidth, height: innerHeight });
       if (!granchain.overlay)
@@ -69,7 +69,7 @@
     }
   }
 
-  /** Asks the server again and again whether it answers; shows that it does not, and reloads the page once it does. */
+  /** Pings the server; shows when it does not answer, and reloads the page once it answers again. */
   class Connection {
     #resumeState = Connection.#readResumeState();
     #carried = {};
@@ -102,19 +102,19 @@
       return this.#leaving;
     }
 
-    /** What the page before the reload kept; null if it is no reload, or once it has been taken. */
+    /** The state kept by the page before the reload; null without a reload, or once the state has been taken. */
     get resumeState() {
       return this.#resumeState;
     }
 
-    /** Gives what the page before the reload kept to the script that restores it. It is restored only once. */
+    /** Returns the kept state to the script that restores it, only once. */
     takeResumeState() {
       const state = this.#resumeState;
       this.#resumeState = null;
       return state;
     }
 
-    /** What the page needs besides its link when it is reloaded. */
+    /** The state that the page needs, besides its link, after a reload. */
     get carried() {
       return this.#carried;
     }
@@ -133,7 +133,7 @@
         });
     }
 
-    /** The server has answered. If its socket was only silent, the page goes on: the server has read all that was sent. */
+    /** The server has answered. If its socket was only silent, the page goes on: the server has read every message. */
     answerReceived() {
       this.#sincePing = null;
       this.#sinceAnswer = 0;
@@ -142,7 +142,7 @@
     }
 
     // Bokeh gives up the first connection without an event. The server refuses it if the page has lost its place to a
-    // newer one, as some do where all pages of a full server come back at once.
+    // newer one, which happens when all pages of a full server come back at once.
     #watchFirstSocket() {
       const closed = () => {
         if (this.#ping) return; // Bokeh reports it
@@ -195,7 +195,7 @@
       const { alive, full } = await Connection.#reach();
       this.#sinceTry = 0;
       if (this.#lost) showBanner(full ? FULL : LOST);
-      // Ever later and not all pages at the same time: the server would get them all at once.
+      // Each attempt comes later, and at a random time, so that not all pages reach the server at once.
       this.#pause = alive ? RETRY_FIRST : Math.min(1.6 * this.#pause, RETRY_LONGEST);
       this.#retryAfter = this.#pause * (0.5 + 0.5 * Math.random());
       if (!alive) this.#sinceReached = null;
@@ -232,7 +232,7 @@
           signal: AbortSignal.timeout(2 * PING_TIMEOUT),
         });
         // A proxy whose server is down answers 502 or 503; a server with too many pages answers 503 and the reason as
-        // JSON. A server without health checks answers 404, which will do.
+        // JSON. A server without health checks answers 404, which is good enough.
         if (answer.status < 500) return { alive: true, full: false };
         return { alive: false, full: (await answer.json())["/readiness"] === false };
       } catch {
@@ -240,7 +240,7 @@
       }
     }
 
-    // What the page before the reload kept, which is read once; null if it kept nothing.
+    // The state kept by the page before the reload, which is read once; null if there is none.
     static #readResumeState() {
       try {
         const [kept, snapshot] = [sessionStorage.getItem(RESUME), sessionStorage.getItem(PICTURES)];

@@ -1,19 +1,19 @@
 // The browser imports modules itself. Panel loads a shim for browsers without import maps, which this page does not
-// need. The shim would fetch and rewrite every module: 0.2 s of each opening.
+// need. The shim would fetch and rewrite every module: which takes 0.2 s at each opening.
 window.importShim = Object.assign((url) => import(url), { addImportMap() {} }); // the maps that Panel adds are empty
 
 window.granchain = (() => {
   const KEPT_AS = "granchain-look"; // the theme, in the browser from visit to visit
   const { themes: THEMES, terms: TERMS } = window.pageConstants; // app/session/page_constants.py
 
-  // The events: what has happened, and the detail, if there is one. There is also "page:NAME" for each page: it has
-  // published something, which is the detail.
+  // The events by name; each comment says what has happened and, after the colon, what the detail is. There is also
+  // "page:NAME" for each page, which has published the detail.
   const EVENTS = new Set([
     "theme", // another theme: its name
     "place", // another tab and page are to be shown: { tab, page }, empty for the first tab and no page
     "tab", // a tab was opened: its name
     "overlay", // an overlay was opened or closed: its name or null
-    "visible", // other pages are looked at: the set of their names
+    "visible", // other pages are visible: the set of their names
     "story", // a story was opened or left: whether one is shown
     "curved", // on a phone, the curve was shown or hidden: whether it is shown
     "drawer", // on a phone, the knobs were shown or hidden: whether they are shown
@@ -31,7 +31,7 @@ window.granchain = (() => {
     "compare", // a picture was pinned, and its numbers are to be shown
   ]);
 
-  /** Tells scripts what happens in others: a script listens to an event by its name, and any script can cause it. */
+  /** Events between scripts: a script listens to an event by its name, and any script can emit it. */
   class Events {
     #listeners = new Map();
 
@@ -40,12 +40,12 @@ window.granchain = (() => {
       this.#of(name).add(listener);
     }
 
-    /** Calls all who listen to this name. */
+    /** Calls all listeners of this name. */
     emit(name, detail) {
       for (const listener of this.#of(name)) listener(detail);
     }
 
-    // The listeners of an event. An unknown event name raises an error, since nobody would notice the mistake otherwise.
+    // The listeners of an event. An unknown event name raises an error; otherwise the mistake would go unnoticed.
     #of(name) {
       if (!EVENTS.has(name) && !name.startsWith("page:")) throw new Error(`there is no event ${name}`);
       if (!this.#listeners.has(name)) this.#listeners.set(name, new Set());
@@ -53,7 +53,7 @@ window.granchain = (() => {
     }
   }
 
-  /** The theme: the visitor's choice, of now or an earlier visit, or without one that of the system. */
+  /** The theme: the visitor's choice, now or at an earlier visit; without a choice, the theme of the system. */
   class Theme {
     names = THEMES;
     #events;
@@ -93,7 +93,7 @@ window.granchain = (() => {
       this.#events.emit("theme", name);
     }
 
-    /** After a step back or forward: takes the theme of the address or, if it has none, the one before any choice. */
+    /** After a step back or forward: applies the theme of the address or, if it has none, the one before any choice. */
     restore(name) {
       this.#chosen = THEMES.includes(name);
       this.set(this.#chosen ? name : this.#first, false);
@@ -140,15 +140,15 @@ window.granchain = (() => {
     theme = new Theme(this);
     terms = TERMS; // of the glossary, with their definitions
 
-    // Below are the members that other scripts set; a comment names the script.
-    // visibility.js: the names of what somebody looks at
+    // Other scripts set the members below; the comments name them.
+    // visibility.js: the names of the visible pages, and of the curve if it is visible
     visible = new Set();
     // address.js: the share link and where the visitor is; the browser's history
     address = null;
     steps = null;
     // connection.js
     connection = null;
-    // header.js: has the server show what an address says
+    // header.js: asks the server to show the state of an address
     go = null;
     // chain.js: its drawing, the picture on the screen, and where its replay is in drive periods
     chain = null;

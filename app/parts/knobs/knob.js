@@ -105,7 +105,7 @@ export class Knob {
     }
   }
 
-  // Text that is not a number is sent as it is; the server answers with a sentence.
+  // Text that is not a number is sent as it is; the server answers with a message.
   typed() {
     this.editing = false;
     delete this.field.dataset.typing;

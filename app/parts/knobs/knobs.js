@@ -1,4 +1,4 @@
-// The knobs, one below the other; those that are seldom moved are under "more knobs".
+// The knobs, one below another; those that are rarely moved are under "more knobs".
 
 import { element } from "../toolkit/dom.js";
 import { Knob } from "./knob.js";
@@ -84,7 +84,7 @@ class Knobs {
     // request of the address; but they are shown, unless a movement waits to be sent.
     const newest = this.sender.isNewest(message.seq ?? -1);
     window.granchain.address.linkReceived(message.query, newest ? [...this.knobs.keys()] : []);
-    // An answer to an older movement must not pull the knob from under the hand.
+    // An answer to an older movement must not move the knob while it is being dragged.
     if (this.sender.isNewest(message.seq ?? sent)) this.show(message);
   }
 

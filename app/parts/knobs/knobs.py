@@ -15,9 +15,9 @@ from .foundation import beside_kappa, foundation_words
 
 MAIN = tuple(name for name, quantity in QUANTITIES.items() if quantity.main)
 MORE = tuple(name for name in QUANTITIES if name not in MAIN)
-#: The values at which knobs have no effect, those of the fields of `Scene`.
+#: The values at which knobs have no effect: the defaults of the fields of `Scene`.
 _DEFAULTS = {field.name: field.default for field in fields(Scene)}
-#: What a knob is without a drive: its label and its meaning.
+#: The label and meaning of a knob in a scene without a drive.
 _UNDRIVEN = {
     "f": ("time shown = 1/f", "This chain has no drive: 1/f is only the time that is shown."),
     "A0": ("unit of length", "This chain has no drive: A₀ is only the unit of length in the computation."),

@@ -1,4 +1,4 @@
-// The status line: what is on the screen, how sure it is and what it cost. A click on an entry says what it means.
+// The status line: what is on the screen, how certain it is, and what it cost. A click on an entry explains it.
 
 import { explainingButton, hideMeaning } from "../toolkit/bubble.js";
 import { button, element, onWidth, PHONE } from "../toolkit/dom.js";
@@ -37,7 +37,7 @@ function emptyEntry(name) {
   return entry;
 }
 
-// The entries stay on one line. If the line wrapped while a knob moves, all figures would move and be drawn anew.
+// The entries stay on one line. If the line wrapped while a knob moves, all figures would move and be redrawn.
 class Line {
   constructor() {
     this.el = element("div", { className: "line" });

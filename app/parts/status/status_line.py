@@ -14,7 +14,7 @@ from ...format import duration, short_error
 from ...scripts import module
 from ..toolkit.component import Component, text
 
-#: What the name of a place on the curve means.
+#: The meanings of the names of places on the curve.
 _PLACES = {
     "peak": "Resonance: a peak of the curve, where more arrives at the wall than at frequencies beside it.",
     "valley": "Anti-resonance: a valley of the curve, where less arrives at the wall than at frequencies beside it.",
@@ -22,7 +22,7 @@ _PLACES = {
     "stop band": f"Stop band: above the last peak, less than {100 * STOP_BAND_FRACTION:.0f} % of the input force "
                  "reaches the wall.",
 }
-#: What the name of a regime means that is not periodic.
+#: The meanings of the names of regimes that are not periodic.
 _REGIME_MEANINGS = {
     "quasi-periodic": "Quasi-periodic: it comes back near every earlier state and never exactly to one.",
     "chaotic": "Chaotic: it never repeats, and small disturbances grow.",
@@ -40,7 +40,7 @@ _SETTLED = ("Settled: number of drive periods that were run until the bound on t
 
 
 class StatusLine(Component):
-    """One line at the bottom, and above it one sentence when something needs saying."""
+    """One line at the bottom, and above it a message if there is one."""
 
     _esm = module("status_line.js")
     _stylesheets = [text("controls.css"), text("status_line.css")]  # noqa: RUF012
@@ -72,7 +72,7 @@ def regime_words(settled: Settled, pushed: tuple[int, int] | None, place: Place 
 
 
 def regime_hint(regime: Regime, pushed: tuple[int, int] | None, place: Place | None) -> str:
-    """What the words of the line mean: the ratio, the place on the curve, the regime, and its evidence."""
+    """The explanations of the line's words: the ratio, the place on the curve, the regime and its evidence."""
     meanings = []
     if pushed is not None:
         meanings.append(f"{pushed[0]}:{pushed[1]}: {push_words(pushed)}.")
@@ -91,7 +91,7 @@ def regime_hint(regime: Regime, pushed: tuple[int, int] | None, place: Place | N
 
 
 def multiplier_words(modulus: float, period: int) -> str:
-    """What |μ| says about a small disturbance of an orbit of `period` drive periods."""
+    """The meaning of |μ| for a small disturbance of an orbit of `period` drive periods."""
     orbit = "drive period" if period == 1 else f"{period} drive periods"
     words = modulus_words(modulus)
     change = f"shrinks to {100.0 * modulus:.3g} %" if modulus < 1.0 else f"grows by the factor {words}"
@@ -100,7 +100,7 @@ def multiplier_words(modulus: float, period: int) -> str:
 
 
 def error_words(error: float | None, before: str = "") -> str:
-    """A relative error with what stands before it, or that there is none."""
+    """A relative error with its prefix, or the words for none."""
     return "not estimated" if error is None else before + short_error(error)
 
 
@@ -110,8 +110,8 @@ def accuracy_words(run: Run) -> str:
     return f"asked {short_error(run.scene.accuracy)} · {reached}{_worse_forces(run)}"
 
 
-#: Where the accuracy asked for is reached, errors of forces up to this factor above that of displacements are left to
-#: the hint: the line has room for one number.
+#: Where the accuracy asked for is reached, errors of forces up to this factor above the error of displacements are
+#: shown only in the hint: the line has room for one number.
 _ALIKE_FACTOR = 10.0
 
 
@@ -126,7 +126,7 @@ def _worse_forces(run: Run) -> str:
 
 
 def why_no_error(run: Run) -> str:
-    """Why no error of the displacements is stated; empty if one is."""
+    """The reason why no error of the displacements is stated; empty if one is."""
     if run.displacement_error is not None:
         return ""
     if run.regime.name in NEVER_REPEATING:
@@ -136,7 +136,7 @@ def why_no_error(run: Run) -> str:
 
 
 def force_hint(run: Run) -> str:
-    """What the force of the line is, and its error."""
+    """An explanation of the force in the line, and its error."""
     return ("The largest output force in the periods shown, the dashpot's part included; relative error "
             f"{error_words(run.force_errors.output)}. A force is positive where the bodies push each other; below zero "
             "the dashpot of an opening contact pulls. The force at the wall may be larger than that of the driver: a "

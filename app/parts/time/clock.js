@@ -22,7 +22,7 @@ export class Clock {
     this.frames = frames;
   }
 
-  // Starts from now: the time while it stood still does not count.
+  // Starts from now: the time during which it stood still does not count.
   play(playing) {
     this.playing = playing;
     this.last = performance.now();

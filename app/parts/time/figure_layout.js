@@ -1,4 +1,4 @@
-// Where the figures over time are on the stage, and what is laid over and under them: titles, colour scale, largest
+// The places of the figures over time on the stage, and of the elements over and under them: titles, colour scale, largest
 // values and key.
 
 export class FigureLayout {

@@ -31,7 +31,7 @@ def thinned(values: np.ndarray, most: int) -> np.ndarray:
 
 
 class MeasuredTrains:
-    """The lines in both figures, made when there is a series for the first time."""
+    """The lines in both figures, made when the first series is shown."""
 
     def __init__(self, left: Plot, right: Plot) -> None:
         self._plots = left, right
@@ -53,7 +53,7 @@ class MeasuredTrains:
         return 0.0 if swing is None else float(np.abs(swing).max())
 
     def load(self, shown: Overlay | None) -> None:
-        """Take another series, or none, and draw it over the picture."""
+        """Replace the series, by None to remove it, and draw it over the picture."""
         self._shown = shown
         self.update(*self._last)
 

@@ -47,7 +47,7 @@ class _Train:
 
 
 class PinnedTrains:
-    """The lines in both figures. They are drawn anew when the pins, the units or the time on the axis change.
+    """The lines in both figures. They are redrawn when the pins, the units or the time on the axis change.
 
     A line is made when it is first needed: most visitors pin nothing.
     """
@@ -76,7 +76,7 @@ class PinnedTrains:
         return max(at[0], default=0.0), max(at[1], default=0.0)
 
     def load(self, runs: Sequence[Run | None]) -> None:
-        """Take other pins, and draw them over the picture."""
+        """Replace the pins, and draw them over the picture."""
         self._trains = [None if run is None else _Train.of(run) for run in runs]
         self._drawn = ()
         self.update(*self._last)
@@ -104,7 +104,7 @@ class PinnedTrains:
 
 
 def _copies(train: _Train | None, shown: float) -> int:
-    """How often a motion is repeated to fill the picture: a power of two, so that it is seldom sent again."""
+    """How often a motion is repeated to fill the picture: a power of two, so that it is rarely sent again."""
     if train is None or shown <= 0.0:
         return 0
     needed = 2 ** int(np.ceil(np.log2(max(shown / train.lasts, 1.0)))) if train.repeats else 1

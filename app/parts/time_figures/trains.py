@@ -167,11 +167,11 @@ class ForceTrains:
         return factor, f"{letter}N"
 
     def pin(self, runs: Sequence[Run | None]) -> None:
-        """Let these motions stay, as dashed grey lines over the same time; None leaves a place free."""
+        """Pin these motions as dashed grey lines over the same time; None leaves a place free."""
         self._pinned.load(runs)
 
     def measured(self, shown: Overlay | None) -> None:
-        """Draw a measured series over the picture, or none."""
+        """Draw a measured series over the picture, or remove it."""
         self._measured.load(shown)
 
     def set_compact(self, compact: bool) -> None:
@@ -192,7 +192,7 @@ def _glyph(style: LineStyle, column: str = "force") -> Line:
 
 
 def _span(largest: float, pull: float, *series: np.ndarray) -> tuple[float, float]:
-    """A range from −`pull` to `largest` that holds all values, and keeps still while they change a little."""
+    """A range from −`pull` to `largest` that holds all values and stays the same while they change a little."""
     high = round_up(max(largest, *(float(s.max(initial=0.0)) for s in series)))
     pull = max(pull, *(float(-s.min(initial=0.0)) for s in series))
     return (-0.06 * high if pull < 0.02 * high else -round_up(pull)), 1.04 * high

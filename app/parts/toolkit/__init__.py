@@ -1,1 +1,1 @@
-"""What parts and pages are made of: the base class of components, elements, controls, small drawings."""
+"""Building blocks of parts and pages: the base class of components, elements, controls, small drawings."""

@@ -1,4 +1,4 @@
-"""What several figures share: panels beside and above each other, measured points, small legends."""
+"""Elements that several figures share: panels beside and above each other, measured points, small legends."""
 
 from __future__ import annotations
 

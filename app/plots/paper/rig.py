@@ -80,7 +80,7 @@ def _springs(plot: figure, centres: np.ndarray, radius: float) -> None:
 
 
 def _fixture(plot: figure, centres: np.ndarray, radius: float, end: float) -> None:
-    """What the text describes without sizes, in grey: flexures, shaft, pillars, shaker, vibrometer, transducers."""
+    """The parts that the text describes without sizes, in grey: flexures, shaft, pillars, shaker, sensors."""
     shaft, foot = 4.2 * radius, -1.2 * radius
     pillars = plot.quad(left=[centres[1] - 2.6 * radius, end + radius],
                         right=[centres[1] - 2.1 * radius, end + 1.5 * radius],

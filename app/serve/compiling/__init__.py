@@ -1,1 +1,1 @@
-"""Kernels are compiled ahead of time, in processes of their own."""
+"""Compiles kernels ahead of time, in separate processes."""

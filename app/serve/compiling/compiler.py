@@ -38,7 +38,7 @@ def compiling_words(what: str, piece: str) -> str:
 
 
 def _compile(scene: Scene, piece: str) -> None:
-    """Compile in another process, or in this process if no other can be started."""
+    """Compile in another process, or in this one if no other can be started."""
     command = [sys.executable, "-m", f"{__package__}.compiling_process", str(os.getpid()), piece]
     try:  # in a session of its own, where a terminal's Ctrl-C does not reach it; its stderr is the server's
         subprocess.run(command, input=json.dumps(scene.to_json()), text=True, cwd=_ROOT, check=True,
@@ -93,7 +93,7 @@ class Compiler:
         return True
 
     def load(self, scene: Scene, piece: str) -> None:
-        """Load compiled kernels into this process now, and not at their first call."""
+        """Load compiled kernels into this process now instead of at their first call."""
         key = structure(scene), piece
         if key not in self._loaded:
             compile_piece(scene, piece)
@@ -114,7 +114,7 @@ class Compiler:
 
 
 class Requests:
-    """The pieces that one session's work has asked for, each once: a piece that fails is not tried for ever.
+    """The pieces that one session's work has asked for, each only once, so that a failing piece is not tried forever.
 
     The work of another session, or a picture, may try it again.
     """

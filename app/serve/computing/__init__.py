@@ -1,1 +1,1 @@
-"""What is computed for many sessions: worker pools, turns, priorities, processor time, shared results."""
+"""Computing for many sessions: worker pools, turns, priorities, processor time, shared results."""

@@ -69,7 +69,7 @@ _later = _Alarms()
 
 
 class LatestWins:
-    """At most one running computation and one waiting request; a newer request replaces the waiting one.
+    """Runs at most one computation and keeps at most one waiting request; a newer request replaces the waiting one.
 
     A computation is an iterator of ever better results. A newer request stops a computation that has had its first
     result at once. A computation without a result may go on for up to a second: if every request stopped it, the page
@@ -95,7 +95,7 @@ class LatestWins:
         return self._running
 
     def submit(self, work: TurnWork) -> None:
-        """Compute `work` next, in place of a request that still waits."""
+        """Compute `work` next; it replaces a request that still waits."""
         with self._lock:
             if self._closed:
                 return
@@ -117,7 +117,7 @@ class LatestWins:
             raise
 
     def _give_up(self, stop: TurnFlag) -> None:
-        """End a computation without a result after a second, if newer work waits."""
+        """Stop a computation that has no result after a second, if newer work waits."""
         with self._lock:
             if self._stop is stop and self._waiting is not None:
                 stop.set()
@@ -154,7 +154,7 @@ class LatestWins:
                 return
 
     def _do(self, work: TurnWork) -> None:
-        """Deliver the results of a computation. It ends after a result if newer work waits; a failure is reported."""
+        """Deliver the results of a computation. If newer work waits, end after the next result; report a failure."""
         try:
             for result in work(self._stop):
                 if self._closed:

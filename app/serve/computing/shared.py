@@ -36,7 +36,7 @@ class _Computation(Generic[Item]):
 
 
 def _own(error: Exception) -> Exception:
-    """A copy of an error for one session: raising it adds the frames of that session alone to its traceback."""
+    """A copy of an error for one session, so that raising it adds only that session's frames to the traceback."""
     own = type(error).__new__(type(error), *error.args)  # copy.copy would call __init__, whose arguments may be others
     own.__dict__.update(error.__dict__)
     own.__cause__, own.__suppress_context__ = error.__cause__, error.__suppress_context__
@@ -111,7 +111,7 @@ class Shared(Generic[Item]):
 
     @staticmethod
     def _awaited(computation: _Computation[Item], stop: Stop) -> Iterator[Item]:
-        """Each result as soon as it is there, until the computation has ended; then raise its error, if any.
+        """Yield each result as soon as it exists, until the computation ends; then raise its error, if any.
 
         The wait ends at once when a `Flag` is set, and at the next check when another `Stop` is set.
         """

@@ -24,8 +24,8 @@ Result = TypeVar("Result")
 
 #: Processor time for which a computation without a result is new [s]. A first picture of ten beads takes a tenth of it.
 _NEW_CPU_TIME = 0.03
-#: Time for which a turn is kept although others wait [s]. Every pause would be too often: passing a turn to another
-#: thread costs several waits for the GIL.
+#: Time for which a turn is kept although others wait [s]. Passing it on at every pause would cost too much: each
+#: handover to another thread waits for the GIL several times.
 _TIME_SLICE = 0.02
 #: Most new computations whose waits are averaged.
 _MOST_WAITS = 200
@@ -33,12 +33,12 @@ _MOST_WAITS = 200
 _WAITS_WINDOW = 10.0
 #: Wait after which a refinement gets a turn although new computations use all cores [s].
 _LONGEST_WAIT = 0.5
-#: Time after which a waiting thread checks whether a computation may begin [s]: nobody tells it that a turn has grown
-#: too old, or a wait too long. The time is multiplied by the number of computations that wait.
+#: Interval at which a waiting thread checks whether a computation may begin [s]: nothing notifies it when a turn has
+#: become too old, or a wait too long. The time is multiplied by the number of computations that wait.
 _CHECK_INTERVAL = 0.05
 #: Largest factor of this time.
 _LONGEST_CHECK_MULTIPLE = 20
-#: Age at which a turn no longer keeps others waiting [s]: not every computation can pause.
+#: Age beyond which a turn no longer keeps others waiting [s], since not every computation can pause.
 _LONGEST_TURN = 0.1
 
 
@@ -111,7 +111,7 @@ class Turns:
         with self._lock:
             self._waiting.append(mine)
             self._grant()
-        # One waiting thread checks for all of them: more checks would keep the GIL from the event loop.
+        # One waiting thread checks for all of them; more checks would take the GIL from the event loop.
         while not mine.granted.wait(_CHECK_INTERVAL * min(len(self._waiting), _LONGEST_CHECK_MULTIPLE)):
             if stop:
                 self.stopped(stop)
@@ -121,7 +121,7 @@ class Turns:
         return mine
 
     def stopped(self, stop: Stop) -> None:
-        """The stop flag has been set: release the thread that waits with it."""
+        """Release the thread that waits with this stop flag, because the flag has been set."""
         with self._lock:
             for turn in [turn for turn in self._waiting if turn.stop is stop]:
                 self._waiting.remove(turn)
@@ -134,7 +134,7 @@ class Turns:
             self._grant()
 
     def became_refinement(self, turn: _Turn) -> None:
-        """The computation is a refinement from now on; this makes room for a new computation."""
+        """Treat the computation as a refinement from now on, which makes room for a new one."""
         if turn.is_new:
             with self._lock:
                 turn.is_new = False
@@ -160,7 +160,7 @@ class Turns:
     def _grant(self) -> None:
         """Give turns in the order of priority; called with the lock held."""
         self._checked_at = now = self._clock()
-        # Mostly there is no room, and finding that out is cheaper than sorting.
+        # Usually there is no room, and checking that is cheaper than sorting.
         if not any(self._has_room(turn, now) for turn in self._waiting):
             return
         for turn in sorted(self._waiting, key=lambda turn: turn.priority(now)):

@@ -1,4 +1,4 @@
-"""The end of a connection: the page is notified at once, and Bokeh is asked to drop the session."""
+"""The end of a connection: notifies the page at once and asks Bokeh to drop the session."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def when_left(document: Document, close: Callable[[], None]) -> None:
 
 
 def end_session(session: Any) -> None:
-    """End a session of Bokeh's whose page has left: no other page can connect to the session."""
+    """End the Bokeh session of a page that was left; no other page can connect to it."""
     close = _PAGES[session.document]() if session.document in _PAGES else None
     if close is not None:
         close()

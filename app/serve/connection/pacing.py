@@ -1,4 +1,4 @@
-"""Flow control of pictures: a window of two, and what waits is conflated.
+"""Flow control of pictures: at most two in flight, and waiting pictures are conflated.
 
 At most two pictures are in flight until the browser acknowledges one. Of the pictures that wait only the newest is
 sent. So the browser sets the pace (*backpressure*).
@@ -40,7 +40,7 @@ class PicturePacer(Generic[Picture]):
         return self._sent - self._painted >= _MOST_IN_FLIGHT
 
     def offer(self, picture: Picture) -> None:
-        """Send `picture` now or as soon as the browser is ready; a newer picture takes the place of one that waits."""
+        """Send `picture` now or as soon as the browser is ready; it replaces a picture that waits."""
         if self.is_full:
             self._waiting = picture
             return
@@ -49,14 +49,14 @@ class PicturePacer(Generic[Picture]):
         self._send(self._sent, picture)
 
     def painted(self, number: object) -> None:
-        """The browser says that picture `number` is on the screen."""
+        """Picture `number` is on the screen, as the browser reports."""
         if not isinstance(number, int) or not self._painted < number <= self._sent:
             return
         self._painted = number
         self._go_on()
 
     def restart(self) -> None:
-        """Expect no more acknowledgements of pictures in flight: the window was hidden, and then it paints nothing."""
+        """Stop waiting for acknowledgements of pictures in flight: a window that was hidden has painted nothing."""
         self._painted = self._sent
         self._go_on()
 

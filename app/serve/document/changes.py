@@ -1,4 +1,4 @@
-"""Changes of a document on their way to the browser: all changes of one action leave as one message, in one write.
+"""Sends the changes of a document to the browser: all changes of one action leave as one message, in one write.
 
 The message is the one that Bokeh would send, made without a search of all models of the document. Bokeh encodes values
 that are not plain, such as new models. This module uses undocumented parts of Tornado and Bokeh; if a release lacks
@@ -65,7 +65,7 @@ _COMPLETE = is_complete()
 
 
 class _NotPlainValue(Exception):
-    """Bokeh has to encode this value."""
+    """This value must be encoded by Bokeh."""
 
 
 class _Message:
@@ -185,7 +185,7 @@ class _Socket:
         return isinstance(self._stream, IOStream) and isinstance(self._lock, Lock)
 
     def write(self, data: bytes) -> None:
-        """Write whole messages, after the message that Bokeh is writing."""
+        """Write whole messages, after any message that Bokeh is writing."""
         stream, lock, ws_connection = self._stream, self._lock, self._ws_connection
         assert isinstance(stream, IOStream) and isinstance(lock, Lock) and ws_connection is not None
 
@@ -220,7 +220,7 @@ def _send(document: Document, session: Any, events: list[Any]) -> None:
 
 @contextmanager
 def batched_changes(document: Document) -> Iterator[None]:
-    """Send the changes that are made inside as one message; used with the document locked."""
+    """Send all changes made inside this context as one message; used with the document locked."""
     session = getattr(document.session_context, "session", None)
     callbacks = document.callbacks
     known = _COMPLETE and session is not None and hasattr(callbacks, "_held_events")

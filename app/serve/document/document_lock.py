@@ -1,4 +1,4 @@
-"""The document lock: whether a document may be changed now, and calls that wait until it may."""
+"""The document lock: whether a document may be changed now, and calls that wait for that moment."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ INTERNALS = internals(
 
 
 def models_collected_once(document: Document | None) -> AbstractContextManager[None]:
-    """Collect the models of the document once for all changes that are made inside, and not for each change."""
+    """Collect the models of the document once for all changes made inside this context, instead of for each change."""
     freeze = getattr(getattr(document, "models", None), "freeze", nullcontext)
     once: AbstractContextManager[None] = freeze()
     return once

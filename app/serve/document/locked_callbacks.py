@@ -111,7 +111,7 @@ class LockedCallbacks:
         self._timers: set[asyncio.TimerHandle] = set()
 
     def close(self) -> None:
-        """The session has ended: call no further action, and forget those that wait."""
+        """Call no further action, and forget those that wait, because the session has ended."""
         with self._lock:
             self._closed = True
             self._waiting.clear()

@@ -1,1 +1,1 @@
-"""What comes from outside: guards, sessions, rules of messages, limits, files; health and metrics for operators."""
+"""The border to the outside: guards, sessions, rules of messages, limits, files; health and metrics for operators."""

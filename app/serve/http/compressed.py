@@ -1,4 +1,4 @@
-"""Compressed scripts and styles, each compressed once: a page takes 1 MB in place of 3.4 MB.
+"""Compressed scripts and styles, each compressed once: a page needs 1 MB instead of 3.4 MB.
 
 In a lecture hall a hundred laptops fetch these files over one wireless network. Tornado would compress every file again
 for each of them.
@@ -37,7 +37,7 @@ def compressed(path: str, modified: int, size: int) -> bytes | None:
 
 
 def accepts_gzip(wanted: str) -> bool:
-    """Whether the header `Accept-Encoding` names gzip with another weight than 0 (RFC 9110, section 12.5.3).
+    """Whether the header `Accept-Encoding` names gzip with a weight other than 0 (RFC 9110, section 12.5.3).
 
     `*` alone does not count as gzip: a client that names no coding gets the file as it is.
     """
@@ -93,6 +93,6 @@ class CompressedFiles(StaticFileHandler):
             self.set_header("Content-Encoding", "gzip")
 
     def compute_etag(self) -> str | None:
-        """The tag of the answer: a compressed file has other bytes, and so a tag of its own."""
+        """The tag of the answer: a compressed file has different bytes, so it needs a different tag."""
         tag = super().compute_etag()
         return tag if tag is None or self._packed() is None else f'{tag[:-1]}-gzip"'

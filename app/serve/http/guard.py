@@ -90,7 +90,7 @@ class Guard(RequestHandler):
         raise HTTPError(503, "there are %d sessions", self.rules.sessions.most)
 
     def write_error(self, status_code: int, **_: Any) -> None:
-        """Answer with one sentence for the visitor; the log has the details under the same id."""
+        """Answer with a message for the visitor; the log has the details under the same id."""
         self.set_header("Content-Type", "text/plain; charset=UTF-8")
         sentences = {404: "There is no such page.", 403: "This is not allowed.", 421: "This host is not served here.",
                      503: "All places of this server are taken; please try again in a minute.",

@@ -53,7 +53,7 @@ class GuardedSocket(Guard):
     _has_connection = False
 
     def check_request(self) -> None:
-        """Refuse also a connection without a valid token of this server.
+        """Also refuse a connection without a valid token of this server.
 
         Bokeh checks the signature, too, but only after the handshake.
         """
@@ -140,7 +140,7 @@ class GuardedSocket(Guard):
             self._stream.close()
 
     def on_message(self, fragment: str | bytes) -> Awaitable[None] | None:
-        """Pass whole messages on; a message that no page sends closes the connection."""
+        """Pass on whole messages; a message that no page sends closes the connection."""
         if self._refused:  # fragments may still arrive after the closing frame
             return None
         try:

@@ -22,7 +22,7 @@ class Liveness(RequestHandler):
 
 
 class Readiness(RequestHandler):
-    """`/readiness`: whether one more page can be opened. A full server is no failure, and nothing is logged."""
+    """`/readiness`: whether another page can be opened. A full server is not a failure, so nothing is logged."""
 
     rules: Rules
 

@@ -9,7 +9,7 @@ the command line reads it before it loads the server.
 USUAL_SESSIONS = 200
 #: The largest value of the option `--max-sessions`.
 MOST_SESSIONS = 10_000
-#: Time after which a client that a full server has refused tries again, at least and at most [s].
+#: Shortest and longest time after which a client that a full server has refused tries again [s].
 RETRY_AFTER = (20, 60)
 #: Largest file of a measurement [bytes].
 LARGEST_UPLOAD = 2_000_000

@@ -1,4 +1,4 @@
-"""Rules for websocket messages: only messages that BokehJS sends for our page reach Bokeh.
+"""Rules for websocket messages: only those that BokehJS sends for our page reach Bokeh.
 
 Bokeh decodes more than its browser side sends: arrays of any shape, new models of any kind, a whole new document, and
 compressed bytes: a few kilobytes may expand to gigabytes. Bokeh also keeps whatever a browser writes into a property. A
@@ -32,7 +32,7 @@ DEEPEST = 20
 
 
 class RefusedMessage(Exception):
-    """No page of ours sends this message; the text says why."""
+    """A message that our pages never send; the text gives the reason."""
 
 
 def checked_content(header: str, content: str) -> dict[str, Any]:
@@ -83,7 +83,7 @@ def _is_upload(given: dict[str, Any]) -> bool:
 
 
 def _check_property(name: object, value: object) -> None:
-    """Accept a figure's size alone: any other value would stay in the model as long as the page is open."""
+    """Accept only a figure's size: any other value would stay in the model as long as the page is open."""
     if not isinstance(name, str) or name not in REPORTED_PROPERTIES:
         raise RefusedMessage("a change of a property that no page reports")
     if value is not None and not isinstance(value, (int, float)):

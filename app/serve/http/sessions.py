@@ -1,4 +1,4 @@
-"""The sessions of a server: their number, and which of them have had their connection."""
+"""The sessions of a server: how many there are, and which have used their connection."""
 
 from __future__ import annotations
 
@@ -78,6 +78,6 @@ class Sessions:
         return [session for session in self._present() if session.id not in self._claimed]
 
     def _present(self) -> list[Any]:
-        """The sessions that Bokeh has, the oldest first. A closed session is among them until Bokeh drops it."""
+        """The sessions that Bokeh holds, oldest first; a closed session stays among them until Bokeh drops it."""
         assert self.server is not None
         return self.server.get_sessions()

@@ -19,17 +19,17 @@ class UnsentBytes(Generic[Owner]):
         return self._by_owner.get(owner, 0)
 
     def add(self, owner: Owner, count: int) -> None:
-        """These bytes were written, and the operating system has not taken them yet."""
+        """Count bytes that were written and that the operating system has not taken yet."""
         self._by_owner[owner] = self.of(owner) + count
         self.total += count
 
     def remove(self, owner: Owner, count: int) -> None:
-        """The operating system has taken these bytes, or their connection was closed."""
+        """Stop counting bytes that the operating system has taken, or whose connection was closed."""
         left = self._by_owner.pop(owner) - count
         if left:
             self._by_owner[owner] = left
         self.total -= count
 
     def largest(self) -> Owner:
-        """The owner to whom most bytes wait to be sent."""
+        """The owner with the most waiting bytes."""
         return max(self._by_owner, key=self._by_owner.__getitem__)

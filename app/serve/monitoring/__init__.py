@@ -1,1 +1,1 @@
-"""What operators see of the server: its log and its metrics."""
+"""The server as operators see it: its log and its metrics."""

@@ -36,7 +36,7 @@ class JsonFormatter(logging.Formatter):
 
 
 def only_when_debugging(_record: logging.LogRecord) -> bool:
-    """A filter for Bokeh's records of messages that it cannot handle: they are logged with --log-level debug alone.
+    """A filter for Bokeh's records of messages that it cannot handle: they are logged only with --log-level debug.
 
     The guard logs such a message in one line without a traceback, and a stranger can send any number of them.
     """
@@ -44,7 +44,7 @@ def only_when_debugging(_record: logging.LogRecord) -> bool:
 
 
 def log_request(handler: RequestHandler) -> None:
-    """Log an answered request for --log-level debug alone; it takes the place of Tornado's own function.
+    """Log an answered request, only with --log-level debug; it replaces Tornado's own function.
 
     The guard has logged every request that was refused or has failed, with its id. And a full server answers
     `/readiness` with 503 again and again, which is no failure.

@@ -49,9 +49,9 @@ HISTOGRAMS = {
              "picture is offered to the browser: without network and painting.",
     STAGE_TIMES: "Time of each stage of these pictures, counted when the picture is on the screen.",
 }
-#: Time between two measurements of the event loop's lag [s].
+#: Interval between measurements of the event loop's lag [s].
 _LAG_INTERVAL = 0.25
-#: Number of measurements that are kept, of ten seconds.
+#: Number of measurements that are kept: those of ten seconds.
 _LAGS_KEPT = 40
 #: A single lag above this makes the server busy, too [s]: the mean of ten seconds hides one stall of five.
 _BUSY_STALL = 1.0
@@ -115,7 +115,7 @@ class Histogram:
 
 
 class Metrics:
-    """Counts since the start; answers are times from a change to the first picture of it. Any thread may count."""
+    """Counts since the start; an answer is the time from a change to its first picture. Any thread may count."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
@@ -177,14 +177,14 @@ class Metrics:
         return max(self.event_loop_lag, self.turn_wait()) > _BUSY_WAIT or self.largest_lag > _BUSY_STALL
 
     async def watch(self) -> None:
-        """Measure the lag of the event loop again and again."""
+        """Measure the lag of the event loop at regular intervals."""
         while True:
             due = time.monotonic() + _LAG_INTERVAL
             await asyncio.sleep(_LAG_INTERVAL)
             self.lagged(max(0.0, time.monotonic() - due))
 
     def table(self) -> list[Metric]:
-        """All metrics but the histograms."""
+        """All metrics except the histograms."""
         return [
             Metric("build_info", "gauge", "Always 1; the label says which release of granchain answers.",
                    lambda: {__version__: 1}, "version"),

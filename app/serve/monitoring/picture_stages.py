@@ -1,4 +1,4 @@
-"""Where the time of a picture goes: from the request for it to the screen, stage by stage."""
+"""The time that a picture takes from its request to the screen, stage by stage."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from .metrics import METRICS
 
 log = logging.getLogger("granchain")
 
-#: Time from the request to the screen above which the log says where a picture's time went [s].
+#: Time from the request to the screen above which the log lists the stages of a picture [s].
 SLOW_PICTURE = 1.0
 
 
@@ -35,7 +35,7 @@ class PictureStages:
         return time.monotonic() - self._began
 
     def end(self, stage: str) -> float:
-        """A stage has ended; return the time since the end of the stage before it [s]."""
+        """End a stage; return the time since the end of the stage before it [s]."""
         now = time.monotonic()
         seconds, self._ended = now - self._ended, now
         self._add(stage, seconds)
@@ -51,7 +51,7 @@ class PictureStages:
         self._seconds[stage] = self._seconds.get(stage, 0.0) + seconds
 
     def painted(self, browser_ms: object) -> None:
-        """The picture is on the screen: count its stages, and log a slow picture.
+        """Count the stages of a picture that is on the screen, and log a slow picture.
 
         `browser_ms` is the time between the browser's script and the screen, as the browser says [ms]. It is not
         trusted: what is no such time is left out, and what is too long is cut.

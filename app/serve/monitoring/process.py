@@ -1,4 +1,4 @@
-"""What the operating system says of this process, under the names that clients of Prometheus share."""
+"""The operating system's figures for this process, under the names that clients of Prometheus share."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ import threading
 import time
 from pathlib import Path
 
-#: What Linux says of this process and of the machine; other systems have no such files.
+#: The files in which Linux describes this process and the machine; other systems have no such files.
 _PROCESS, _MACHINE = Path("/proc/self"), Path("/proc")
 #: The folder of the open descriptors where the process has none in /proc, as on macOS.
 _DESCRIPTORS = Path("/dev/fd")
 #: Field of /proc/self/stat, counted from the one after the name, with the start of the process in clock ticks.
 _START_FIELD = 19
-#: The start where the system does not tell it: this module is imported in the first seconds [s].
+#: The start, where the system does not report it: this module is imported in the first seconds [s].
 _IMPORTED_AT = time.time()
 
 
 def resident_memory() -> float:
-    """Resident memory [bytes]; on a system that does not tell it, the largest since the start."""
+    """Resident memory [bytes]; on a system that does not report it, the largest since the start."""
     try:
         return float((_PROCESS / "statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
     except OSError:
@@ -53,7 +53,7 @@ def start_time() -> float:
 
 
 def open_descriptors() -> float:
-    """Open file descriptors, sockets included; not a number where the system lists them nowhere."""
+    """Open file descriptors, sockets included; not a number on a system that does not list them."""
     for folder in (_PROCESS / "fd", _DESCRIPTORS):
         try:
             return float(len(os.listdir(folder)) - 1)  # one of them is the listing's own

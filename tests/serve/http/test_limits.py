@@ -90,7 +90,7 @@ def test_every_limit_names_its_tests(limit: str, tests: list[str]) -> None:
 
 @pytest.fixture(scope="module")
 def dashboard() -> Iterator[Listening]:
-    """As a public one is served, but here."""
+    """A dashboard with the settings of a public server, on localhost."""
     one = Listening(Access(secret=SECRET))
     yield one
     one.stop()

@@ -19,7 +19,7 @@ from app.server import Access
 
 @pytest.fixture(scope="module")
 def dashboard() -> Iterator[Listening]:
-    """As a public one is served, but here."""
+    """A dashboard with the settings of a public server, on localhost."""
     one = Listening(Access(secret=SECRET))
     yield one
     one.stop()
