@@ -22,14 +22,15 @@ from ..scene import Scene
 from ..scene.refusals import refuse_undriven
 from ..steady.residuals import orbit_change
 
-#: Tolerance of one step, relative to the largest displacement and w. The map is then accurate enough for Newton's
-#: method to converge to `RESIDUAL_GOAL` (steady/residuals.py); a chain with its observer is followed to about 1e-11.
+#: [step size] flow: tolerance of one step, relative to the largest displacement and w. The map is then accurate enough
+#: for Newton's method to converge to `RESIDUAL_GOAL` (steady/residuals.py); a chain with its observer is followed to
+#: about 1e-11.
 TOLERANCE = 1e-13
-#: Error of the derivative at that tolerance near grazings, relative to its largest entry; docs/orbits.md ("Error of the
-#: tangents") has what was measured, there and elsewhere.
+#: [no threshold] Error of the derivative at that tolerance near grazings, relative to its largest entry; docs/orbits.md
+#: ("Error of the tangents") has what was measured, there and elsewhere.
 TANGENT_ERROR = 1e-7
-#: Error of a multiplier near the unit circle: ten times that, as the largest entry of the derivative is 2 to 13 and the
-#: eigenvectors are well separated. For single orbits it is computed (multiplier_errors.py).
+#: [no threshold] Error of a multiplier near the unit circle: ten times that, as the largest entry of the derivative is
+#: 2 to 13 and the eigenvectors are well separated. For single orbits it is computed (multiplier_errors.py).
 MULTIPLIER_ERROR = 10.0 * TANGENT_ERROR
 #: [step size] flow: first step to try, in scaled time, in a period that is long enough.
 _INITIAL_STEP = 0.1
@@ -37,7 +38,7 @@ _INITIAL_STEP = 0.1
 _LEAST_STEPS = 12
 #: The method, in the provenance of results.
 FLOW_METHOD = "tangent flow (DOP853, time substitution at events)"
-#: An orbit that is back within this, relatively, after a part of its period has that shorter period.
+#: [no threshold] An orbit that is back within this, relatively, after a part of its period has that shorter period.
 SAME_ORBIT_DISTANCE = 1e-8
 
 
