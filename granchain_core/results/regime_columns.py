@@ -20,7 +20,7 @@ def regime_columns(regimes: Sequence[Regime], along: str) -> dict[str, Column]:
 
 #: The evidence for a regime that every result keeps, and what each number means.
 EVIDENCE = {
-    "decay": "observed contraction factor: factor by which changes shrank per orbit, NaN where not seen",
+    "decay": "observed contraction factor: factor by which changes shrank per period of the orbit, NaN where not seen",
     "multiplier": "modulus of the leading multiplier, NaN where not computed",
     "lyapunov": "largest Lyapunov exponent per drive period, NaN where not measured",
     "lyapunov_error": "standard error of the Lyapunov exponent",

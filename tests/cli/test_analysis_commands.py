@@ -54,7 +54,7 @@ def test_the_file_has_the_result(command: str, tmp_path: Path, capsys: pytest.Ca
 @pytest.mark.parametrize(("command", "words"), [
     ("spectrum", "Fourier series of a motion of period 1"), ("lyapunov", "of 4 exponents resolved"),
     ("rotation", "rotation number 0.22181"), ("bifurcation-diagram", "settled within"), ("basins", "100%"),
-    ("attractors", "100 ± 19 %             2.30266     yes       5  period 1"),
+    ("attractors", "100 % (34 to 100 %)             2.30266     yes       5  period 1"),
     ("pulse", "energy closes to"), ("pulse", "by sampling of forces "), ("pulse", ", speeds "), ("bands", "cut-off 7200.22 Hz"),
 ])
 def test_the_result_in_words(command: str, words: str, capsys: pytest.CaptureFixture[str]) -> None:

@@ -100,8 +100,7 @@ def _special(over: KnobAxis, special: Sequence[SpecialPoint], half_branches: Seq
         "multiplier_imag": Column(multipliers.imag, along, "1", "its imaginary part"),
         "contact": Column(contacts, along, "1", "contact that grazes, -1 if none"),
         "event": Column(words(["" if s.gained is None else EVENTS[s.gained] for s in special]), along, "",
-                        "what the contact has once more on one side: touch (a closed interval) or separation (an open "
-                        "one)"),
+                        "what the contact has once more on one side: touch (one more contact phase) or separation"),
         "criticality": Column(words([form.criticality for form in forms]), along, "",
                               "supercritical, subcritical, generic (a nondegenerate fold) or not decided"),
         "coefficient": Column(number([form.coefficient for form in forms]), along, "1",
