@@ -14,7 +14,7 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
-from playwright.sync_api import Browser, BrowserContext, Page, Playwright
+from playwright.sync_api import Browser, BrowserContext, Error, Page, Playwright
 
 from app.plots.chromium import installed_browser
 
@@ -30,9 +30,17 @@ CHROMIUM_OPTIONS = [
 
 
 def until(page: Page, holds: Callable[[], bool], seconds: float = 60.0) -> None:
-    """Wait until something holds that the browser alone cannot tell."""
+    """Wait until something holds that the browser alone cannot tell. While the page navigates it does not hold."""
+    def holds_now() -> bool:
+        try:
+            return holds()
+        except Error as gone:
+            if "context was destroyed" not in str(gone):
+                raise
+            return False
+
     end = time.monotonic() + seconds
-    while not holds():
+    while not holds_now():
         assert time.monotonic() < end, "did not come"
         page.wait_for_timeout(50)
 
