@@ -144,6 +144,7 @@ class Chain {
   placeColumn() {
     this.link.place();
     const { chosen, beads } = this.drawing;
+    if (!this.layout.columns) return; // not measured yet; it is placed when it is
     const { left, width } = this.layout.columns;
     this.column.hidden = !(chosen >= 1 && chosen <= beads);
     Object.assign(this.column.style, {
