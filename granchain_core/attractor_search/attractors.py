@@ -47,9 +47,6 @@ _DEPARTURE_PERIODS = 3000
 #: [attractors] Drive periods that a motion that does not repeat is run on, to see whether it comes to an orbit after
 #: all. On the way to a locked orbit of long period it may wander for thousands beside a closed curve.
 _LATER_PERIODS = 6400
-#: [no threshold] A number drawn from the normal distribution is within so many standard deviations with a probability
-#: of 95 %.
-_NORMAL_95 = 1.959963984540054
 #: [attractors] Most times that motions are run on, for either reason.
 _MOST_ROUNDS = 3
 #: [attractors] Most random states.
@@ -194,12 +191,12 @@ def share(count: int, of: int) -> tuple[float | None, float | None]:
 
 def share_interval(count: int, of: int) -> tuple[float, float] | None:
     """The 95 % interval of a fraction (Wilson 1927), within 0 and 1; None where nothing was drawn."""
+    from scipy.stats import binomtest  # imported late: only a search with random states needs it
+
     if of == 0:
         return None
-    fraction, square = count / of, _NORMAL_95**2
-    middle = (fraction + square / (2.0 * of)) / (1.0 + square / of)
-    half = _NORMAL_95 / (1.0 + square / of) * math.sqrt(fraction * (1.0 - fraction) / of + square / (4.0 * of**2))
-    return (0.0 if count == 0 else max(0.0, middle - half)), (1.0 if count == of else min(1.0, middle + half))
+    interval = binomtest(count, of).proportion_ci(0.95, method="wilson")
+    return float(interval.low), float(interval.high)
 
 
 def _origins(scene: Scene, random_states: int, seed: int, stop: Stop | None) -> list[Origin]:

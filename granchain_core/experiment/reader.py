@@ -27,11 +27,7 @@ def read_experiment(path: str | Path, answers: Answers | None = None,
     Raises `Unclear` for what has to be asked, and `BadInput` naming the line.
     """
     path = Path(path)
-    try:
-        with open(path, "rb") as file:
-            content = file.read(MOST_BYTES + 1)
-    except OSError as problem:
-        raise BadInput(f"Cannot read {str(path)[:200]}: {problem.strerror or problem}.") from None
+    content = content_of(path)
     try:
         measurement = format_of(content).read(content, Reading(answers or Answers(), wanted, path.name, path=path))
     except Unclear as unclear:
@@ -51,3 +47,12 @@ def read_data(content: bytes, answers: Answers | None = None, wanted: Sequence[s
     """
     reading = Reading(answers or Answers(), wanted, source, most_bytes, most_rows, convention)
     return format_of(content).read(content, reading)
+
+
+def content_of(path: Path) -> bytes:
+    """The first bytes of a file, one more than is allowed. Raises `BadInput` where it cannot be read."""
+    try:
+        with open(path, "rb") as file:
+            return file.read(MOST_BYTES + 1)
+    except OSError as problem:
+        raise BadInput(f"Cannot read {str(path)[:200]}: {problem.strerror or problem}.") from None

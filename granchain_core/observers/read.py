@@ -12,6 +12,7 @@ from pathlib import Path
 from ..errors import BadInput
 from ..experiment import Answers, Convention, Series, Unclear, read_data
 from ..experiment.measured import MOST_BYTES, MOST_ROWS
+from ..experiment.reader import content_of
 from ..experiment.units import UNITS, unit_named
 from ..hdf5 import SIGNATURE, File, opened
 from ..hdf5.plain import Refused
@@ -32,11 +33,7 @@ def read_force(path: str | Path, time_unit: str | None = None, force_unit: str |
     line.
     """
     path = Path(path)
-    try:
-        with open(path, "rb") as file:
-            content = file.read(MOST_BYTES + 1)
-    except OSError as problem:
-        raise BadInput(f"Cannot read {str(path)[:200]}: {problem.strerror or problem}.") from None
+    content = content_of(path)
     if content.startswith(SIGNATURE[:4]) or path.suffix in _HDF5:
         if time_unit is not None or force_unit is not None:
             raise BadInput(f"{path.name} is an HDF5 file, whose units are s and N; they are chosen for CSV only.")

@@ -104,9 +104,7 @@ class Twin:
     @property
     def leading(self) -> complex | None:
         """The leading observer multiplier of the orbit, what `measured` is to be compared with."""
-        if self.orbit is None or self.orbit.observer_multipliers is None:
-            return None
-        return complex(self.orbit.observer_multipliers[0])
+        return None if self.orbit is None else self.orbit.leading_observer_multiplier
 
     @property
     def multipliers(self) -> np.ndarray | None:

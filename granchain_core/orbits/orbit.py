@@ -141,6 +141,11 @@ class Orbit(Labelled):
         return _is_certain(self.observer_multipliers, self.observer_multiplier_errors)
 
     @property
+    def leading_observer_multiplier(self) -> complex | None:
+        """The observer's multiplier with the largest modulus; None where they are not known."""
+        return None if self.observer_multipliers is None else complex(self.observer_multipliers[0])
+
+    @property
     def observer_stable(self) -> bool | None:
         """Whether the observer's multipliers are all inside the unit circle."""
         if self.observer_multipliers is None:

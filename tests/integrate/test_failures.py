@@ -163,3 +163,12 @@ def test_too_many_steps_in_a_period_have_a_status_of_their_own(monkeypatch: pyte
     status, done, _ = flow.run_flow.py_func(engine.stepper.method, problem, 1, engine.counts.array, engine.stop.flag)
     assert (status, done) == (TOO_MANY_STEPS, 0)
     assert failure(status).error.status == "too-many-steps"
+
+
+def test_an_orbit_with_more_events_than_its_log_holds_has_a_status_of_its_own() -> None:
+    """One bead between a slow driver and the wall, undamped: 4600 contact events in one drive period, 4000 places."""
+    stroboscopic_map = StroboscopicMap(scene("sec2").evolve(N=1, dissipation="none", f=5.0), 1)
+    velocity = 0.5 / stroboscopic_map.engine.scaled.scales.velocity
+    with pytest.raises(ComputationError, match="more than 2000 contact events") as caught:
+        stroboscopic_map.end(np.array([0.0, velocity]))
+    assert caught.value.status == "too-many-events"

@@ -99,9 +99,7 @@ class ObserverRun:
     @property
     def leading(self) -> complex | None:
         """The observer's leading multiplier, over `orbit.period` drive periods."""
-        if self.orbit is None or self.orbit.observer_multipliers is None:
-            return None
-        return complex(self.orbit.observer_multipliers[0])
+        return None if self.orbit is None else self.orbit.leading_observer_multiplier
 
     @property
     def predicted(self) -> float | None:

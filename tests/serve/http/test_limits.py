@@ -219,40 +219,45 @@ def test_as_many_frames_as_are_allowed_at_once_are_taken(kind: str, dashboard: L
         assert closed_with(sending, 30.0) == 1008
 
 
-def test_a_page_that_does_not_read_is_closed(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It may answer pings meanwhile. Its frames are within all limits, and their answers would fill the memory."""
+@pytest.fixture
+def unlimited_frames(monkeypatch: pytest.MonkeyPatch) -> Iterator[Listening]:
+    """A server of its own that takes any number of frames."""
+    monkeypatch.setattr(frame_rate, "FRAME_RATE", 1e6)
+    monkeypatch.setattr(frame_rate, "FRAME_BURST", 1e6)
+    server = Listening(Access(secret=SECRET))
+    yield server
+    server.stop()
+
+
+def read_nothing(silent: socket.socket, refused: int) -> None:
+    """Send messages whose answers are not read, until the connection is refused.
+
+    The page may answer pings meanwhile. Its frames are within all limits, and their answers would fill the memory.
+    """
+    silent.settimeout(60)
+    silent.sendall((masked(PONG) + message()) * 500)  # what the system keeps is a few megabytes more
+    waiting.until(lambda: METRICS.counted["refused_messages"] > refused, 60)
+
+
+def test_a_page_that_does_not_read_is_closed(unlimited_frames: Listening, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(guarded_socket, "MOST_UNSENT", 100_000)
-    monkeypatch.setattr(frame_rate, "FRAME_RATE", 1e6)
-    monkeypatch.setattr(frame_rate, "FRAME_BURST", 1e6)
-    one = Listening(Access(secret=SECRET))
-    try:
-        refused = METRICS.counted["refused_messages"]
-        with connected(one) as silent, contextlib.suppress(ConnectionError):
-            silent.settimeout(60)
-            silent.sendall((masked(PONG) + message()) * 500)  # what the system keeps is a few megabytes more
-            waiting.until(lambda: METRICS.counted["refused_messages"] > refused, 60)
-        waiting.until(lambda: METRICS.counted["refused_messages"] == refused + 1, 20)
-        waiting.until(lambda: not one.server._tornado.get_sessions("/"), 30)
-    finally:
-        one.stop()
+    refused = METRICS.counted["refused_messages"]
+    with connected(unlimited_frames) as silent, contextlib.suppress(ConnectionError):
+        read_nothing(silent, refused)
+    waiting.until(lambda: METRICS.counted["refused_messages"] == refused + 1, 20)
+    waiting.until(lambda: not unlimited_frames.server._tornado.get_sessions("/"), 30)
 
 
-def test_the_page_with_the_most_unsent_bytes_is_closed_if_all_pages_have_too_many(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_page_with_the_most_unsent_bytes_is_closed_if_all_pages_have_too_many(
+        unlimited_frames: Listening, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(guarded_socket, "MOST_UNSENT_TOGETHER", 100_000)
-    monkeypatch.setattr(frame_rate, "FRAME_RATE", 1e6)
-    monkeypatch.setattr(frame_rate, "FRAME_BURST", 1e6)
-    one = Listening(Access(secret=SECRET))
-    try:
-        refused = METRICS.counted["refused_messages"]
-        with connected(one) as reading, connected(one) as silent, contextlib.suppress(ConnectionError):
-            silent.settimeout(60)
-            silent.sendall((masked(PONG) + message()) * 500)
-            waiting.until(lambda: METRICS.counted["refused_messages"] > refused, 60)
-            reading.sendall(masked(PING, b"there"))
-            assert b"there" in received(reading, 30, b"there")
-        assert METRICS.counted["refused_messages"] == refused + 1
-    finally:
-        one.stop()
+    refused = METRICS.counted["refused_messages"]
+    with connected(unlimited_frames) as reading, connected(unlimited_frames) as silent:
+        with contextlib.suppress(ConnectionError):
+            read_nothing(silent, refused)
+        reading.sendall(masked(PING, b"there"))
+        assert b"there" in received(reading, 30, b"there")
+    assert METRICS.counted["refused_messages"] == refused + 1
 
 
 def test_unsent_bytes_are_counted_by_connection() -> None:
