@@ -128,7 +128,7 @@ def test_a_key_restores_a_knob_and_is_announced(key: str, at: Visit) -> None:
     type_into(page, "f", "615")
     page.locator('[data-knob="f"] input[type="range"]').press(key)
     expect(field(page, "f")).to_have_value("340")
-    expect(page.locator("#announced")).to_contain_text("back at the scene's value, 340 Hz")
+    expect(page.locator("#announced-knob")).to_contain_text("back at the scene's value, 340 Hz")
 
 
 def test_the_key_of_the_help_can_be_switched_off(visit: Visit) -> None:

@@ -131,12 +131,13 @@ export class Knob {
     this.send({ do: "restore", name: this.spec.name }, true);
   }
 
-  // Tells screen readers that the knob has the scene's value again.
+  // Tells screen readers that the knob is back at the scene's value. The regime has a region of its own, so neither
+  // announcement overwrites the other.
   announce() {
     const { label, unit, factor } = this.spec;
     const { preset } = this;
     const value = typeof preset === "number" && !this.select ? `${written(preset, factor)} ${unit}` : preset;
-    document.getElementById("announced").textContent = `${label}: back at the scene's value, ${value}`;
+    document.getElementById("announced-knob").textContent = `${label}: back at the scene's value, ${value}`;
   }
 
   set(value, now = false) {
