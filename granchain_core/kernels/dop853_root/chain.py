@@ -29,7 +29,7 @@ from ..effects.preload import row_overlap
 from ..equations.body_forces import force_on_bead
 from ..equations.chain_in_vector import chain_velocity
 from ..flow.event_time import smooth_power
-from ..simd.functions import gate, root
+from ..simd.functions import chain_root, gate
 from ..simd.sums import only_lane, repeat_like
 from ..simd.vector import at, blank, from_left, from_right, splat8, store, with_first
 
@@ -148,7 +148,7 @@ def rates_at(values, driver, transform, point):
     _, r, d = powers(power, q)
     overlap = row_overlap(values.preload, u, from_right(u, blank(u)))
     pressed = positive_part(overlap)
-    roots, chosen = root(pressed), d * r
+    roots, chosen = chain_root(pressed), d * r
     elastic = transform.stiffness * (pressed * roots)
     du = chain_velocity(law, point.w, values.damping_over_mass, transform.others * unit_primitive(law, pressed, roots))
     du = with_damping_of(law, du, transform.damping_pull, power, q)

@@ -198,7 +198,7 @@ def run_dop853_root(method, work, trajectory, sample_range, samples, out):
     bodies, period = slots.chain.inverse_mass.size, drive.period
     context = RunContext(slots, chain_values(work.chain, slots), slots.driver, drive.beta, method, work, out,
                       smooth_power(slots.dissipation), bodies - 2, period / grid, GOAL_TOLERANCE * period, every)
-    g, done, row, dt, new_period = sample_range.first, 0, 1, workspace.next_step[0], True
+    g, done, row, dt = sample_range.first, 0, 1, workspace.next_step[0]
     events, most_events, idle = 0, EVENTS_PER_CONTACT * (bodies - 1), 0
     begin = begin_of_run(context, g * context.spacing, y, bodies)
     since = begin.t
@@ -206,49 +206,49 @@ def run_dop853_root(method, work, trajectory, sample_range, samples, out):
         evaluate(slots, drive.beta, begin.t, y, workspace.k[0], workspace.forces)
         write_sample(slots, 0, y, workspace.k[0], workspace.forces.e, samples)
     while done < points:
-        if out.stop[0] != 0:
-            return CANCELLED, row if every > 0 else done
-        if new_period:  # within a period its oscillator is as exact as the beads
-            begin, new_period = with_driver_in_place(context, begin), False
-        if begin.t - since > EVENT_WINDOW:
-            events, since = 0, begin.t
-        dt = min(dt, method.largest_step)
-        units = new_units(context, begin.point, workspace.scale)
-        chosen = nearest_event(begin.rates, begin.closed, workspace.scale[0], dt)
-        if chosen >= 0 and at(begin.rates.overlap, chosen) <= 0.0 and at(begin.rates.rate, chosen) < 0.0:
-            # opened by rounding, or by another event at the same time
-            begin, events = with_contact_toggled(context, begin, chosen), events + 1
-            if events > most_events:
-                return CHATTER, row if every > 0 else done
-            continue
-        if is_too_small(dt, begin.t, drive.beta):
-            return STEP_TOO_SMALL, row if every > 0 else done
-        status, checked, dt = accepted_step(context, begin, chosen, dt, units, g)
-        if status != DONE:
-            return status, row if every > 0 else done
-        end = end_of_step(context, begin, checked, g, points - done)
-        idle = idle + 1 if end.contact < 0 and end.time <= begin.t else 0
-        if idle > ATTEMPTS:
-            return STEP_TOO_SMALL, row if every > 0 else done
-        forces = begin.forces
-        if every > 0:
-            forces, row = record_step(context, begin, checked, end, g, row, samples)
-        dt *= growth(checked.step, end)
-        g, done = g + end.passed, done + end.passed
-        counts[STEPS] += 1
-        begin = StepBegin(end.time, end.point, end.rates, forces, begin.bits, begin.closed)
-        if end.contact >= 0:
-            events += 1
-            counts[EVENTS] += 1
-            if events > most_events:
-                return CHATTER, row if every > 0 else done
-            begin = with_contact_toggled(context, begin, end.contact)
-            if (begin.bits >> end.contact) & 1 != 0 and every > 0:
-                record_closing(slots.dissipation, at(begin.rates.rate, end.contact), end.contact, context.last,
-                             drive.beta * begin.t, out.log)
+        begin = with_driver_in_place(context, begin)  # within a period its oscillator is as exact as the beads
+        while done < points and not begin.t >= period:
+            if out.stop[0] != 0:
+                return CANCELLED, row if every > 0 else done
+            if begin.t - since > EVENT_WINDOW:
+                events, since = 0, begin.t
+            dt = min(dt, method.largest_step)
+            units = new_units(context, begin.point, workspace.scale)
+            chosen = nearest_event(begin.rates, begin.closed, workspace.scale[0], dt)
+            if chosen >= 0 and at(begin.rates.overlap, chosen) <= 0.0 and at(begin.rates.rate, chosen) < 0.0:
+                # opened by rounding, or by another event at the same time
+                begin, events = with_contact_toggled(context, begin, chosen), events + 1
+                if events > most_events:
+                    return CHATTER, row if every > 0 else done
+                continue
+            if is_too_small(dt, begin.t, drive.beta):
+                return STEP_TOO_SMALL, row if every > 0 else done
+            status, checked, dt = accepted_step(context, begin, chosen, dt, units, g)
+            if status != DONE:
+                return status, row if every > 0 else done
+            end = end_of_step(context, begin, checked, g, points - done)
+            idle = idle + 1 if end.contact < 0 and end.time <= begin.t else 0
+            if idle > ATTEMPTS:
+                return STEP_TOO_SMALL, row if every > 0 else done
+            forces = begin.forces
+            if every > 0:
+                forces, row = record_step(context, begin, checked, end, g, row, samples)
+            dt *= growth(checked.step, end)
+            g, done = g + end.passed, done + end.passed
+            counts[STEPS] += 1
+            begin = StepBegin(end.time, end.point, end.rates, forces, begin.bits, begin.closed)
+            if end.contact >= 0:
+                events += 1
+                counts[EVENTS] += 1
+                if events > most_events:
+                    return CHATTER, row if every > 0 else done
+                begin = with_contact_toggled(context, begin, end.contact)
+                if (begin.bits >> end.contact) & 1 != 0 and every > 0:
+                    record_closing(slots.dissipation, at(begin.rates.rate, end.contact), end.contact, context.last,
+                                 drive.beta * begin.t, out.log)
         if begin.t >= period:
             begin = StepBegin(begin.t - period, begin.point, begin.rates, begin.forces, begin.bits, begin.closed)
-            g, events, since, new_period = g - grid, 0, begin.t, True
+            g, events, since = g - grid, 0, begin.t
     write_beads(context, begin, y, bodies)
     workspace.next_step[0] = dt
     evaluate(slots, drive.beta, begin.t, y, workspace.k[0], workspace.forces)

@@ -14,7 +14,7 @@ from ..compiling.jit import inline_llvm
 from ..effects.contact import positive_part
 from ..effects.dissipation import LAWS, unit_primitive
 from ..effects.preload import row_overlap, row_values
-from ..simd.functions import root
+from ..simd.functions import chain_root
 from ..simd.vector import blank, from_left, from_right, load8, load16, load32, with_first
 from .body_forces import force_on_bead
 
@@ -108,7 +108,7 @@ def chain_slope(values, u0, u, w):
     law, here = values.slots.dissipation, with_first(u, u0)
     overlap = row_overlap(values.preload, here, from_right(here, blank(here)))
     d = positive_part(overlap)
-    r = root(d)
+    r = chain_root(d)
     e = values.stiffness * d * r
     du = chain_velocity(law, w, values.damping_over_mass, unit_primitive(law, d, r))
     return overlap, e, du, force_on_bead(values.slots, None, from_left(blank(e), e) - e, here, du)

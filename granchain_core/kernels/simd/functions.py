@@ -1,10 +1,10 @@
 """Square root, absolute value, gate, maximum and peak choice for a number or for every lane of a vector.
 
-The root of a batch's vector is computed in one of two ways: by the square-root instruction, which runs on the divider,
-or from an approximate inverse root and some terms of the binomial series, which run on the multiply–add units. The
-approximation is `vrsqrt14pd` for eight doubles on processors with AVX-512, and `rsqrtps` for four on any x86. With
-AVX-512 the second way has more than twice the throughput (1.8 ns against 4.4 ns for eight roots). Used side by side,
-the two keep both units busy (batch/step.py).
+A root is computed in one of two ways: by the square-root instruction, which runs on the divider, or from an approximate
+inverse root and some terms of the binomial series, which run on the multiply–add units. The approximation is
+`vrsqrt14pd` for eight doubles on processors with AVX-512, and `rsqrtps` for four on any x86. With AVX-512 the second
+way has more than twice the throughput (1.8 ns against 4.4 ns for eight roots). Used side by side, the two keep both
+units busy: on some of a batch's contacts (batch/step.py), and on every second register of a chain (`chain_root`).
 """
 
 from __future__ import annotations
@@ -58,14 +58,21 @@ def _with_series(builder, value, inverse, coefficients):
     return times_plus(builder.fmul(t, e, flags=FAST_MATH), series, t)
 
 
-def _root_of_eight(builder, value):
+def _root_of_eight(builder, value, coefficients=(0.5, 0.375)):
     """From the 14 bits of `vrsqrt14pd`: |e| ≤ 2^{−13}, so the first term left out, 5e³/16, is below 6e-13."""
     kind = value.type
     function = cgutils.get_or_insert_function(
         builder.module, ir.FunctionType(kind, [kind, kind, ir.IntType(8)]), "llvm.x86.avx512.rsqrt14.pd.512")
     zero = ir.Constant(kind, [0.0] * kind.count)
     inverse = builder.call(function, [value, zero, ir.Constant(ir.IntType(8), -1)])
-    return _with_series(builder, value, inverse, (0.5, 0.375))
+    return _with_series(builder, value, inverse, coefficients)
+
+
+def _full_root_of_eight(builder, value):
+    """A root of any number that is not negative, to rounding: the first term left out, 35e⁴/128, is below 7e-17."""
+    least = ir.Constant(value.type, [1e-280] * value.type.count)
+    value = builder.select(builder.fcmp_ordered("<", value, least), least, value)
+    return _root_of_eight(builder, value, (0.5, 0.375, 0.3125))
 
 
 def _root_of_four(builder, value):
@@ -101,6 +108,33 @@ def root_by_series(typingctx, value):
         if width == 4 and _HAS_RSQRT_PS:
             return _root_of_four(builder, args[0])
         return _llvm_root(builder, sig.args[0].ir, args[0])
+
+    return value(value), codegen
+
+
+@intrinsic
+def chain_root(typingctx, value):
+    """√ of every lane, none below zero, to rounding; lanes below 1e-280 may have its root.
+
+    Where the vector has several registers of eight, every second one takes its roots from the series: the divider would
+    finish them only after those of the first.
+    """
+
+    def codegen(context, builder, sig, args):
+        width = sig.return_type.width
+        if width <= 8 or not _HAS_RSQRT14:
+            return _llvm_root(builder, sig.args[0].ir, args[0])
+        nothing, parts = ir.Constant(args[0].type, ir.Undefined), []
+        for first in range(0, width, 8):
+            lanes = ir.Constant(ir.VectorType(ir.IntType(32), 8), list(range(first, first + 8)))
+            part = builder.shuffle_vector(args[0], nothing, lanes)
+            by_divider = first % 16 == 0
+            parts.append(_llvm_root(builder, part.type, part) if by_divider else _full_root_of_eight(builder, part))
+        while len(parts) > 1:
+            count = 2 * parts[0].type.count
+            lanes = ir.Constant(ir.VectorType(ir.IntType(32), count), list(range(count)))
+            parts = [builder.shuffle_vector(*pair, lanes) for pair in zip(parts[::2], parts[1::2], strict=True)]
+        return parts[0]
 
     return value(value), codegen
 
