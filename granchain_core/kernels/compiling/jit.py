@@ -2,7 +2,7 @@
 
     `kernel`         called from Python; releases the GIL
     `brief_kernel`   called from Python; takes microseconds and keeps the GIL
-    `internal` a function of kernels, compiled separately and linked into its callers
+    `internal`       a function of kernels, compiled separately and linked into its callers
     `inline_llvm`    the same, inlined by LLVM, so that values stay in registers
     `inline_numba`   the same, inlined by Numba before types are inferred: for functions with one caller
 

@@ -19,7 +19,7 @@ import numpy as np
 from ..compiling.dispatch import by_slot
 from .registry import in_simd_kernels
 
-#: Distance of an absent driver or wall, in length units: too far away to touch, too near to overflow.
+#: Distance of an absent driver or wall, in length units: far enough never to touch, near enough not to overflow.
 BODY_FAR_AWAY = 1e30
 
 

@@ -2,7 +2,7 @@
 
 Equation   Ẇ = F_{c=0} v_0,   Q̇ = Σ_c (F_c − F^el_c) δ̇_c;   W − Q − ΔE = 0
            Q is lost in the contacts and to forces from outside the chain; equations/body_forces.py adds the latter.
-Method     Both integrands jump with the dashpot force. After integration by parts, with dG = g δ̇ dt, they do not:
+Method     Both integrands jump with the dashpot force. Integrated by parts, with dG = g δ̇ dt, they do not:
              W = ∫ (e_0 v_0 − G_0 v̇_0) dt + G_0 v_0
              Q = −∫ Σ_c G_c (ẇ_c − ẇ_{c+1}) dt + Σ_c G_c (δ̇_c − γ_c/2),   γ_c = δ̇_c − (w_c − w_{c+1}),
            Body 0 has w_0 = v_0. γ = −L G with a symmetric matrix L, by w = v − (G_{i−1} − G_i)/m, so that
