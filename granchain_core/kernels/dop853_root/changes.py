@@ -73,7 +73,9 @@ def size_in_xi(power, q, speed, dt):
 
 @inline_llvm
 def nearest_event(rates, closed, scale, dt):
-    """The closed contact whose closing or opening is nearest in time; −1 if none is within `_MOST_STEPS_AWAY` steps dt.
+    """The closed contact whose closing or opening is nearest in time, past or future; −1 if none is near enough.
+
+    Near enough is within `_MOST_STEPS_AWAY` steps dt.
     """
     speed, at_rest = abs(rates.rate), _REST_DISPLACEMENT * scale
     time_to_event = (abs(rates.overlap) + at_rest) / (speed + _LEAST_SPEED) + _OPEN_AWAY * (1.0 - closed)

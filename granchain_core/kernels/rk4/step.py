@@ -161,8 +161,7 @@ def step(method, trajectory, j, out):
 
 @internal
 def whole_step(trajectory, j):
-    """Take an RK4 step from half-step index 2j to workspace.end; return the driver's displacement and velocity
-    there."""
+    """Take an RK4 step from half-step index 2j to workspace.end; return the driver's displacement and velocity."""
     slots, drive, y, workspace = trajectory
     ua, va = tabulated_displacement(slots, drive, 2 * j + 1), tabulated_velocity(slots, drive, 2 * j + 1)
     ub, vb = tabulated_displacement(slots, drive, 2 * j + 2), tabulated_velocity(slots, drive, 2 * j + 2)
