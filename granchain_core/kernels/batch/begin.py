@@ -1,5 +1,4 @@
-"""The beginning of a batch member: at a state set by the caller, or, with fine steps, on the orbit of its coarse
-run."""
+"""The beginning of a batch member: at a state set by the caller, or with fine steps on its coarse run's orbit."""
 
 from __future__ import annotations
 

@@ -79,8 +79,7 @@ def correct_two_beads(values, y, c, row, error):
 
 @inline_llvm
 def correct_contacts(values, y, overlaps, h, u0):
-    """Correct a step at contacts that changed in it; `overlaps` are updated from those before the step to those
-    after."""
+    """Correct a step at the contacts that changed in it; update `overlaps`, which are those before the step."""
     law, bodies = values.slots.dissipation, values.last + 2
     left = u0
     for c in range(values.last + 1):

@@ -197,8 +197,7 @@ def update_batch_peaks(values, h, first_overlap, last_overlap, v0, chain_ends, b
 
 @by_slot
 def update_jumps(law, values, h, first, last, before, peaks):
-    """Update the largest jumps of both end contacts with those of the last step. Effect absent, or g(0) = 0:
-    nothing."""
+    """Update the largest jumps of both end contacts with those of a step. Effect absent, or g(0) = 0: nothing."""
 
 
 @update_jumps.of(*JUMP_LAWS)

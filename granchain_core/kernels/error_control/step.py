@@ -44,7 +44,7 @@ GOAL_TOLERANCE = 1e-13
 
 
 class DriveCycle(NamedTuple):
-    """The driver's cycle in scaled time: angular frequency β and period 2π/β."""
+    """The driver's cycle in scaled time: drive frequency β and period 2π/β."""
 
     beta: float
     period: float
