@@ -26,8 +26,7 @@ _ORDER_WITH_CUT = 1.0
 
 
 def relative_difference(first: np.ndarray, second: np.ndarray) -> float:
-    """Return the largest |first − second| over the largest |first|, for arrays of one shape; 0 if `first` is all
-    zero."""
+    """Return the largest |first − second| over the largest |first|, for equal shapes; 0 if `first` is all zero."""
     largest = float(np.abs(first).max())
     return float(np.abs(first - second).max()) / largest if largest > 0.0 else 0.0
 
@@ -57,8 +56,7 @@ def force_differences(now: np.ndarray, before: np.ndarray, forces_jump: bool) ->
 
 
 def or_whole_motion(stated: np.ndarray) -> np.ndarray:
-    """Return the stated errors; where that of the displacements, the first one, is useless, `_WHOLE_MOTION` replaces
-    it.
+    """Return the stated errors, raised to `_WHOLE_MOTION` if that of the displacements, the first, is useless.
 
     Two computations that differ this much may have diverged, and their difference is then no measure of the error.
     """
@@ -120,8 +118,7 @@ class Computations:
             self.growth = max(self.growth, difference / typical)
 
     def _falls(self, coarser: MethodSetting, finer: MethodSetting) -> float:
-        """Return the expected ratio of the two errors, by the observed order, or with error control by the
-        tolerances."""
+        """Return the expected ratio of the errors, by the observed order, or for error control by the tolerances."""
         method = METHODS[finer.method]
         if method.error_control:
             return coarser.tolerance / finer.tolerance

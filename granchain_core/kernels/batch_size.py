@@ -19,7 +19,7 @@ from ..errors import BadInput
 
 #: Environment variable that overrides this number, and its older name, which still works.
 VARIABLE, OLDER_VARIABLE = "GRANCHAIN_BATCH_SIZE", "GRANCHAIN_LANES"
-#: Numbers of scenes there are kernels for.
+#: Numbers of scenes for which there are kernels.
 CHOICES = (4, 8)
 
 
