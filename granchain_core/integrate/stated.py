@@ -71,10 +71,10 @@ class Computations:
     the maximum of
       - the difference of the last two, times a factor;
       - the previous difference, times the same factor, reduced according to the method's order, or with error control
-      by the ratio of the tolerances;
+        by the ratio of the tolerances;
       - the typical error of a method with such steps;
       - the rounding of the steps, times the largest growth of errors in any of the computations; computations with a
-      typical error of 1e-10 or less do not count, and without any other the term is 0;
+        typical error of 1e-10 or less do not count, and without any other the term is 0;
       - for the largest forces, the error at jumps (`jump_errors`).
     The first quantity determines the growth of errors.
     """

@@ -2,7 +2,7 @@
 
 Equation   m_i v̇_i = F_{i-1} − F_i + P_i,  F_c = K δ^{3/2} + g(δ) δ̇ H(δ)         Zhang et al. 2016, eq. (1)
 Purpose    the usual first attempt, against which the gain of w-variables and located events is measured
-The second row of the state holds v here, not w; nothing else differs for the rest of the program. Importing this module
+The second row of the state is v here, not w; nothing else differs for the rest of the program. Importing this module
 registers the two methods' code for `step` of rk4/step.py; integrate/fixed.py imports it.
 """
 

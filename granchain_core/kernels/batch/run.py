@@ -1,8 +1,8 @@
 """Several chains at once, one per SIMD lane: RK4 in w with a fixed step, for curves and maps.
 
 All members have the same effects and the same N; every value may differ, including the step and the number of steps per
-period. Each member is checked at the ends of its own periods. When a member may have settled, or has reached its time
-limit, the kernel returns, and the next scene can take over its lane. The index `member` is the lane.
+period. Each member is checked at the ends of its own periods. When a member may have settled, or has reached its last
+period, the kernel returns, and the next scene can take over its lane. The index `member` is the lane.
 
 The order of one step, `take_steps`:
 

@@ -42,7 +42,7 @@ class Motion(NamedTuple):
     end_contacts (4, L)      one step ago: overlap and rate of the first contact, then of the last
     peaks (BATCH_PEAKS, L)   largest forces, jumps and unresolved peaks of the period so far, and the last four values
                              of each force (forces/peaks.py)
-    stages                   workspace: three states (2(N+2), L)
+    stages                   workspace: three states, (2(N+2), L) each
     """
 
     y: np.ndarray
@@ -63,7 +63,7 @@ class Schedule(NamedTuple):
 
     begins        1 for a new member, which begins at the kernel's next call (begin.py)
     drive_period  scaled drive period
-    steps         steps in a period
+    steps         steps per period
     steps_left    number of steps left in this period
     fine_steps    steps per period of the fine run that follows once an orbit is found; 0 for no fine run
     next_check    next period at which the strobes are checked

@@ -35,7 +35,7 @@ try:
     from numba.core.caching import UserProvidedCacheLocator as _UserProvidedLocator
     from numba.core.runtime import rtsys
     from numba.core.serialize import dumps
-except ImportError as missing: # reported by `keep_on_disk`
+except ImportError as missing:  # reported by `keep_on_disk`
     _FunctionCache = _Impl = _UserProvidedLocator = object
     _IMPORT_PROBLEM = str(missing)
 else:

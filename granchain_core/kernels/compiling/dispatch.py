@@ -79,8 +79,7 @@ def by_slot_inlined(absent):
 
 
 def by_type(declared, forceinline=False):
-    """Like `by_slot`, for an argument that is never absent, e.g. a method: the decorated function is only a
-    declaration.
+    """Like `by_slot`, for an argument that is never absent, e.g. a method; the decorated function has no code.
 
     It does not count as a term of an effect.
     """

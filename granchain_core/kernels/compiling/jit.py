@@ -11,11 +11,11 @@ Functions that choose their code by a type are in dispatch.py.
 Options:
 
 * `nogil`, so that threads really run kernels in parallel; not for brief kernels (`brief_kernel`).
-* No `nnan`/`ninf`, so that comparisons and selects see a NaN. With the flags in `FAST_MATH`, sums are vectorised and `x
-+ 0.0` folds away. `x * 0.0` does not, so the code for an absent effect must not multiply by zero. `reassoc` with `nsz`
-may still cancel a NaN, as in (x + y) − y, so the state itself is checked for being finite.
+* No `nnan`/`ninf`, so that comparisons and selects see a NaN. With the flags in `FAST_MATH`, sums are vectorised, and
+  `x + 0.0` folds away. `x * 0.0` does not, so the code for an absent effect must not multiply by zero. `reassoc` with
+  `nsz` may still cancel a NaN, as in (x + y) − y, so the state itself is checked for being finite.
 * Numba does not notice edits of *imported* kernels. The folder of compiled code is therefore named by a hash of all
-kernel sources (sources.py).
+  kernel sources (sources.py).
 """
 
 from __future__ import annotations

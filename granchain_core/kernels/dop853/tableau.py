@@ -1,5 +1,4 @@
-"""Coefficients of the Dormand–Prince method of order 8 with error estimates of order 5 and 3 and dense output of
-order 7.
+"""Coefficients of DOP853: method of order 8, error estimates of orders 5 and 3, dense output of order 7.
 
 Source: Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, 2nd ed., sections II.5 (method and error
 estimates) and II.6 (dense output), and the published program DOP853. tests/kernels/dop853/test_tableau.py checks the

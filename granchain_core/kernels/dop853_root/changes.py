@@ -31,8 +31,8 @@ _STEP_PART_NEXT_TO_EVENT = 0.12
 _OPENING_PART = 0.8
 #: [step size] dop853-root: length of such a step, relative to the way to the opening.
 _OPENING_FACTOR = 1.3
-#: [step size] dop853-root: a distance between two values of a step is searched if the cubic's rise above both, enlarged
-#: by this part, reaches 0.
+#: [step size] dop853-root: a step is searched for a touch if the cubic's rise above its two ends, enlarged by this
+#: part, reaches 0.
 _MISSED_PART = 0.25
 
 

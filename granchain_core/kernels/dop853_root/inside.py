@@ -12,7 +12,8 @@ from ..effects.preload import overlap
 from ..error_control.bracket import maximum_inside, value_at
 from ..error_control.step import TURN_SECTIONS
 
-#: A fraction of the step is checked when it changes by less than this; the next change would be far smaller.
+#: The search for a zero ends when the fraction of the step changes by less than this; the next change would be far
+#: smaller.
 _CHECKED_CHANGE = 1e-9
 
 

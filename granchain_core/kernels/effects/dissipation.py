@@ -103,7 +103,7 @@ def checked(*laws):
 
 #: Every slot class for which an exponent or a power has been registered.
 LAWS = checked(*(slot for slot in exponent.implementations | power.implementations if slot is not type(None)))
-#: Those with g(0) > 0, whose force jumps when a contact closes, and those with g(0) = 0.
+#: Laws with g(0) > 0, whose force jumps when a contact closes, and laws with g(0) = 0.
 JUMP_LAWS = tuple(law for law in LAWS if exponent(law(1.0)) == 0.0)
 SMOOTH_LAWS = tuple(law for law in LAWS if law not in JUMP_LAWS)
 

@@ -140,7 +140,7 @@ def write_w(slots, y, dy, forces):
 def evaluate_at_phase(slots, theta, y, dy, forces, from_velocity):
     """Evaluate the equations at drive phase θ: the driver's displacement in y, the slope in dy, the forces.
 
-    With `from_velocity` the second row of y holds v and becomes w.
+    With `from_velocity` the second row of y contains v on entry and w on return.
     """
     bodies = slots.chain.inverse_mass.size
     u0 = driver_displacement(slots.driver, theta)

@@ -1,6 +1,6 @@
 """Kinks of the force in no-tension contacts: the contact stops pushing, or pushes again, while its beads still touch.
 
-At a kink, F = K δ^{3/2} + g(δ) δ̇ = 0, and a step with error control must end there. The sign of F is that of F/g = K
+At a kink, F = K δ^{3/2} + g(δ) δ̇ = 0, and a step with error control must end there. F has the same sign as F/g = K
 δ^{3/2}/g(δ) + δ̇, which, unlike F, passes through zero nowhere else, not even at δ = 0.
 """
 
@@ -116,8 +116,8 @@ def first_kink(tension, step, until, counts, skip_wrong_side):
         NO_KINK        there is none. Effect absent: always
         KINK           a contact stops pushing, or pushes again, at the fraction
         WRONG_SIDE     rounding put a contact on the wrong side of F = 0 at the start. All such contacts have changed
-                       sides together, to keep a symmetric motion symmetric, and the step is to be repeated; once a step
-                       (`skip_wrong_side`), because where F is only rounding, either choice is right
+                       sides together, to keep a symmetric motion symmetric, and the step must be repeated; at most once
+                       per step (`skip_wrong_side`), because where F is only rounding, either choice is right
     """
     return NO_KINK, 1.0
 

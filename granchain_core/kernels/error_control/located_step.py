@@ -1,8 +1,8 @@
 """Steps with error control that end where a contact opens or closes, or where a cut force has a kink.
 
-The slope is continuous across an event but its derivative is not, and after a closing the solution has a term (t −
-t_e)^{5/2}: no method for smooth equations keeps its order there. So every contact event inside a step is located on the
-dense output, the step is repeated so that it ends just past the event, and the next step starts small.
+The slope is continuous across an event, but its derivative is not. After a closing, the solution has a term in
+(t − t_e)^{5/2}: no method for smooth equations keeps its order there. So every contact event inside a step is located
+on the dense output, the step is repeated so that it ends just past the event, and the next step starts small.
 """
 
 from __future__ import annotations

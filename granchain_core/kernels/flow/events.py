@@ -47,10 +47,9 @@ def next_opening(slots, y, contacts):
 def locate_change(method, problem, time, h, c, counts):
     """Repeat a step, first with size h, until it ends where contact c opens or closes; return the size.
 
-    h is the root on the dense output, and Newton's method improves it.
-
-    Where the bodies hardly move relative to each other, near a grazing, Newton's method would diverge. The step then
-    ends at the root of the dense output.
+    The first size is the root on the dense output, and Newton's method improves it. Where the bodies hardly move
+    relative to each other, near a grazing, Newton's method would diverge. The step then ends at the root of the dense
+    output.
     """
     slots, _, _, workspace = problem.trajectory
     attempt_in_time(method, problem, time, h)

@@ -9,7 +9,7 @@
 Functions that update the largest forces, and their input:
 
 =========================== ====================================================
-function                    from
+function                    input
 =========================== ====================================================
 update_largest              one value
 update_maximum              a cubic over a step

@@ -26,7 +26,7 @@ class Approach(NamedTuple):
 
 @inline_llvm
 def between_0_and_1(s):
-    """The nearest number in [0, 1]; a NaN stays a NaN. For numbers and vectors below 2^53, where rounding gives 0."""
+    """The nearest number in [0, 1]; a NaN stays a NaN. For numbers and vectors up to 2^53; above, rounding gives 0."""
     least = clip(s)
     return least - clip(least - 1.0)
 
@@ -57,8 +57,7 @@ def closing_rate(before, after, rate, open_rate, own_damping, h):
 
 @inline_llvm
 def brief_touch(before, after, rate, rate_after, h):
-    """Rate at which a contact closes for a touch within a step: √(2 a δ_max) at a constant acceleration −a of the
-    overlap.
+    """Rate at which a contact closes for a touch within a step: √(2 a δ_max) if the overlap accelerates at −a.
 
     The overlap is negative at both ends of the step and turns in between. The result is 0 or a NaN if there is no
     touch. For numbers and vectors.

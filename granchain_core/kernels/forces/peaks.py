@@ -19,8 +19,8 @@ HIGHEST = 1.25
 INPUT, OUTPUT, OUTPUT_ELASTIC = 0, ROWS, 2 * ROWS
 #: ... then the largest jumps of input and output force. The last name is the size of the array.
 INPUT_JUMP, OUTPUT_JUMP, PEAKS = 3 * ROWS, 3 * ROWS + 1, 3 * ROWS + 2
-#: In a batch, two more rows: the largest peaks of input and output force that are not smooth, so that only a value at a
-#: step is known. The last name is the size of the array.
+#: In a batch, two more rows: the largest peaks of input and output force that are not smooth, so that only their values
+#: at the ends of steps are known. The last name is the size of the array.
 INPUT_UNRESOLVED, OUTPUT_UNRESOLVED, BATCH_PEAKS = PEAKS, PEAKS + 1, PEAKS + 2
 
 

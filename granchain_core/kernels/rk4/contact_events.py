@@ -84,8 +84,8 @@ def add_quadrature_errors(law, stiffness, ends, c, h, done):
 def simpson_excess(r, p, half, one, inner, middle, far):
     """Excess of Simpson's rule over the integral of s^p, over a fraction r of a step from 0 and the next two steps.
 
-    `half` is 2^{−p}; `one`, `middle` and `far` are s^p at r, r + 1 and r + 2; `inner` is its sum over r + 1/2 and r +
-    3/2.
+    `half` is 2^{−p}; `one`, `middle` and `far` are s^p at r, r + 1 and r + 2; `inner` is the sum of s^p at
+    r + 1/2 and r + 3/2.
     """
     part = r * (one + 4.0 * half * one)
     full_steps = one + 4.0 * inner + 2.0 * middle + far

@@ -160,8 +160,7 @@ def window_of(n):
 
 @internal
 def shortest(strobes, scale, n, distance, settled):
-    """The shortest divisor of n over which the states hardly change; `distance` bounds that to the orbit.
-    """
+    """The shortest divisor of n over which these states hardly change; `distance` bounds theirs from the orbit."""
     run, negligible = strobes.shape[0] - 1, max(_DISTANCES_OVER_DIVISOR * distance, _SETTLED_OVER_DIVISOR * settled)
     for q in range(1, n):
         if n % q != 0:
