@@ -58,7 +58,7 @@ def checkpoint(engine: Engine) -> Checkpoint:
     """Return a checkpoint of `engine` in its present state.
 
     With error control, a run can only be cut at whole drive periods, where its steps end in any case: a cut inside a
-    period would shorten a step that an uninterrupted run takes whole. Raises `BadInput` there.
+    period would shorten a step that an uninterrupted run takes whole. Raises `BadInput` inside one.
     """
     error_control = METHODS[engine.setting.method].error_control
     if error_control and engine.grid_index != 0:

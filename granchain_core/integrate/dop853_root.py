@@ -72,12 +72,11 @@ class Dop853RootStepper(ErrorControlledStepper):
 
 
 def _workspace(scaled: ScaledChain) -> Dop853RootWorkspace:
-    """Return the workspace of a short chain; raise `BadInput` if it is too long or has effects without code here.
-    """
+    """Return the workspace of a short chain; raise `BadInput` if it is too long or has effects without code here."""
     width = chain_width(scaled)
     unknown = unknown_slots(scaled.slots, "dop853_root")
     if not width or unknown or scaled.slots.driver is None:
-        named = f" It does not know: {', '.join(unknown)}." if unknown else ""
+        named = f" It does not support: {', '.join(unknown)}." if unknown else ""
         raise BadInput(f"The method dop853-root takes chains of up to {SHORT_CHAIN} beads with a driver "
                        "that is harmonic or at rest, without tension cut and energy account; use dop853 for this "
                        f"one.{named}")

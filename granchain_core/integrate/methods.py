@@ -24,7 +24,7 @@ RK4_SPLIT = "rk4-split"
 #: Error control with located events: the method for the highest accuracy.
 DOP853 = "dop853"
 
-#: Above this relative error the fixed-step method is cheaper than dop853 (`granchain accuracy sec2` measures it).
+#: Above this relative error, the fixed-step method is cheaper than dop853 (`granchain accuracy sec2` measures it).
 FIXED_STEP_CHEAPER_ABOVE = 1e-10
 #: The usual relative error of the fixed-step method at the default step.
 _FIXED_STEP_ERROR = 7e-6
@@ -184,7 +184,7 @@ METHODS: dict[str, Method] = {
             order=4.0, order_at_events=2.0, observed_smooth=4.0, observed_order=2.0,
             error_control=False, symplectic=False,
             restrictions="fixed step; order 2 at contact events; a touch shorter than a step is not resolved, and the "
-                         "jump of its force is taken from the ends of the step",
+                         "jump of its force is computed from the ends of the step",
             reference="Kutta 1901; w-variables: docs/model.md", stepper=_fixed(Rk4), cost=StepCost(350e-9, 35e-9),
             observed_with_cut=1.0),
         Method(

@@ -34,8 +34,8 @@ from ..scene.state import State
 #: [step size] Fixed steps: longest step in scaled time where overlaps are about one drive amplitude. A third of it, as
 #: in the fine run of a curve, must have an error below 1e-6 of the motion, and a picture must not need half of it. The
 #: error of displacements of section 2 after four periods from rest is 1.2e-5 (median of 40 frequencies from 100 to 2500
-#: Hz; at most 1.9e-4). With 0.4 it is 1.7e-4, with 0.1 9e-7, and with a third of 0.2 2e-7. Other scenes:
-#: `_FIXED_STEP_ERROR` in integrate/methods.py.
+#: Hz; at most 1.9e-4). For a step of 0.4 it is 1.7e-4, for 0.1 it is 9e-7, and for a third of 0.2 it is 2e-7. Other
+#: scenes: `_FIXED_STEP_ERROR` in integrate/methods.py.
 _STEP = 0.2
 #: [step size] Fixed steps: longest step for the oscillation of a bead on its foundation, in radians of phase.
 _FOUNDATION_STEP = 0.1

@@ -1,7 +1,7 @@
 """Kinks of the force in no-tension contacts: the contact stops pushing, or pushes again, while its beads still touch.
 
-At a kink, F = K δ^{3/2} + g(δ) δ̇ = 0, and a step with error control must end there. F has the same sign as F/g = K
-δ^{3/2}/g(δ) + δ̇, which, unlike F, passes through zero nowhere else, not even at δ = 0.
+At a kink, F = K δ^{3/2} + g(δ) δ̇ = 0, and a step with error control must end there. F has the same sign as
+F/g = K δ^{3/2}/g(δ) + δ̇, which, unlike F, passes through zero nowhere else, not even at δ = 0.
 """
 
 from __future__ import annotations
