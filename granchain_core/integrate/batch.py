@@ -256,8 +256,10 @@ class Batch:
         return self.coarse_maxima(member) if perturbed else self.maxima(member, period)[0]
 
     def maxima(self, member: int, periods: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return the largest input, output and elastic output force (3,) of the last `periods` periods, and the largest
-        jumps (2,) and unresolved peaks (2,) of input and output force (kernels/forces/peaks.py); all in scaled units.
+        """Return the largest forces (3,), jumps (2,) and unresolved peaks (2,) of the last `periods` periods, scaled.
+
+        The forces are input, output and elastic output force; jumps and unresolved peaks (kernels/forces/peaks.py) are
+        those of input and output force.
         """
         run = int(self.state.record.periods[member])
         places = np.arange(max(1, run - min(periods, STROBES_KEPT) + 1), run + 1) % STROBES_KEPT

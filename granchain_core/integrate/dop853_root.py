@@ -78,7 +78,7 @@ def _workspace(scaled: ScaledChain) -> Dop853RootWorkspace:
     if not width or unknown or scaled.slots.driver is None:
         named = f" It does not support: {', '.join(unknown)}." if unknown else ""
         raise BadInput(f"The method dop853-root takes chains of up to {SHORT_CHAIN} beads with a driver "
-                       "that is harmonic or at rest, without tension cut and energy account; use dop853 for this "
+                       "that is harmonic or at rest, without a tension cut or an energy account; use dop853 for this "
                        f"one.{named}")
 
     def rows(count: int) -> Stages:

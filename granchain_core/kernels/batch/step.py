@@ -45,8 +45,7 @@ class Values(NamedTuple):
 
 
 class LeftBead(NamedTuple):
-    """The bead at which a sweep arrives, in all members: its displacement, and e and G/λ of the contact on its left.
-    """
+    """The bead at which a sweep arrives, in all members: its displacement, and e and G/λ of the contact on its left."""
 
     u: Any
     e: Any

@@ -36,8 +36,10 @@ def _(preload, y, c):
 
 @by_slot
 def vector_overlap(preload, left, right, c):
-    """Overlaps in a vector from the displacements on both sides: of contact c in all members of a batch, or of all
-    contacts in block c of a long chain."""
+    """Overlaps in a vector, from the displacements on both sides.
+
+    They are those of contact c in all members of a batch, or of all contacts in block c of a long chain.
+    """
     return left - right
 
 
