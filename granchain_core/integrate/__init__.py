@@ -1,4 +1,4 @@
-"""Time integration: from a scene to scaled numbers, the table of methods, the engine that carries a state, batches."""
+"""Time integration: scaling of a scene, the table of methods, the engine that advances a state, and batches."""
 
 from ..former_names import of_module
 from .counts import Counts

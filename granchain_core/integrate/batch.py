@@ -52,31 +52,31 @@ from .scaling import ScaledChain, scale_chain
 
 
 def can_share_batch(scene: Scene) -> bool:
-    """Whether a batch can run this scene: its driver moves, and batches know every effect it has.
+    """Return whether a batch can run this scene: its driver moves, and batches support all of its effects.
 
-    They do not know the tension cut, which needs velocities before forces.
+    They do not support the tension cut, which needs velocities before forces.
     """
     return scene.is_driven and not unknown_slots(scale_chain(scene).slots, "batch")
 
 
 def is_uniform(scaled: ScaledChain) -> bool:
-    """Whether all beads, and all contacts but the wall's, are alike."""
+    """Return whether all beads, and all contacts except the wall's, are equal."""
     chain = scaled.slots.chain
     return bool((chain.inverse_mass[1:-1] == 1.0).all() and (chain.stiffness[:-1] == 1.0).all())
 
 
 def change_workspace(longest: int) -> np.ndarray:
-    """The workspace of `detect_period` (kernels/strobes/periodicity.py) for periods up to `longest`."""
+    """Return the workspace of `detect_period` (kernels/strobes/periodicity.py) for periods up to `longest`."""
     return np.zeros(window_of(longest))
 
 
 def _rows(rows: int) -> np.ndarray:
-    """Zeros, one row of all members' numbers after another."""
+    """Return zeros in rows, each with one number per member."""
     return aligned(rows, BATCH_SIZE)
 
 
 def _slots_of_members(scaled: ScaledChain) -> Slots:
-    """The effects' slots with rows for all members in place of each number and array; chain and drive have others."""
+    """Return the effects' slots with rows for all members instead of numbers; chain and drive are stored elsewhere."""
     effects = scaled.slots._replace(chain=None, driver=None)
     return Slots(*(None if slot is None else type(slot)(*(_rows(np.size(value)) for value in slot))
                    for slot in effects))
@@ -91,7 +91,7 @@ def _numbers(*shape: int) -> np.ndarray:
 
 
 def _empty_state(beads: int) -> BatchState:
-    """The arrays of a batch whose chains have so many beads."""
+    """Return the arrays of a batch whose chains have this many beads."""
     bodies = beads + 2
     rows, contacts = 2 * bodies, beads + 1
     return BatchState(
@@ -112,12 +112,12 @@ def _empty_state(beads: int) -> BatchState:
     )
 
 
-#: `Pairs.neighbour` of an empty lane. The kernels never return a neighbouring trajectory, so they return no empty lane.
+#: `Pairs.neighbour` of an empty lane. The kernels never return a neighbouring trajectory, and so no empty lane either.
 _EMPTY = IS_NEIGHBOUR
 
 
 def _no_check(*arguments: object) -> None:
-    """Stands for a check of types until the kernel is known."""
+    """Do nothing: a placeholder for the type check until the kernel is known."""
 
 
 class Batch:
@@ -139,7 +139,7 @@ class Batch:
             self.empty(member)
 
     def empty(self, member: int) -> None:
-        """Leave a lane empty: it runs the example from rest, and is never returned, not even if it is not finite."""
+        """Make a lane empty: it runs the example from rest, and is never returned, even if it is not finite."""
         self.put(member, self.example, np.zeros(len(self.state.motion.y)), 1, NEVER, NEVER)
         self.state.pairs.neighbour[member] = _EMPTY
 
@@ -147,10 +147,10 @@ class Batch:
             earliest: int = 0, fine: int = 0) -> None:
         """Make a scene a member, from the scaled state y at phase 0, with `refine` times the fixed-step method's steps.
 
-        It is due after `return_at` periods at the latest; from period `earliest` on its regime is checked. Once its
-        orbit is found, it goes on with `fine` times the steps, or is due if that is 0 (kernels/batch/begin.py). Raises
-        `ValueError` for a chain of another structure, and for one whose driver is at rest: in all lanes the driver's
-        displacement is sin θ.
+        It is due after `return_at` periods at the latest; its regime is checked from period `earliest` on. Once its
+        orbit is found, it continues with `fine` times the steps, or is due if `fine` is 0 (kernels/batch/begin.py).
+        Raises `ValueError` for a chain of another structure, and for one whose driver is at rest, since the driver's
+        displacement is sin θ in all lanes.
         """
         slots, members, state = scaled.slots, self.members, self.state
         if slots.driver.amplitude != 1.0:
@@ -176,7 +176,7 @@ class Batch:
         state.search.fine_record[member], state.pairs.neighbour[member] = 0.0, NO_NEIGHBOUR
 
     def _takes(self, scaled: ScaledChain) -> bool:
-        """Whether a chain has the structure of the batch."""
+        """Return whether a chain has the structure of the batch."""
         chain, example = scaled.slots.chain, self.example
         alike = chain is example.slots.chain or self.members.unequal is not None or is_uniform(scaled)
         return alike and scaled.slot_types == example.slot_types
@@ -185,7 +185,7 @@ class Batch:
                  maxima: np.ndarray) -> None:
         """Make a scene a member, on the orbit y of a coarser run.
 
-        `observed` is that run's contraction factor per orbit, `maxima` (3,) are its largest forces. The member is
+        `observed` is that run's contraction factor per orbit, and `maxima` (3,) are its largest forces. The member is
         checked once the difference from that orbit has decayed.
         """
         contraction = coarse_contraction(observed)
@@ -195,10 +195,11 @@ class Batch:
 
     def put_pair(self, member: int, neighbour: int, scaled: ScaledChain, y: np.ndarray, offset: np.ndarray,
                  distance: float, periods: int) -> None:
-        """Make a scene a member, with a neighbour in another lane: a trajectory that begins at y + offset.
+        """Make a scene a member, with a neighbour in another lane: a trajectory that starts from y + offset.
 
-        After each period the neighbour is brought back to `distance`, the length of `offset`. The member is due after
-        `periods` periods. Raises `ValueError` for more than STROBES_KEPT of them, for whose growth there is no place.
+        After each period, the neighbour is brought back to `distance`, the length of `offset`. The member is due after
+        `periods` periods. Raises `ValueError` for more than STROBES_KEPT periods, because there is no room for their
+        growth.
         """
         if periods > STROBES_KEPT:
             raise ValueError(f"a pair runs for at most {STROBES_KEPT} periods, not for {periods}")
@@ -208,15 +209,15 @@ class Batch:
         pairs.neighbour[member], pairs.neighbour[neighbour], pairs.distance[member] = neighbour, IS_NEIGHBOUR, distance
 
     def checks_address(self) -> int:
-        """Address of the kernel that checks a member's regime, compiled first where it is not there yet."""
+        """Address of the kernel that checks a member's regime; the kernel is compiled first if necessary."""
         return address_of(begin_or_check_member, self.state, 0)
 
     def growth(self, member: int) -> np.ndarray:
-        """Logarithm of the growth of the distance to the member's neighbour in each period (periods,); NaN if lost."""
+        """Return the logarithmic growth of the neighbour's distance in each period (periods,); NaN if not finite."""
         return self.state.pairs.growth[member, : int(self.state.record.periods[member])]
 
     def run(self) -> tuple[int, bool]:
-        """Run until a member is due; its number, and whether it is finite."""
+        """Run until a member is due; return its number and whether it is finite."""
         if self._run is None:
             self._run = entry(run_batch, self.members, self.state, self.stop.flag, 0)
             self._check = self.checks_address()
@@ -229,34 +230,36 @@ class Batch:
         return int(member), status == DONE
 
     def strobes(self, member: int, most: int = STROBES_KEPT) -> np.ndarray:
-        """The last `most` remembered strobes of a member in order, (P, 2, N), displacement and w in scaled units.
+        """Return at most `most` of a member's last strobes, in order (P, 2, N): displacement and w in scaled units.
 
-        They begin where the member was last moved to another state.
+        They start where the member was last moved to another state.
         """
         record = self.state.record
         kept = int(record.strobe_count[member])
         return record.strobes[member, max(int(record.first_strobe[0, member]), kept - most) : kept, :, 1:-1]
 
     def is_fine(self, member: int) -> bool:
-        """Whether a member is in its fine run."""
+        """Return whether a member is in its fine run."""
         return bool(self.state.search.fine_record[member, FINE_PERIOD] > 0.0)
 
     def grew(self, member: int) -> bool:
-        """Whether changes from orbit to orbit grew in a member's fine run: its orbit may be unstable."""
+        """Return whether changes from orbit to orbit grew in a member's fine run: its orbit may be unstable."""
         return bool(self.state.search.fine_record[member, FINE_GREW] > 0.0)
 
     def coarse_maxima(self, member: int) -> np.ndarray:
-        """Largest forces (3,) on the orbit of the coarse run, scaled, of a member in its fine run."""
+        """Return the largest scaled forces (3,) on the coarse run's orbit for a member in its fine run."""
         return self.state.search.fine_record[member, FINE_FORCES : FINE_FORCES + 3].copy()
 
     def settled_maxima(self, member: int, period: int) -> np.ndarray:
-        """Largest forces on the orbit of a settled coarse member; of a perturbed one, from before the perturbation."""
+        """Return the largest forces on a settled coarse member's orbit, from before any perturbation of it."""
         perturbed = self.state.search.slowest_contraction[member] > 0.0
         return self.coarse_maxima(member) if perturbed else self.maxima(member, period)[0]
 
     def maxima(self, member: int, periods: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Largest input, output and elastic output force (3,) of the last `periods` periods, and of input and output
-        force the largest jumps (2,) and the largest unresolved peaks (2,) (kernels/forces/peaks.py); in scaled units.
+        """Return the largest forces (3,), jumps (2,) and unresolved peaks (2,) of the last `periods` periods, scaled.
+
+        The forces are input, output and elastic output force; jumps and unresolved peaks (kernels/forces/peaks.py) are
+        those of input and output force.
         """
         run = int(self.state.record.periods[member])
         places = np.arange(max(1, run - min(periods, STROBES_KEPT) + 1), run + 1) % STROBES_KEPT

@@ -1,6 +1,6 @@
-"""A scaled chain with a given force or a given motion of its driver in pieces, one polynomial between two samples.
+"""A scaled chain with a given force, or a given motion of its driver, in pieces: one polynomial between two samples.
 
-A measured force acts on it (observers/force_driven_chain.py), or its driver moves as a signal says
+A measured force acts on the chain (observers/force_driven_chain.py), or its driver follows a signal
 (prescribed_drive/moved_chain.py).
 """
 
@@ -30,17 +30,17 @@ from .scaling import ScaledChain
 from .stated import Computations, force_differences, least_errors, relative_difference
 from .stepper import empty_samples
 
-#: More steps than this are refused: minutes of computing.
+#: Records with more steps than this are refused: they would take minutes.
 MOST_RECORD_STEPS = 200_000_000
-#: Most halvings of the steps: beyond it rounding and the error of the events dominate.
+#: Most halvings of the steps: beyond this, rounding and the error of the events dominate.
 MOST_HALVINGS = 7
 
 
 class ChainInPieces:
-    """A scaled chain whose driver has one polynomial (T − 1, k) between two times [s]; `counts` adds up over its runs.
+    """A scaled chain with a drive of one polynomial (T − 1, k) between two times [s]; `counts` adds up over its runs.
 
     `pieces` are scaled, constant term first. `overlap` is the expected size of overlaps in scaled units: the default
-    step of the fixed-step method is for 1, and larger overlaps make contacts stiffer.
+    step of the fixed-step method is meant for 1, and larger overlaps make contacts stiffer.
     """
 
     def __init__(self, scaled: ScaledChain, time: np.ndarray, pieces: np.ndarray, overlap: float, stop: Stop,
@@ -65,15 +65,15 @@ class ChainInPieces:
         return largest_jumps(self._log.peaks).copy()
 
     def steps(self, halvings: int) -> int:
-        """Steps of a run whose steps are halved `halvings` times."""
+        """Return the number of steps of a run whose steps are halved `halvings` times."""
         return int(self._substeps.sum()) * 2**halvings
 
     def longest_step(self, halvings: int) -> float:
-        """The longest of these steps, in scaled units."""
+        """Return the longest of these steps, in scaled units."""
         return float((self._spans / self._substeps).max()) / 2**halvings
 
     def run(self, start: State, halvings: int) -> Samples:
-        """The motion from `start` with steps halved `halvings` times; one row per sample, in scaled units."""
+        """Compute the motion from `start` with steps halved `halvings` times: one row per sample, in scaled units."""
         scaled, row = self.scaled, self.scaled.bodies
         if self.steps(halvings) > MOST_RECORD_STEPS:
             raise BadInput(f"The record needs {self.steps(halvings):.1e} steps; at most {MOST_RECORD_STEPS:.0e} are "
@@ -103,9 +103,9 @@ class ChainInPieces:
 
 
 class Refined(NamedTuple):
-    """The run with the finest steps: samples, largest forces, how often its steps were halved, how errors grew.
+    """The run with the finest steps: samples, largest forces, number of halvings of its steps, growth of errors.
 
-    `errors` (4,) are the stated relative errors by the steps: of displacements, then of the largest forces.
+    `errors` (4,) are the stated relative errors due to the steps: of displacements, then of the largest forces.
     """
 
     samples: Samples
@@ -116,7 +116,7 @@ class Refined(NamedTuple):
 
 
 def refined(chain: ChainInPieces, start: State, tell: Callable[[int], None]) -> Refined:
-    """Runs with steps halved until the error is as small as the scene asks for, or finer steps would not help.
+    """Run with steps halved until the error is as small as the scene requires, or finer steps would not help.
 
     `tell` is called with the number of halvings after each run.
     """

@@ -1,7 +1,7 @@
-"""Saving and restoring an engine so that an interrupted run continues bit for bit.
+"""Saving and restoring an engine, so that an interrupted run continues bit for bit.
 
-A `State` in SI is rounded by the conversion there and back. A checkpoint holds the engine's own numbers: the scaled
-state, its slope, the step the error control would try next, and where in the period the drive is.
+A `State` in SI is rounded by the conversion there and back. A checkpoint contains the engine's own numbers: the scaled
+state, its slope, the step that error control would try next, and the position within the drive period.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from .stepper import ErrorControl
 
 @dataclass(frozen=True, eq=False)
 class Checkpoint:
-    """An engine's numbers: y (M,) and its slope, control (3,) of an error control, grid index, drive periods run.
+    """An engine's numbers: y (M,) and its slope, error control's `control` (3,), grid index, drive periods run.
 
-    `digest`, `method`, `refine`, `tolerance` and `samples` identify the engines that may go on from here.
+    `digest`, `method`, `refine`, `tolerance` and `samples` identify the engines that may continue from here.
     """
 
     digest: str
@@ -38,14 +38,14 @@ class Checkpoint:
     elapsed: float
 
     def to_bytes(self) -> bytes:
-        """The checkpoint as an .npz archive."""
+        """Return the checkpoint as an .npz archive."""
         out = io.BytesIO()
         np.savez(out, **self.__dict__)
         return out.getvalue()
 
     @classmethod
     def from_bytes(cls, data: bytes) -> Checkpoint:
-        """The checkpoint that `to_bytes` wrote; `BadInput` for anything else."""
+        """Read a checkpoint that `to_bytes` wrote; raise `BadInput` for anything else."""
         try:
             with np.load(io.BytesIO(data), allow_pickle=False) as kept:
                 fields = {name: kept[name] for name in cls.__dataclass_fields__}
@@ -55,10 +55,10 @@ class Checkpoint:
 
 
 def checkpoint(engine: Engine) -> Checkpoint:
-    """Where `engine` is now.
+    """Return a checkpoint of `engine` in its present state.
 
-    A method with error control can be cut at whole drive periods only, where its steps end in any case: a cut inside
-    would end one that an uninterrupted run takes whole. Raises `BadInput` there.
+    With error control, a run can only be cut at whole drive periods, where its steps end in any case: a cut inside a
+    period would shorten a step that an uninterrupted run takes whole. Raises `BadInput` inside one.
     """
     error_control = METHODS[engine.setting.method].error_control
     if error_control and engine.grid_index != 0:
@@ -74,10 +74,10 @@ def checkpoint(engine: Engine) -> Checkpoint:
 
 
 def resumed(scene: Scene, kept: Checkpoint, stop: Stop | None = None) -> Engine:
-    """A new engine that goes on from a checkpoint of the same scene; `BadInput` for one of another scene."""
+    """Return a new engine that continues from a checkpoint of the same scene; raise `BadInput` for another scene."""
     if scene.digest != kept.digest:
         raise BadInput(f"This checkpoint belongs to scene {kept.digest}, not to {scene.digest} ({scene.name}); "
-                       f"go on with the scene it was taken from.")
+                       f"continue with the scene it was taken from.")
     row = scene.N + 2
     engine = Engine(scene, MethodSetting(kept.method, kept.refine, kept.tolerance), kept.samples,
                     account=len(kept.y) > 2 * row, stop=stop)

@@ -1,4 +1,4 @@
-"""Counters of steps, evaluations and events."""
+"""Counters of steps, evaluations, events and rejected steps."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class Counts:
 
     @property
     def by_name(self) -> dict[str, int]:
-        """All four."""
+        """All four counters."""
         return dict(zip(("steps", "rhs", "events", "rejected"), map(int, self.array), strict=True))
 
     @property

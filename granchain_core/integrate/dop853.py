@@ -1,4 +1,4 @@
-"""Stepping with error control by DOP853: contact events are located, and steps end there."""
+"""Stepping with error control by DOP853: contact events are located, and steps end at them."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from .scaling import ScaledChain
 
 
 def dop853_workspace(scaled: ScaledChain) -> Dop853Workspace:
-    """The workspace of DOP853, with its slopes and its dense output."""
+    """Return the workspace of DOP853, with its slopes and dense output."""
     size = scaled.size
     return Dop853Workspace(
         k=np.zeros((ALL_STAGES, size)), stage=np.zeros(size), end=np.zeros(size), probe=np.zeros(size),
@@ -25,5 +25,5 @@ class Dop853Stepper(ErrorControlledStepper):
         super().__init__(Dop853(tolerance, largest_step(scaled)), scaled, samples)
 
     def new_workspace(self) -> Dop853Workspace:
-        """The workspace of DOP853."""
+        """Return the workspace of DOP853."""
         return dop853_workspace(self.scaled)

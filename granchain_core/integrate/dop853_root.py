@@ -27,28 +27,28 @@ _RUN_DOP853_ROOT = Entries(run_dop853_root)
 
 
 class Dop853RootStepper(ErrorControlledStepper):
-    """DOP853 in (u, w) at a relative tolerance per step, in a transformed time next to contact events."""
+    """DOP853 in (u, w) with a relative tolerance per step, in a transformed time next to contact events."""
 
     def __init__(self, tolerance: float, scaled: ScaledChain, samples: int) -> None:
         self._vectors = _workspace(scaled)
         super().__init__(Dop853(tolerance, largest_step(scaled)), scaled, samples)
 
     def new_workspace(self) -> Dop853Workspace:
-        """The workspace of DOP853, of which these kernels use a part; the rest is in `_vectors`."""
+        """Return the workspace of DOP853, of which these kernels use a part; the rest is in `_vectors`."""
         return dop853_workspace(self.scaled)
 
     def new_type_key(self) -> Any:
-        """A key for the types of slots, method and workspace, the chain's vectors included."""
+        """Return a key for the types of slots, method and workspace, including the chain's vectors."""
         return super().new_type_key(), types_of(self._vectors)
 
     def use(self, scaled: ScaledChain) -> None:
-        """Go on with other values in the same slots, or with other effects. Raises `BadInput`."""
+        """Continue with other values in the same slots, or with other effects. Raises `BadInput`."""
         self._vectors = _workspace(scaled)
         super().use(scaled)
 
     def run_range(self, y: np.ndarray, first: int, points: int, stride: int, samples: Samples,
                 out: KernelIO) -> tuple[int, int]:
-        """One call of the kernel over `points` points of the grid from `first` on; returns status and rows filled."""
+        """Call the kernel once over `points` grid points from `first` on; return status and rows filled."""
         wanted = SampleRange(first, points, self.grid, stride)
         status, rows = _RUN_DOP853_ROOT(self.type_key, self.method, self._vectors, self.trajectory(y), wanted,
                                         samples, out)
@@ -56,9 +56,9 @@ class Dop853RootStepper(ErrorControlledStepper):
 
     def locate_failure(self, y: np.ndarray, start: CallStart | None, done: float,
                        stop: Stop) -> tuple[int, int | None]:
-        """The bead is found by dop853, whose stages can be told apart, on the call repeated from its start.
+        """Find the bead with dop853, whose stages are separate, by repeating the call from its start.
 
-        Where dop853 does not fail, no bead is named.
+        If dop853 does not fail, no bead is reported.
         """
         if start is None:
             return super().locate_failure(y, start, done, stop)
@@ -72,14 +72,13 @@ class Dop853RootStepper(ErrorControlledStepper):
 
 
 def _workspace(scaled: ScaledChain) -> Dop853RootWorkspace:
-    """The workspace of a chain that fits into one vector and has effects that these kernels know. Raises `BadInput`.
-    """
+    """Return the workspace of a short chain; raise `BadInput` if it is too long or has effects without code here."""
     width = chain_width(scaled)
     unknown = unknown_slots(scaled.slots, "dop853_root")
     if not width or unknown or scaled.slots.driver is None:
-        named = f" It does not know: {', '.join(unknown)}." if unknown else ""
+        named = f" It does not support: {', '.join(unknown)}." if unknown else ""
         raise BadInput(f"The method dop853-root takes chains of up to {SHORT_CHAIN} beads with a driver "
-                       "that is harmonic or at rest, without tension cut and energy account; use dop853 for this "
+                       "that is harmonic or at rest, without a tension cut or an energy account; use dop853 for this "
                        f"one.{named}")
 
     def rows(count: int) -> Stages:

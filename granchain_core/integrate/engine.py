@@ -1,4 +1,4 @@
-"""The engine: advances one scene with one method by whole periods, or from sample to sample."""
+"""The engine, which advances one scene with one method, by whole periods or from sample to sample."""
 
 from __future__ import annotations
 
@@ -21,20 +21,20 @@ from .methods import METHODS, MethodSetting
 from .scaling import ScaledChain, scale_chain
 from .stepper import CallStart, empty_samples
 
-#: A start's phase may be this part of a sample away from one: rounding.
+#: A start's phase may be this part of a sample interval away from a sample, because of rounding.
 _BETWEEN_SAMPLES = 1e-6
-#: Places for closings of a contact in one period; bounces beyond that are ever weaker.
+#: Number of closings recorded per contact and period; further bounces are ever weaker.
 _MOST_CLOSINGS = 4
 
 
 class Engine:
-    """Carries a state of `scene` through time; all arrays are allocated beforehand, none in a kernel.
+    """Advances a state of `scene` in time; all arrays are allocated beforehand, none in a kernel.
 
-    `samples` is the number of recorded samples a period. `stop` ends a call from another thread. `scaled` may be
-    given where more than the scene's own chain moves. What depends on the method is in `stepper`.
+    `samples` is the number of samples per period. `stop` ends a call from another thread. `scaled` may be given if more
+    than the scene's own chain moves. Everything that depends on the method is in `stepper`.
 
-    A call that ends with `Cancelled` leaves the chain where the call began; the largest forces and the counts keep what
-    it had seen.
+    A call that ends with `Cancelled` leaves the chain where the call began; the largest forces and the counts include
+    the cancelled part.
     """
 
     def __init__(self, scene: Scene, setting: MethodSetting, samples: int = 1, account: bool = False,
@@ -60,14 +60,14 @@ class Engine:
         return chain
 
     def use(self, scaled: ScaledChain) -> None:
-        """Go on with other values or effects of the same chain; the step stays what it is."""
+        """Continue with other values or effects of the same chain; the step is unchanged."""
         self.stepper.use(scaled)
 
     def move(self, scaled: ScaledChain, steps: int) -> None:
-        """Become the engine of another scene with the same effects, with a fixed step. Next comes a start.
+        """Become the engine of another scene with the same effects, with a fixed step; a start must follow.
 
-        `steps` is their number in a period. The arrays are used again: where many orbits are followed for a period
-        each, a new engine would take as long.
+        `steps` is the number of steps per period. The arrays are reused: if many orbits are followed for a period each,
+        making a new engine would take as long as the period itself.
         """
         self.stepper.move(scaled.with_own_tension(), steps)
         self.grid = self.stepper.grid
@@ -77,12 +77,12 @@ class Engine:
     def start(self, state: State) -> None:
         """Put the chain into `state`; the energy account starts at zero.
 
-        Raises `BadInput` where its phase is not that of a sample.
+        Raises `BadInput` if the phase is not that of a sample.
         """
         scales, at = self.scaled.scales, state.phase * self.samples
         if abs(at - round(at)) > _BETWEEN_SAMPLES:
             raise BadInput(f"The start is at drive phase {state.phase!r}, between two samples. With {self.samples} "
-                           f"samples a period a motion begins at a multiple of 1/{self.samples}; the nearest is "
+                           f"samples per period, a motion begins at a multiple of 1/{self.samples}; the nearest is "
                            f"{round(at)}/{self.samples}.")
         self.grid_index = round(at) % self.samples * (self.grid // self.samples)
         self._begin(scales.scaled_displacements(state.displacement), scales.scaled_velocities(state.velocity),
@@ -105,14 +105,14 @@ class Engine:
         self.reset_peaks()
 
     def evaluate(self, from_velocity: bool = False) -> None:
-        """Recompute driver state and dy/dt for y."""
+        """Recompute the driver's state and dy/dt for y."""
         if self.scaled.slots.tension is not None:  # flags of the last step
             self.scaled.slots.tension.force_free[:] = 0
         self.stepper.evaluate_at_phase(2 * np.pi * self.grid_index / self.grid, self.y, from_velocity)
 
     @property
     def state(self) -> State:
-        """The present state in SI."""
+        """Return the present state in SI."""
         scaled = self.scaled
         self.evaluate(from_velocity=False)
         displacement, velocity = scaled.rows(self.y)[0], scaled.rows(self.stepper.slope)[0]
@@ -122,12 +122,12 @@ class Engine:
     # --- motion --------------------------------------------------------------------------------------------
 
     def empty_samples(self, rows: int) -> Samples:
-        """Arrays for `rows` samples in scaled units."""
+        """Return arrays for `rows` samples in scaled units."""
         return empty_samples(self.scaled, rows)
 
     @flushed
     def record(self, count: int) -> Samples:
-        """Advance by `count` samples and keep them, the present one first: count + 1 rows.
+        """Advance by `count` samples and return them, the present one first: count + 1 rows.
 
         Raises `ComputationError`, `Cancelled`.
         """
@@ -152,8 +152,8 @@ class Engine:
         """Advance by whole periods from phase 0.
 
         Returns the stroboscopic states (count + 1, 2, N), displacement and velocity in scaled units, and the largest
-        input, output and elastic output force of each period (count, 3); without `watch` a method with error control
-        does not search the largest forces and they are NaN.
+        input, output and elastic output force of each period (count, 3). Without `watch`, a method with error control
+        does not search for the largest forces, and they are NaN.
         """
         self.stop.pause()
         self._remember()
@@ -170,11 +170,11 @@ class Engine:
         return strobes[:, :, 1:-1], maxima
 
     def strobe(self) -> np.ndarray:
-        """The present state at phase 0 as a row of strobes (1, 2, N), displacement and velocity in scaled units."""
+        """Return the present state at phase 0 as one strobe (1, 2, N): displacement and velocity in scaled units."""
         return self.periods(0)[0]
 
     def _output(self, closings: int = 0) -> KernelIO:
-        """A new log with places for this number of closings, the counts and the stop flag."""
+        """Return a new log with room for this number of closings, the counts and the stop flag."""
         self.log = new_log(self.log, closings)
         return KernelIO(self.log, self.counts.array, self.stop.flag)
 
@@ -185,9 +185,9 @@ class Engine:
         reset_peaks(self.log.peaks)
 
     def begin_record(self) -> None:
-        """Count largest forces, work and loss from here on.
+        """Start counting largest forces, work and loss from here.
 
-        The account of a long run before would round away that of a record with little energy: their sums cancel.
+        The account of a long run before would swamp that of a record with little energy: their sums cancel.
         """
         self.reset_peaks()
         if self.scaled.slots.account is not None:
@@ -200,26 +200,26 @@ class Engine:
 
     @property
     def jumps(self) -> np.ndarray:
-        """The largest jumps of input and output force (2,) in the same time, in scaled units."""
+        """The largest jumps of input and output force (2,) over the same time, in scaled units."""
         return largest_jumps(self.log.peaks).copy()
 
     @property
     def closings(self) -> np.ndarray:
-        """The jumps of the last record (J, 4): sample before it, drive phase θ, contact, scaled force just after."""
+        """The jumps in the last record (J, 4): sample before, drive phase θ, contact, scaled force just after."""
         return self.log.closings[: self.log.counts[CLOSED]]
 
     @property
     def unresolved(self) -> int:
-        """Number of touches shorter than a step that a method without located events has noticed."""
+        """Number of touches shorter than a step that a method without event location has detected."""
         return int(self.log.counts[UNRESOLVED])
 
     @property
     def closings_missing(self) -> int:
-        """Number of further jumps, for which there was no place."""
+        """Number of further jumps, for which there was no room."""
         return max(0, int(self.log.counts[CLOSED]) - len(self.log.closings))
 
     def advance_and_find_largest(self, periods: int) -> np.ndarray:
-        """Advance by whole periods: the largest input, output and elastic output force on the way (3,), scaled."""
+        """Advance by whole periods; return the largest input, output and elastic output force (3,), scaled."""
         self.reset_peaks()
         self.record(periods * self.samples)
         return self.maxima
@@ -227,7 +227,7 @@ class Engine:
     # --- failures ------------------------------------------------------------------------------------------
 
     def raise_for(self, status: int, done: float, before: CallStart | None = None) -> None:
-        """Raise the error for a kernel's status, after `done` periods of a call from `before`, None if unknown.
+        """Raise the error for a kernel's status after `done` periods of a call from `before`; None if that is unknown.
 
         Raises `ComputationError`, `Cancelled`.
         """
@@ -239,7 +239,7 @@ class Engine:
         raise self._failure(status, done, *place).error
 
     def _remember(self) -> None:
-        """Keep where a call begins; a number that is not finite there already is reported at once."""
+        """Record where a call begins; a number that is already non-finite there is reported at once."""
         stepper = self.stepper
         bead = first_not_finite(self.y, stepper.scaled.bodies)
         if bead:
@@ -247,10 +247,10 @@ class Engine:
         self._before: CallStart = self.y.copy(), stepper.slope.copy(), self.grid_index
 
     def _go_back(self) -> None:
-        """Return to where the last call began."""
+        """Return to the start of the last call."""
         before, slope, self.grid_index = self._before
         self.y[:] = before
-        self.evaluate()  # also the flags of force-free contacts, which belong to the last step
+        self.evaluate()  # also clears the flags of force-free contacts from the last step
         self.y[:], self.stepper.slope[:] = before, slope
 
     def _failure(self, status: int, done: float, bead: int, step: int | None) -> Failure:

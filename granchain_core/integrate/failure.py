@@ -1,4 +1,4 @@
-"""A kernel's failure in a sentence: which bead, when, and in which step."""
+"""The failure of a kernel as a sentence: the bead, the time and the step."""
 
 from __future__ import annotations
 
@@ -16,22 +16,22 @@ from ..kernels.status import (
 )
 from ..scene import Scene
 
-#: A method with fixed steps, as a user asks for it.
+#: A method with fixed steps, with the command that selects it.
 _FIXED_STEPS = "fixed steps (granchain run --method rk4-split)"
 
 
 def not_finite(when: str, bead: int = 0, advice: str = "lower the damping or ask for a higher accuracy") -> str:
-    """A sentence on a motion whose numbers failed, with the bead where that is known (else 0)."""
+    """Return a sentence about a motion whose numbers failed, with the bead if it is known (otherwise 0)."""
     whose = f" of bead {bead}" if bead else ""
     return f"The motion{whose} stopped being a finite number {when}; {advice}."
 
 
 @dataclass(frozen=True)
 class Failure:
-    """A computation that ended before it was done.
+    """A computation that ended before it was complete.
 
-    `periods` have been run since the start, `bead` and `step` of its period are those in which the numbers failed (0
-    and None where that is not known or not the reason), `cost` are the counts so far by name.
+    `periods` have been run since the start. `bead`, and `step` of its period, are those in which the numbers failed (0
+    and None if unknown or not the reason). `cost` are the counts so far by name.
     """
 
     status: int
@@ -44,7 +44,7 @@ class Failure:
 
     @property
     def error(self) -> Cancelled | ComputationError:
-        """The outcome as something to raise. `ValueError` for a status that is not a failure."""
+        """The exception to raise; a status that is not a failure raises `ValueError`."""
         if self.status == CANCELLED:
             return Cancelled()
         time = self.periods * self.scene.period
@@ -63,10 +63,10 @@ class Failure:
                                     f"frequency f.", "too-many-steps", time=time, cost=self.cost)
         if self.status == CHATTER:
             return ComputationError(f"A contact opens and closes {when} while hardly any time passes: rounding "
-                                    f"decides it, not the motion. Ask for another accuracy, or for {_FIXED_STEPS}.",
+                                    f"decides this, not the motion. Ask for another accuracy, or for {_FIXED_STEPS}.",
                                     "chatter", time=time, cost=self.cost)
         if self.status == TOO_MANY_EVENTS:
-            return ComputationError(f"An orbit has more than {EVENTS_PER_CONTACT} contact events a contact and drive "
+            return ComputationError(f"An orbit has more than {EVENTS_PER_CONTACT} contact events per contact and drive "
                                     f"period {when}; raise the frequency f.", "too-many-events", time=time,
                                     cost=self.cost)
         raise ValueError(f"{self.status} is not the status of a computation that failed")

@@ -1,11 +1,11 @@
 """Stepping with a fixed step, a whole number of steps per drive period.
 
-The kernels test for numbers that are not finite once a sample or a period, because the test costs as much as a bead.
-When one is found, the period is repeated from its start and bisected until the step is known; in that step the failure
-has not spread yet, and its earliest stage identifies the bead where it began. 0 stands for a bead that is not known.
+The kernels test for non-finite numbers only once per sample or period, because the test costs as much as a bead. When
+one is found, the period is repeated from its start and bisected until the step is known. In that step the failure has
+not spread yet, and its earliest stage identifies the bead where it began. Bead 0 means unknown.
 
 A period of a long chain, or of a slow drive, may take minutes. It is computed in parts, so that it can be cancelled at
-any instant and other computations may go first (parts.py).
+any time and other computations can run first (parts.py).
 """
 
 from __future__ import annotations
@@ -35,11 +35,11 @@ from .parts import periods_in_parts, samples_in_parts, steps_in_part
 from .scaling import ScaledChain
 from .stepper import CallStart, empty_samples
 
-#: Most beads of a chain whose bodies, with driver and wall, fit into one vector.
+#: Most beads of a chain whose bodies, including driver and wall, fit into one vector.
 SHORT_CHAIN = max(CHAIN_WIDTHS) - 2
-#: Steps in a period up to which the driver's motion is tabulated.
+#: Most steps per period for which the driver's motion is tabulated.
 _LARGEST_TABLE = 200_000
-#: Tables that are kept: a branch of orbits makes ten chains in turn with the same number of steps.
+#: Number of tables kept: a branch of orbits makes ten successive chains with the same number of steps.
 _TABLES_KEPT = 4
 # Kernels that are called many times a second: a branch runs thousands of single periods.
 _RUN_STEPS = Entries(run_steps)
@@ -47,7 +47,7 @@ _EVALUATE_AT_PHASE = Entries(evaluate_at_phase)
 
 
 class FixedStep:
-    """Steps of a method in (u, w); `simd` where there are vectors for it."""
+    """Fixed steps of a method in (u, w); `simd` is true if it has SIMD kernels."""
 
     def __init__(self, method: Any, scaled: ScaledChain, samples: int, simd: bool = False) -> None:
         self.method = method
@@ -72,12 +72,12 @@ class FixedStep:
 
     @work.setter
     def work(self, work: Any) -> None:
-        """Use another workspace, maybe of another type: another specialization of the kernels is called then."""
+        """Use another workspace, perhaps of another type; the matching specialization of the kernels is then called."""
         self._work = work
         self._type_key = types_of((self.method, self.scaled.slots, work))
 
     def _driver_table(self, scaled: ScaledChain) -> np.ndarray:
-        """Displacement and velocity of the driver at every half step (2n + 1, 2)."""
+        """Return the driver's displacement and velocity at every half step (2n + 1, 2)."""
         sine, cosine = _half_steps(self.grid)
         driver = scaled.slots.driver
         table = np.zeros((sine.size, 2))
@@ -87,7 +87,7 @@ class FixedStep:
         return table
 
     def new_simd_workspace(self) -> LongChain | ShortChain | None:
-        """The workspace of SIMD steps: a driven chain with no effect that they do not know."""
+        """Return the workspace of SIMD steps; None unless the chain is driven and they support all of its effects."""
         scaled, slots = self.scaled, self.scaled.slots
         if not self._simd or unknown_slots(slots, "rk4") or slots.driver is None:
             return None
@@ -100,32 +100,32 @@ class FixedStep:
         return np.asarray(self.work.k[0])
 
     def use(self, scaled: ScaledChain) -> None:
-        """Go on with other values in the same slots, or with other effects."""
+        """Continue with other values in the same slots, or with other effects."""
         self.scaled = scaled
         self._no_samples = empty_samples(scaled, 0)
         self.drive = self._driver_table(scaled)
         self.work = self.work._replace(forces=scaled.forces(), simd=self.new_simd_workspace())
 
     def move(self, scaled: ScaledChain, steps: int) -> None:
-        """Become the stepper of another scene with the same effects, with this number of steps a period."""
+        """Become the stepper of another scene with the same effects, with this number of steps per period."""
         self.method = self.method._replace(steps_per_period=steps)
         self._every = self._every * steps // self.grid
         self.grid, self.h = steps, scaled.period / steps
-        if scaled.slots.chain is self.scaled.slots.chain:  # it differs only by its frequency: `scale_like`
+        if scaled.slots.chain is self.scaled.slots.chain:  # only the frequency differs: `scale_like`
             self.scaled, self.drive = scaled, self._driver_table(scaled)
         else:
             self.use(scaled)
 
     def prepare(self, y: np.ndarray) -> None:
-        """Begin from a new state: nothing is remembered of the last."""
+        """Start from a new state: nothing is kept from the last one."""
 
     def trajectory(self, y: np.ndarray) -> Trajectory:
-        """The state y with all that its kernels need."""
+        """Return the state y with everything that its kernels need."""
         return Trajectory(self.scaled.slots, DriveTable(self.drive, 2.0 * np.pi / self.grid, self.h), y,
                           self.work)
 
     def evaluate_at_phase(self, theta: float, y: np.ndarray, from_velocity: bool) -> None:
-        """Recompute driver state and dy/dt for y."""
+        """Recompute the driver's state and dy/dt for y."""
         self._evaluate_slope(theta, y, self.work.k[0], from_velocity)
 
     def _evaluate_slope(self, theta: float, y: np.ndarray, slope: np.ndarray, from_velocity: bool) -> None:
@@ -133,7 +133,7 @@ class FixedStep:
         _EVALUATE_AT_PHASE(self._type_key, self.scaled.slots, theta, y, slope, self.work.forces, from_velocity)
 
     def samples(self, y: np.ndarray, first: int, samples: Samples, out: KernelIO) -> tuple[int, int]:
-        """Advance from step `first`, filling the samples; returns status and number of rows filled."""
+        """Advance from step `first` and fill the samples; return status and number of rows filled."""
         part = steps_in_part(self.scaled.bodies)
         if self._every * (len(samples.displacement) - 1) > part:
             return samples_in_parts(self, y, first, self._every, part, samples, out)
@@ -141,7 +141,7 @@ class FixedStep:
 
     def periods(self, y: np.ndarray, strobes: np.ndarray, maxima: np.ndarray, watch: bool,
                 out: KernelIO) -> tuple[int, int]:
-        """Advance whole periods, filling strobes and largest forces (at no cost); returns status and periods done."""
+        """Advance by whole periods; fill strobes and, at no cost, largest forces; return status and periods done."""
         part = steps_in_part(self.scaled.bodies)
         if self.grid > part:
             return periods_in_parts(self, y, part, strobes, maxima, out)
@@ -150,18 +150,18 @@ class FixedStep:
         return status, done
 
     def run(self, y: np.ndarray, first: int, stride: int, samples: Samples, out: KernelIO) -> tuple[int, int]:
-        """One call of the kernel from step `first`, keeping every `stride`-th state; returns status and rows filled."""
+        """Call the kernel once from step `first`, keeping every `stride`-th state; return status and rows filled."""
         record = RunRecord(samples, *self._no_periods)
         status, done = _RUN_STEPS(self._type_key, self.method, self.trajectory(y), first, stride, record, out)
         return status, done
 
     def step_at(self, grid_index: int) -> int | None:
-        """Number of the step in its period that begins there."""
+        """Return the number, within its period, of the step that begins at this grid index."""
         return grid_index
 
     def locate_failure(self, y: np.ndarray, start: CallStart | None, done: float,
                        stop: Stop) -> tuple[int, int | None]:
-        """Bead and step: repeat the call up to the last instant known to be good, then bisect the steps after it.
+        """Find bead and step: repeat the call up to the last instant known to be good, then bisect the steps after it.
 
         Raises `Cancelled`.
         """
@@ -180,19 +180,20 @@ class FixedStep:
                 high = middle
             else:
                 low, here, slope = middle, state_there, slopes[0]
-        # each stage spreads to the next beads only: the earliest stage names the bead
+        # each stage only spreads to the adjacent beads: the earliest stage identifies the bead
         stages = self._rk4_slopes(here, slope, low % steps)
-        if not any(first_not_finite(k, bodies) for k in stages):  # what failed is not in the equations, as in a table
+        if not any(first_not_finite(k, bodies) for k in stages):  # the failure is outside the equations
             _, slopes = self._again(here, slope, low, high, stop)
             end, _ = self._again(here, slope, low, high, stop, vectors=True)
             stages = [*slopes[1:], end]
         return next((b for b in (first_not_finite(k, bodies) for k in stages) if b), 0), low % steps
 
     def _rk4_slopes(self, y: np.ndarray, slope: np.ndarray, step: int) -> list[np.ndarray]:
-        """Slopes of the later three stages of a step of RK4 that is not split, in the variables of the method.
+        """Return the slopes of the last three stages of an RK4 step without splits, in the method's variables.
 
-        They stand for the stages of any method: each spreads to the next beads only. A method's own stages are not
-        all kept: one that splits its step at events writes those of each part over those of the part before.
+        They represent the stages of any method, each of which only spreads to the adjacent beads. A method's own stages
+        are not all kept: a method that splits its step at events overwrites the stages of each part with those of the
+        next.
         """
         stages, before = [], slope
         for part in (0.5, 0.5, 1.0):
@@ -204,9 +205,9 @@ class FixedStep:
 
     def _again(self, y: np.ndarray, slope: np.ndarray, first: int, last: int, stop: Stop,
                vectors: bool = False) -> tuple[np.ndarray, np.ndarray]:
-        """State and slopes after steps `first` to `last`, counted through periods, by vectors or by scalar code."""
+        """Return state and slopes after steps `first` to `last`, counted across periods, by SIMD or scalar code."""
         n, now = self.grid, y.copy()
-        # new vectors: those of the failed call are full of what failed
+        # new vectors: those of the failed call contain non-finite numbers
         work = self.work._replace(simd=self.new_simd_workspace() if vectors else None, k=np.zeros_like(self.work.k))
         work.k[0] = slope
         trajectory = self.trajectory(now)._replace(workspace=work)
@@ -221,7 +222,7 @@ class FixedStep:
 
 
 class FixedStepInVelocity(FixedStep):
-    """Steps of a method in (u, v), whose equations have no energy account."""
+    """Fixed steps of a method in (u, v), whose equations have no energy account."""
 
     def _evaluate_slope(self, theta: float, y: np.ndarray, slope: np.ndarray, from_velocity: bool) -> None:
         """Recompute the driver's state in y, and write dy/dt into `slope`; velocities are part of y."""
@@ -232,19 +233,19 @@ class FixedStepInVelocity(FixedStep):
 
 @functools.lru_cache(maxsize=_TABLES_KEPT)
 def _half_steps(grid: int) -> tuple[np.ndarray, np.ndarray]:
-    """Sine and cosine of the drive phase at every half step (2n + 1,), for all chains with as many steps a period."""
-    # the table is faster, but that of a period of many steps would not fit into memory
+    """Return sine and cosine of the drive phase at every half step (2n + 1,), for all chains with this grid."""
+    # the table is faster, but for a period of many steps it would not fit into memory
     theta = np.pi * np.arange(2 * grid + 1 if grid <= _LARGEST_TABLE else 0) / grid
     return np.sin(theta), np.cos(theta)
 
 
 def chain_width(scaled: ScaledChain) -> int:
-    """Numbers in the vector that a chain's bodies fit into, 0 where there is none."""
+    """Return the width of the vector into which a chain's bodies fit; 0 if there is none."""
     return next((width for width in CHAIN_WIDTHS if scaled.bodies <= width), 0)
 
 
 def short_chain_workspace(scaled: ScaledChain, width: int) -> ShortChain:
-    """The workspace of a chain whose bodies fit into one vector."""
+    """Return the workspace of a chain whose bodies fit into one vector."""
     slots = scaled.slots
 
     def padded(values: np.ndarray) -> np.ndarray:
@@ -258,7 +259,7 @@ def short_chain_workspace(scaled: ScaledChain, width: int) -> ShortChain:
 
 
 def _long_chain(scaled: ScaledChain) -> LongChain:
-    """The workspace of a chain in blocks of eight bodies."""
+    """Return the workspace of a chain in blocks of eight bodies."""
     slots, blocks = scaled.slots, -(-scaled.bodies // BLOCK_WIDTH)
 
     def padded(values: np.ndarray) -> np.ndarray:

@@ -13,9 +13,9 @@ R = TypeVar("R")
 
 
 def flushed(function: Callable[P, R]) -> Callable[P, R]:
-    """The function, run with subnormal numbers taken for zero in this thread.
+    """Run a function with subnormal numbers treated as zero in this thread (decorator).
 
-    Ahead of a wave all numbers may be subnormal, and arithmetic with them is slow.
+    Ahead of a wave, all numbers may be subnormal, and arithmetic with them is slow.
     """
 
     @functools.wraps(function)

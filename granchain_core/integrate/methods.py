@@ -1,4 +1,4 @@
-"""The table of integration methods: orders, restrictions, costs, and the step or tolerance for an accuracy."""
+"""The table of integration methods: orders, restrictions and costs, and the step or tolerance for an accuracy."""
 
 from __future__ import annotations
 
@@ -19,30 +19,30 @@ from .fixed import SHORT_CHAIN, FixedStep, FixedStepInVelocity
 from .scaling import ScaledChain
 from .stepper import Stepper
 
-#: Fixed steps split at contact events: the method of pictures, curves and moderate accuracy.
+#: Fixed steps split at contact events: the method for pictures, curves and moderate accuracy.
 RK4_SPLIT = "rk4-split"
-#: Error control with located events: the method of the finest accuracy.
+#: Error control with located events: the method for the highest accuracy.
 DOP853 = "dop853"
 
-#: Above this relative error the fixed-step method is cheaper than dop853 (`granchain accuracy sec2` measures it).
+#: Above this relative error, the fixed-step method is cheaper than dop853 (`granchain accuracy sec2` measures it).
 FIXED_STEP_CHEAPER_ABOVE = 1e-10
-#: The fixed-step method's usual relative error at the default step.
+#: The usual relative error of the fixed-step method at the default step.
 _FIXED_STEP_ERROR = 7e-6
 #: About one random scene in a thousand has an error larger than this factor times the usual one (`python -m
 #: tests.numerics.stated_errors`).
 _ERROR_SPREAD = 8.0
-#: dop853's first tolerance per step, as a part of the accuracy asked for: errors of steps add up.
+#: dop853's first tolerance per step, as a part of the requested accuracy: errors of steps add up.
 _TOLERANCE_PER_ACCURACY = 0.1
-#: dop853's largest first tolerance per step, whatever accuracy is asked for.
+#: dop853's largest first tolerance per step, whatever accuracy is requested.
 _LARGEST_TOLERANCE = 1e-3
-#: The next finer tolerance is not below this, except as an eighth of the present one.
+#: The next finer tolerance is never below this, unless an eighth of the present one is.
 _SMALLEST_TOLERANCE = 1e-15
-#: Tolerance below which a smaller one gains nothing because of rounding.
+#: Tolerance below which rounding prevents any further gain.
 _FINEST_TOLERANCE = 2e-15
-#: dop853's tolerance where a chain that cuts tension is followed. The distance of neighbouring
-#: trajectories, 1e-8 in a Lyapunov exponent, must be far above its errors: at 1e-9 they changed exponents by 5e-3.
+#: dop853's tolerance for following a chain with tension cut. The distance between neighbouring trajectories, 1e-8 for a
+#: Lyapunov exponent, must be far above the method's errors: with 1e-9, they changed exponents by 5e-3.
 _FOLLOWING_TOLERANCE = 1e-11
-#: Refinement of the fixed-step method from which a larger one gains nothing because of rounding.
+#: Refinement of the fixed-step method from which rounding prevents any further gain.
 _FINEST_REFINEMENT = 256
 
 
@@ -55,10 +55,10 @@ class MethodSetting:
     tolerance: float = 0.0
 
     def finer(self) -> MethodSetting:
-        """The next finer setting: half the step, or a tolerance small enough that the error is smaller in practice.
+        """Return the next finer setting: half the step, or a tolerance small enough to reduce the error in practice.
 
-        With error control the error does not fall regularly with the tolerance: an eighth of it sometimes left the
-        error unchanged, so the next tolerance is a sixty-fourth.
+        With error control, the error does not fall regularly with the tolerance. An eighth of the tolerance sometimes
+        left the error unchanged, so the next tolerance is a sixty-fourth.
         """
         if METHODS[self.method].error_control:
             finer = min(max(self.tolerance / 64.0, _SMALLEST_TOLERANCE), self.tolerance / 8.0)
@@ -66,7 +66,7 @@ class MethodSetting:
         return MethodSetting(self.method, 2 * self.refine)
 
     def finer_than(self, scaled: ScaledChain, samples: int) -> MethodSetting:
-        """The next finer setting that really has more steps: they are rounded up to a multiple of the samples."""
+        """Return the next finer setting that has more steps after rounding up to a multiple of the samples."""
         finer = self.finer()
         if not METHODS[self.method].error_control:
             while finer.steps_per_period(scaled, samples) == self.steps_per_period(scaled, samples):
@@ -81,11 +81,11 @@ class MethodSetting:
         return self.refine >= _FINEST_REFINEMENT
 
     def steps_per_period(self, scaled: ScaledChain, samples: int) -> int:
-        """Steps in one period for a fixed-step method, a multiple of `samples`."""
+        """Return the steps per period of a fixed-step method, a multiple of `samples`."""
         return math.ceil(self.refine * scaled.steps_per_period(samples) / samples) * samples
 
     def step(self, scaled: ScaledChain, samples: int) -> float:
-        """The step of a fixed-step method, in scaled units."""
+        """Return the step of a fixed-step method, in scaled units."""
         return scaled.period / self.steps_per_period(scaled, samples)
 
 
@@ -93,9 +93,8 @@ class MethodSetting:
 class StepCost:
     """Seconds per accepted step: `fixed`, plus `per_contact` for each contact, rejected steps included.
 
-    For error control: `steps_per_time` steps in a unit of scaled time at tolerance 1e-8, growing with
-    tolerance^(−`power`).
-    Measured on `sec2` and `rig`.
+    For error control: `steps_per_time` steps per unit of scaled time at tolerance 1e-8, growing as
+    tolerance^(−`power`). Measured on `sec2` and `rig`.
     """
 
     fixed: float
@@ -108,37 +107,37 @@ class StepCost:
 class Method:
     """A method of integration: a row of `METHODS`.
 
-    `tests/numerics/test_orders.py` derives the orders in theory and measures the observed ones: the smallest of all
-    damping laws, and of methods with error control per mean step.
+    `tests/numerics/test_orders.py` derives the theoretical orders and measures the observed ones: the smallest over all
+    damping laws, and for methods with error control with respect to the mean step.
 
     Attributes
     ----------
     name, title : str
-        What it is called on the command line, and in tables.
+        Its name on the command line, and in tables.
     order, order_at_events : float
-        Orders in theory with damping: where no contact opens or closes, and across contact events.
+        Theoretical orders with damping: where no contact opens or closes, and across contact events.
     observed_smooth, observed_order, observed_with_cut : float
-        Observed orders where no contact opens or closes; across contact events, at the accuracies the method is used
-        for; and where tension is cut, NaN where that is not measured or the method refuses the cut. Methods that
-        `run_error_controlled` runs end their steps at the kink of a cut force, F = 0.
+        Observed orders where no contact opens or closes; across contact events, at the accuracies for which the method
+        is used; and with tension cut (NaN if not measured, or if the method refuses the cut). Methods run by
+        `run_error_controlled` end their steps at the kink of a cut force, F = 0.
     error_control : bool
-        Whether an error control sets the steps.
+        Whether error control chooses the steps.
     symplectic : bool
         Whether it is symplectic without damping.
     restrictions, reference : str
-        What it cannot do; its source.
+        Its restrictions; its source.
     stepper : callable
         Makes the method's `Stepper` from a setting, a scaled chain and the samples per period.
     cost : StepCost
         Time of a step.
     usual_error : float
-        Relative error at the default step, or over the tolerance; 0 where none is known.
+        Relative error at the default step, or in units of the tolerance; 0 if unknown.
     converges_regularly : bool
-        Whether the error falls by the method's order at every refinement, contact events or not.
+        Whether the error falls by the method's order at every refinement, with or without contact events.
     variables : str
         "uw" or "uv".
     has_account : bool
-        Whether its equations and kernels know the energy account.
+        Whether its equations and kernels support the energy account.
     """
 
     name: str
@@ -161,19 +160,19 @@ class Method:
 
 
 def _fixed(kind: Any, simd: bool = False) -> Callable[[MethodSetting, ScaledChain, int], Stepper]:
-    """A function that makes the stepper of a method with fixed steps in (u, w)."""
+    """Return a function that makes the stepper of a method with fixed steps in (u, w)."""
     return lambda setting, scaled, samples: FixedStep(kind(setting.steps_per_period(scaled, samples)), scaled,
                                                        samples, simd)
 
 
 def _in_velocity(kind: Any) -> Callable[[MethodSetting, ScaledChain, int], Stepper]:
-    """A function that makes the stepper of a method with fixed steps in (u, v)."""
+    """Return a function that makes the stepper of a method with fixed steps in (u, v)."""
     return lambda setting, scaled, samples: FixedStepInVelocity(kind(setting.steps_per_period(scaled, samples)),
                                                                  scaled, samples)
 
 
 def _error_controlled(kind: Any) -> Callable[[MethodSetting, ScaledChain, int], Stepper]:
-    """A function that makes the stepper of a method with error control."""
+    """Return a function that makes the stepper of a method with error control."""
     return lambda setting, scaled, samples: kind(setting.tolerance, scaled, samples)
 
 
@@ -185,7 +184,7 @@ METHODS: dict[str, Method] = {
             order=4.0, order_at_events=2.0, observed_smooth=4.0, observed_order=2.0,
             error_control=False, symplectic=False,
             restrictions="fixed step; order 2 at contact events; a touch shorter than a step is not resolved, and the "
-                         "jump of its force is taken from the ends of the step",
+                         "jump of its force is computed from the ends of the step",
             reference="Kutta 1901; w-variables: docs/model.md", stepper=_fixed(Rk4), cost=StepCost(350e-9, 35e-9),
             observed_with_cut=1.0),
         Method(
@@ -230,7 +229,7 @@ METHODS: dict[str, Method] = {
     )
 }
 
-#: A largest force is at a jump if the largest jump is at least this part of it.
+#: A largest force counts as being at a jump if the largest jump is at least this part of it.
 AT_A_JUMP = 0.95
 #: Quadrature error of ∫ s^{3/2} in units of h^{5/2}: 0.0024 over the step after a closing, with room for several
 #: contacts.
@@ -240,28 +239,28 @@ _COARSEST_REFINEMENT = 0.5
 
 
 def fixed_step_setting(refine: float = 1) -> MethodSetting:
-    """The fixed-step method with `refine` times the default steps."""
+    """Return the fixed-step method with `refine` times the default steps."""
     return MethodSetting(RK4_SPLIT, refine)
 
 
 def dop853_setting(tolerance: float = 0.0) -> MethodSetting:
-    """dop853 at a relative tolerance per step."""
+    """Return dop853 with a relative tolerance per step."""
     return MethodSetting(DOP853, tolerance=tolerance)
 
 
 def following_setting(tension_cut: bool) -> MethodSetting:
-    """The setting that follows a chain where no accuracy is asked for: to a steady state, and through sections of it.
+    """Return the setting for following a chain, to a steady state or through a section, where no accuracy is requested.
 
-    With tension cut the fixed-step method has order 1. At its default step it is wrong by about a per cent, comes to
-    cycles that do not exist, and may lead to another attractor. A curve takes no longer with dop853.
+    With tension cut, the fixed-step method has order 1. At its default step, its error is about one per cent, it
+    converges to cycles that do not exist, and it may lead to another attractor. A curve takes no longer with dop853.
     """
     return dop853_setting(_FOLLOWING_TOLERANCE) if tension_cut else fixed_step_setting()
 
 
 def method_for(accuracy: float, tension_cut: bool = False) -> MethodSetting:
-    """The first setting to try for a relative error of `accuracy`."""
-    if accuracy >= FIXED_STEP_CHEAPER_ABOVE and not tension_cut:  # with a cut the fixed-step method has order 1
-        # the order without events, 4, where `typical_error` has the observed one: a guess that halvings refine
+    """Return the first setting to try for a relative error of `accuracy`."""
+    if accuracy >= FIXED_STEP_CHEAPER_ABOVE and not tension_cut:  # with tension cut, the fixed-step method has order 1
+        # the order without events, 4, instead of the observed order of `typical_error`: a guess that halvings refine
         return fixed_step_setting(max(_COARSEST_REFINEMENT, (_FIXED_STEP_ERROR / accuracy) ** 0.25))
     return dop853_setting(_first_tolerance(accuracy))
 
@@ -271,10 +270,11 @@ def _first_tolerance(accuracy: float) -> float:
 
 
 def typical_error(setting: MethodSetting) -> float:
-    """The relative error that few scenes exceed with this setting; 0 for methods of which none is known.
+    """Return the relative error that few scenes exceed with this setting; 0 for methods for which none is known.
 
-    With fixed steps it falls by the observed order: of 80 random chains 13 to 21 exceed it at 1 to 32 times the default
-    steps, most of them chaotic. By the order of theory where no contact opens or closes it would be 15 to 25.
+    With fixed steps, it falls by the observed order: of 80 random chains, 13 to 21 exceed it at 1 to 32 times the
+    default steps, most of them chaotic. By the theoretical order where no contact opens or closes, it would be 15 to
+    25.
     """
     method = METHODS[setting.method]
     if method.error_control:
@@ -284,14 +284,14 @@ def typical_error(setting: MethodSetting) -> float:
 
 def jump_errors(setting: MethodSetting, scaled: ScaledChain, step: float, jumps: np.ndarray,
                 maxima: np.ndarray) -> np.ndarray:
-    """Lower limits (3,) of the stated relative errors of the largest forces where these are at jumps (2,).
+    """Return lower limits (3,) of the stated relative errors of largest forces that are at jumps (2,).
 
     All in scaled units.
 
-    At the end of a step that was split at a closing its quadrature error and those of the next two steps are
-    subtracted, the latter before they arise. If another contact closes in between, its momentum is off by a part of
-    K v^{3/2} h^{5/2} (contact_events.py), hence its rate v, relatively, by a part of K √v h^{5/2}/m. The sign changes
-    with the step size, so the difference of two computations does not bound it.
+    At the end of a step that was split at a closing, the quadrature errors of this step and of the next two are
+    subtracted, the latter before they arise. If another contact closes in between, its momentum is off by a fraction of
+    K v^{3/2} h^{5/2} (contact_events.py). The relative error of its rate v is therefore a fraction of K √v h^{5/2}/m.
+    The sign changes with the step size, so the difference of two computations does not bound this error.
     """
     errors = np.zeros(3)
     if setting.method == RK4_SPLIT and scaled.slots.dissipation is not None:
@@ -304,9 +304,9 @@ def jump_errors(setting: MethodSetting, scaled: ScaledChain, step: float, jumps:
 
 
 def setting_of(name: str, accuracy: float) -> MethodSetting:
-    """The first setting of the method called `name` for `accuracy`; `BadInput` for a method that does not exist.
+    """Return the first setting of the method `name` for `accuracy`; raise `BadInput` for an unknown method.
 
-    A method with fixed steps begins with its default steps: of most of them no usual error is known.
+    A method with fixed steps begins with its default steps, because for most of them no usual error is known.
     """
     if name not in METHODS:
         raise unknown_name("method", name, METHODS)

@@ -1,7 +1,7 @@
-"""Long kernel calls divided into parts of some hundredths of a second, between which other computations may run.
+"""Long kernel calls divided into parts of a few hundredths of a second, between which other computations can run.
 
-A kernel reads the stop flag every `STEPS_BETWEEN_STOP_CHECKS` steps (kernels/status.py), which is milliseconds for
-eleven beads and seconds for ten thousand. How a call is divided depends on the numbers of beads and steps alone, so
+A kernel reads the stop flag every `STEPS_BETWEEN_STOP_CHECKS` steps (kernels/status.py), which takes milliseconds for
+eleven beads and seconds for ten thousand. The division of a call depends only on the numbers of beads and steps, so
 results do not depend on the machine's speed.
 """
 
@@ -21,7 +21,7 @@ from .stepper import empty_samples
 
 
 class InParts(Protocol):
-    """A method with `grid` fixed steps in a period."""
+    """A method with `grid` fixed steps per period."""
 
     scaled: ScaledChain
     grid: int
@@ -32,17 +32,17 @@ class InParts(Protocol):
         """The slope dy/dt (M,) at the present state."""
 
     def run(self, y: np.ndarray, first: int, stride: int, samples: Samples, out: KernelIO) -> tuple[int, int]:
-        """One call of the kernel from step `first`, keeping every `stride`-th state; returns status and rows filled."""
+        """Call the kernel once from step `first`, keeping every `stride`-th state; return status and rows filled."""
 
 
 def steps_in_part(bodies: int) -> int:
-    """Most steps in one call of the kernel."""
+    """Return the most steps in one call of the kernel."""
     return max(1, WORK_BETWEEN_STOP_CHECKS // bodies)
 
 
 def samples_in_parts(stepper: InParts, y: np.ndarray, first: int, stride: int, part: int, samples: Samples,
                      out: KernelIO) -> tuple[int, int]:
-    """Fill the samples; returns status and number of rows filled."""
+    """Fill the samples; return status and number of rows filled."""
     rows, at_once = len(samples.displacement), max(1, part // stride)
     row, step = 0, first
     while row < rows - 1:
@@ -54,7 +54,7 @@ def samples_in_parts(stepper: InParts, y: np.ndarray, first: int, stride: int, p
         else:
             status = _stride(stepper, y, step, stride, part, some, out)
             done = 2 if status == DONE else 1
-        out.log.closings[closed : int(out.log.counts[CLOSED]), 0] += row  # the kernel counts samples from 0
+        out.log.closings[closed : int(out.log.counts[CLOSED]), 0] += row  # the kernel numbers samples from 0
         if status != DONE:
             return status, row + done
         step = (step + (last - row) * stride) % stepper.grid
@@ -65,7 +65,7 @@ def samples_in_parts(stepper: InParts, y: np.ndarray, first: int, stride: int, p
 
 def periods_in_parts(stepper: InParts, y: np.ndarray, part: int, strobes: np.ndarray, maxima: np.ndarray,
                      out: KernelIO) -> tuple[int, int]:
-    """Advance whole periods from phase 0, filling strobes and largest forces; returns status and periods done."""
+    """Advance by whole periods from phase 0; fill strobes and largest forces; return status and periods done."""
     slope = stepper.slope
     write_strobe(y, slope, strobes[0])
     for i in range(len(maxima)):
@@ -80,7 +80,7 @@ def periods_in_parts(stepper: InParts, y: np.ndarray, part: int, strobes: np.nda
 
 def _stride(stepper: InParts, y: np.ndarray, first: int, stride: int, part: int, samples: Samples,
             out: KernelIO) -> int:
-    """From one sample (2 rows) to the next in several calls; returns the status."""
+    """Advance from one sample to the next (two rows) in several calls; return the status."""
     scratch = empty_samples(stepper.scaled, 2)
     for j in range(0, stride, part):
         steps = min(part, stride - j)
@@ -99,6 +99,6 @@ def _stride(stepper: InParts, y: np.ndarray, first: int, stride: int, part: int,
 
 
 def _rows(samples: Samples, first: int, end: int) -> Samples:
-    """The rows as views, not copies."""
+    """Return these rows as views."""
     energy = None if samples.energy is None else samples.energy[first:end]
     return Samples(samples.displacement[first:end], samples.velocity[first:end], samples.force[first:end], energy)

@@ -1,4 +1,4 @@
-"""The interface of a method of integration, as the engine uses it."""
+"""The interface of an integration method, as the engine uses it."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from ..kernels.equations.motion import Trajectory
 from ..kernels.samples import KernelIO, Samples
 from .scaling import ScaledChain
 
-#: Beginning of a call: state and slope (M,), and the grid index.
+#: The start of a call: state and slope (M,), and the grid index.
 CallStart = tuple[np.ndarray, np.ndarray, int]
 
 
 class ErrorControl(Protocol):
-    """The part of the workspace of a method with error control that a checkpoint keeps.
+    """The part of the workspace of a method with error control that a checkpoint saves.
 
-    `next_step` (1,) is the step that it tries next; `scale` (2,) the displacement and the w to which its tolerance is
+    `next_step` (1,) is the next step to try; `scale` (2,) are the displacement and the w to which the tolerance is
     relative.
     """
 
@@ -33,10 +33,10 @@ class ErrorControl(Protocol):
 
 
 class Stepper(Protocol):
-    """A method with its arrays. `grid` is the number of its grid points in a drive period, where calls may end.
+    """A method with its arrays. `grid` is the number of grid points per drive period; calls may end at these points.
 
-    A method that takes long calls in parts calls `pause` between them. `method` is the slot, and `work` the workspace,
-    that its kernels take; the workspace of one with error control has the parts of `ErrorControl`.
+    A method that divides long calls into parts calls `pause` between them. `method` is the slot, and `work` the
+    workspace, that its kernels take; with error control, the workspace has the parts of `ErrorControl`.
     """
 
     scaled: ScaledChain
@@ -56,37 +56,37 @@ class Stepper(Protocol):
         """The slope dy/dt (M,) at the present state: a view, which a caller may write into."""
 
     def use(self, scaled: ScaledChain) -> None:
-        """Go on with other values in the same slots, or with other effects."""
+        """Continue with other values in the same slots, or with other effects."""
 
     def prepare(self, y: np.ndarray) -> None:
-        """Begin from a new state."""
+        """Start from a new state."""
 
     def trajectory(self, y: np.ndarray) -> Trajectory:
-        """The state y with all that the method's kernels need."""
+        """Return the state y with everything that the method's kernels need."""
 
     def evaluate_at_phase(self, theta: float, y: np.ndarray, from_velocity: bool) -> None:
-        """Put the driver and the slope in step with y at drive phase `theta`."""
+        """Recompute the driver's state and dy/dt for y at drive phase `theta`."""
 
     def samples(self, y: np.ndarray, first: int, samples: Samples, out: KernelIO) -> tuple[int, int]:
-        """Advance from grid index `first`, filling the samples; returns status and number of rows filled."""
+        """Advance from grid index `first` and fill the samples; return status and number of rows filled."""
 
     def periods(self, y: np.ndarray, strobes: np.ndarray, maxima: np.ndarray, watch: bool,
                 out: KernelIO) -> tuple[int, int]:
-        """Advance whole periods, filling strobes and, with `watch`, largest forces; returns status and periods done."""
+        """Advance by whole periods; fill strobes and, with `watch`, largest forces; return status and periods done."""
 
     def step_at(self, grid_index: int) -> int | None:
-        """Number of the step in its period that begins there; None where steps are not counted."""
+        """Return the number, in its period, of the step that begins at this index; None if steps are not counted."""
 
     def locate_failure(self, y: np.ndarray, start: CallStart | None, done: float,
                        stop: Stop) -> tuple[int, int | None]:
-        """Bead and step in which the numbers failed, after `done` periods of a call from `start`, if that is known.
+        """Return bead and step in which the numbers failed, after `done` periods of a call from `start`, if known.
 
-        Raises `Cancelled`: the call may be repeated.
+        Raises `Cancelled`, since the call may be repeated.
         """
 
 
 def empty_samples(scaled: ScaledChain, rows: int) -> Samples:
-    """Arrays for `rows` samples in scaled units."""
+    """Return arrays for `rows` samples in scaled units."""
     n = scaled.beads
     energy = np.zeros((rows, 3)) if scaled.slots.account is not None else None
     return Samples(np.zeros((rows, n)), np.zeros((rows, n)), np.zeros((rows, n + 1)), energy)

@@ -1,1 +1,1 @@
-"""Compiled code: effects, equations and methods, on floats and arrays; it knows nothing of the rest of the core."""
+"""Compiled code: effects, equations and methods, on floats and arrays, independent of the rest of the core."""

@@ -1,4 +1,4 @@
-"""BATCH_SIZE, the number of scenes in one vector of a batch: 8 with AVX-512, else 4.
+"""BATCH_SIZE, the number of scenes in one vector of a batch: 8 with AVX-512, otherwise 4.
 
 Where a register holds eight doubles (AVX-512), a batch has eight scenes. Zen 4 executes an instruction on such
 registers in two halves, and is still faster with eight scenes than with four, because only half as many instructions
@@ -17,17 +17,17 @@ from numba.core import codegen
 
 from ..errors import BadInput
 
-#: Environment variable that sets the number of scenes instead, and its older name, which still works.
+#: Environment variable that overrides this number, and its older name, which still works.
 VARIABLE, OLDER_VARIABLE = "GRANCHAIN_BATCH_SIZE", "GRANCHAIN_LANES"
-#: Numbers of scenes there are kernels for.
+#: Numbers of scenes for which there are kernels.
 CHOICES = (4, 8)
 
 
 def has_avx512() -> bool:
-    """Whether kernels are compiled for a machine with AVX-512: this one, or the one that Numba's settings name.
+    """Return whether kernels are compiled for AVX-512: for this machine, or the one in Numba's settings.
 
-    Where they name a processor without its features (`NUMBA_CPU_NAME` alone), Numba keeps those of this machine; then
-    four scenes are chosen, which are right on every processor.
+    If the settings name a processor but not its features (`NUMBA_CPU_NAME` alone), Numba keeps the features of this
+    machine. Four scenes, which work on every processor, are chosen then.
     """
     if numba.config.CPU_FEATURES is not None:
         return "+avx512f" in numba.config.CPU_FEATURES.split(",")
@@ -35,23 +35,23 @@ def has_avx512() -> bool:
 
 
 def _host_features() -> str:
-    """Features of this machine that Numba uses; empty if Numba has no such function."""
+    """Return the features of this machine that Numba uses; empty if Numba has no such function."""
     features: str = getattr(codegen, "get_host_cpu_features", str)()
     return features
 
 
 def is_x86() -> bool:
-    """Whether kernels are compiled for an x86 of 64 bits, whatever its features: it has `rsqrtps`."""
+    """Return whether kernels are compiled for a 64-bit x86, all of which have `rsqrtps`."""
     return llvmlite.binding.get_process_triple().startswith("x86_64")
 
 
 def processor() -> str:
-    """The processor that kernels are compiled for, as LLVM names it."""
+    """Return LLVM's name of the processor that kernels are compiled for."""
     return numba.config.CPU_NAME or llvmlite.binding.get_host_cpu_name()
 
 
 def size_from(chosen: str | None, variable: str = VARIABLE) -> int:
-    """Scenes in one vector: `chosen`, the value of an environment variable, or if it is empty what suits the machine.
+    """Return the number of scenes in a vector: `chosen`, from an environment variable, or if empty the machine's best.
 
     Raises
     ------
@@ -67,7 +67,7 @@ def size_from(chosen: str | None, variable: str = VARIABLE) -> int:
 
 
 def _batch_size_here() -> int:
-    """The size that the environment sets, or what suits the machine."""
+    """Return the size set in the environment, or the best size for this machine."""
     variable = VARIABLE if os.environ.get(VARIABLE) else OLDER_VARIABLE
     return size_from(os.environ.get(variable), variable)
 
@@ -76,5 +76,5 @@ BATCH_SIZE = _batch_size_here()
 
 
 def machine() -> str:
-    """The processor and the number of scenes, in words."""
+    """Describe the processor and the number of scenes in words."""
     return f"{processor()}, {BATCH_SIZE} scenes in one vector of a batch"

@@ -2,8 +2,8 @@
 
 Equation   m_i v̇_i = F_{i-1} − F_i + P_i,  F_c = K δ^{3/2} + g(δ) δ̇ H(δ)         Zhang et al. 2016, eq. (1)
 Purpose    the usual first attempt, against which the gain of w-variables and located events is measured
-The second row of the state holds v here, not w; for the rest of the program nothing else differs. Importing this module
-registers the two methods' code for `step` of rk4/step.py (integrate/fixed.py does).
+The second row of the state is v here, not w; nothing else differs for the rest of the program. Importing this module
+registers the two methods' code for `step` of rk4/step.py; integrate/fixed.py imports it.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class VerletNaive(NamedTuple):
 
 @kernel
 def naive_motion(slots, u0, v0, y, dy, forces):
-    """dy/dτ in (u, v); leaves the elastic forces (with those that a cut adds) in forces.e, as `motion` does."""
+    """Compute dy/dτ in (u, v); leave the elastic forces, with those that a cut adds, in forces.e, as `motion` does."""
     inverse_mass = slots.chain.inverse_mass
     bodies = inverse_mass.size
     y[0], dy[0] = u0, v0

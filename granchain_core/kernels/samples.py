@@ -1,4 +1,4 @@
-"""What a run records: samples, strobes, forces and the counts of its costs; the first bead that is not finite."""
+"""The record of a run: samples, strobes, forces and cost counters; also the check for numbers that are not finite."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Samples(NamedTuple):
 
 
 class KernelIO(NamedTuple):
-    """What a kernel writes besides its result, and the stop flag (1,) it reads; `counts` (4,) as in status.py."""
+    """Arrays that a kernel writes besides its result, and its stop flag (1,); `counts` (4,) as in status.py."""
 
     log: ForceLog
     counts: np.ndarray
@@ -47,7 +47,7 @@ def write_sample(slots, row, y, dy, e, samples):
 
 @by_slot
 def write_account(account, slots, row, y, dy, samples):
-    """Write stored energy, work and loss of one sample. Effect absent: there is no account and no array for it."""
+    """Write stored energy, work and loss of one sample. Effect absent: nothing, since there is no array for them."""
 
 
 @write_account.of(EnergyAccount)
@@ -60,7 +60,7 @@ def _(account, slots, row, y, dy, samples):
 
 @brief_kernel
 def first_not_finite(y, bodies):
-    """Number of the first bead whose displacement or w is not finite, or 0."""
+    """Return the number of the first bead whose displacement or w is not finite, or 0."""
     for i in range(1, bodies - 1):
         if not (np.isfinite(y[i]) and np.isfinite(y[bodies + i])):
             return i
@@ -69,7 +69,7 @@ def first_not_finite(y, bodies):
 
 @internal
 def write_strobe(y, dy, strobe):
-    """Displacements and velocities of the beads at one instant; driver and wall stay zero."""
+    """Write the beads' displacements and velocities at one instant; those of driver and wall stay zero."""
     for i in range(1, strobe.shape[1] - 1):
         strobe[0, i] = y[i]
         strobe[1, i] = dy[i]

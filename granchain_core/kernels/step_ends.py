@@ -1,11 +1,11 @@
-"""Rows of the arrays that hold the contacts at both ends of a step that may be split at a contact event."""
+"""Rows of the arrays that describe the contacts at both ends of a step, which may be split at a contact event."""
 
 from __future__ import annotations
 
-#: Overlaps and their rates at the step's two ends, then the quadrature errors of every contact's impulse and, with
-#: damping that grows with the overlap, of ∫G dt; and the number of rows.
+#: Overlaps and their rates at the step's two ends, then the quadrature errors of each contact's impulse and, with
+#: damping that grows with the overlap, of ∫G dt. The last name is the number of rows.
 OVERLAP, RATE, OVERLAP_END, RATE_END, MOMENTUM_ERROR, DISPLACEMENT_ERROR, END_ROWS = range(7)
-#: Rows of the overlaps and of their rates at the beginning (0) and at the end (1).
+#: Rows of the overlaps and of their rates at the start (0) and at the end (1).
 OVERLAP_AT, RATE_AT = (OVERLAP, OVERLAP_END), (RATE, RATE_END)
 #: Size of an overlap of which only the sign matters: its force is negligible.
 TINY = 1e-300

@@ -119,7 +119,7 @@ try:
 except BadInput as problem:
     print(can_share_batch(scene("drag")), problem)
 """)
-            assert printed.startswith(shares) and "use dop853 for this one. It does not know: drag." in printed
+            assert printed.startswith(shares) and "use dop853 for this one. It does not support: drag." in printed
     finally:
         file.write_text(text, encoding="utf-8")
 

@@ -79,7 +79,7 @@ def test_a_brief_touch_inside_a_step_throws_the_bead(depth):
 
 @pytest.mark.parametrize("knobs", [{"tension": "cut"}, {"N": 40}], ids=str)
 def test_what_vectors_do_not_know_is_refused(knobs):
-    with pytest.raises(BadInput, match=r"up to 30 beads .* without tension cut and energy account; use dop853"):
+    with pytest.raises(BadInput, match=r"up to 30 beads .* without a tension cut or an energy account; use dop853"):
         recorded("dop853-root", 1e-6, **knobs)
 
 

@@ -83,7 +83,7 @@ def test_every_method_moves_a_chain_as_dop853_does_or_refuses_it(name: str, meth
         error = difference(motion(name, setting), true)
     except BadInput as refusal:
         assert method == "dop853-root" and name not in KNOWN
-        assert f"use dop853 for this one. It does not know: {name}." in str(refusal)
+        assert f"use dop853 for this one. It does not support: {name}." in str(refusal)
         return
     allowed = _PER_TOLERANCE * _TOLERANCE if METHODS[method].error_control else of_its_order(setting, chain(name))
     print(f"{method}, {name}: {error:.1e} of {allowed:.1e}")

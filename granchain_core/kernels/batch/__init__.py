@@ -1,1 +1,1 @@
-"""Batches: several scenes at once, each a member in one SIMD lane."""
+"""Batches: several scenes at once, each a member in its own SIMD lane."""

@@ -1,4 +1,4 @@
-"""A batch member's beginning: at a state that the caller set, or, with fine steps, on the orbit of its coarse run."""
+"""The beginning of a batch member: at a state set by the caller, or with fine steps on its coarse run's orbit."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from .record import append_strobe, forget_last_step, largest_force
 
 #: [no threshold] A period that no member reaches.
 NEVER = 2**63 - 1
-#: [period n] A batch: drive periods without extrapolation after the first one that did not help; doubled at each
-#: further one. The record of strobes and the count of periods then go on from the state before the attempt
-#: (`undo_extrapolation` in kernels/batch/record.py).
+#: [period n] A batch: drive periods without extrapolation after the first extrapolation that did not help; doubled
+#: after each further one. The record of strobes and the count of periods then continue from the state before the
+#: extrapolation (`undo_extrapolation` in kernels/batch/record.py).
 _FIRST_PAUSE = 16
 #: [period n] A batch: fewest orbits between two checks of the fine run.
 _FEWEST_ORBITS = 2
-#: [period n] A batch: largest part of the coarse orbit's error that may be left in the fine run.
+#: [period n] A batch: largest part of the coarse orbit's error that may remain in the fine run.
 COARSE_ERROR_LEFT = 0.02
 #: [period n] A batch: lower bound of the factor by which the coarse orbit's error is assumed to shrink per orbit.
 _LEAST_CONTRACTION = 1e-3
-#: Columns of `last_check`: period in drive periods, contraction factor per orbit, distance left to the orbit. The last
-#: name is the number of columns.
+#: Columns of `last_check`: period in drive periods, contraction factor per orbit, remaining distance to the orbit. The
+#: last name is the number of columns.
 CHECK_PERIOD, CHECK_CONTRACTION, CHECK_DISTANCE, CHECK_COLUMNS = range(4)
 #: Columns of `fine_record`: the orbit's period and contraction factor, the coarse run's three largest forces (from
 #: FINE_FORCES on), orbits between two extrapolations, extrapolations so far, 1 if changes grew before one.
@@ -31,17 +31,17 @@ FINE_PERIOD, FINE_CONTRACTION, FINE_FORCES, FINE_ORBITS_BETWEEN, FINE_EXTRAPOLAT
 #: [no threshold] Number of columns of `fine_record`.
 FINE_COLUMNS = 8
 #: Columns of `coarse_orbit` after those of `last_check`: slowest contraction before an extrapolation (0 without one),
-#: drive periods run. The last name is the number of columns.
+#: number of drive periods run. The last name is the number of columns.
 ORBIT_SLOWEST_CONTRACTION, ORBIT_PERIODS, ORBIT_COLUMNS = CHECK_COLUMNS, CHECK_COLUMNS + 1, CHECK_COLUMNS + 2
 
 
 @internal
 def begin_member(state, member):
-    """Begin at the member's `y`, at phase 0, with `steps` steps a period and an empty record.
+    """Begin at the member's `y`, at phase 0, with `steps` steps per period and an empty record.
 
-    Not cleared is what is always written before it is read: `record.maxima`, `record.strobes`, `search.state_before`,
-    `search.coarse_orbit`, `pairs.distance`, `pairs.growth`. The caller, `Batch.put`, sets the rest of `schedule`, y and
-    the overlaps at rest, `search.fine_record` and `pairs.neighbour`.
+    Arrays that are always written before they are read are not cleared: `record.maxima`, `record.strobes`,
+    `search.state_before`, `search.coarse_orbit`, `pairs.distance`, `pairs.growth`. The caller, `Batch.put`, sets the
+    rest of `schedule`, y and the overlaps at rest, `search.fine_record` and `pairs.neighbour`.
     """
     motion, schedule, record, search = state.motion, state.schedule, state.record, state.search
     half = pi / schedule.steps[member]
@@ -64,7 +64,7 @@ def begin_member(state, member):
 
 @inline_numba
 def begin_fine_run(state, member):
-    """Go on from the orbit that the coarse run found, with fine steps; `coarse_orbit` keeps what it found.
+    """Continue with fine steps from the orbit that the coarse run found; its results are kept in `coarse_orbit`.
 
     The fine run is checked once the difference from the coarse orbit has decayed.
     """
@@ -74,7 +74,7 @@ def begin_fine_run(state, member):
     orbit[ORBIT_SLOWEST_CONTRACTION] = search.slowest_contraction[member]
     orbit[ORBIT_PERIODS] = state.record.periods[member]
     period = int(orbit[CHECK_PERIOD])
-    if search.slowest_contraction[member] == 0.0:  # else they were kept when the orbit was perturbed
+    if search.slowest_contraction[member] == 0.0:  # otherwise they were kept when the orbit was perturbed
         for q in range(3):
             fine[FINE_FORCES + q] = largest_force(state.record, member, period, q)
     contraction = coarse_contraction(orbit[CHECK_CONTRACTION])
@@ -88,11 +88,11 @@ def begin_fine_run(state, member):
 
 @internal
 def coarse_contraction(observed):
-    """Factor by which the coarse orbit's error is taken to shrink per orbit, from the observed one."""
+    """Factor by which the coarse orbit's error is assumed to shrink per orbit, from the observed factor."""
     return max(_LEAST_CONTRACTION, assumed_contraction(observed))
 
 
 @internal
 def orbits_until_checked(contraction):
-    """Orbits until a fine run is checked: then `COARSE_ERROR_LEFT` of the coarse orbit's error is left, at most."""
+    """Orbits until a fine run is checked: at most `COARSE_ERROR_LEFT` of the coarse orbit's error remains then."""
     return min(ORBITS, max(_FEWEST_ORBITS, ceil(log(COARSE_ERROR_LEFT) / log(contraction))))

@@ -1,16 +1,16 @@
-"""Checks of a batch member's regime, between its periods: is its motion periodic, may its transient be extrapolated?
+"""Checks of a batch member's regime between its periods: is its motion periodic, may its transient be extrapolated?
 
 Coarse run. An extrapolation reaches at most three times the distance that the contraction factor predicts
-(`FARTHEST_EXTRAPOLATION`). If the change per orbit is not smaller after it than before, the extrapolation is undone,
-and the record goes on from where it was. A chain may approach an unstable orbit before it leaves it, and an
+(`FARTHEST_EXTRAPOLATION`). If the change per orbit is not smaller afterwards, the extrapolation is undone, and the
+record continues from the state before it. A chain may approach an unstable orbit before leaving it, and an
 extrapolation could end on that orbit. So an orbit found by extrapolation is perturbed, and accepted only if the
 perturbation decays. If it decays slowly, multipliers decide (steady/batch/job.py).
 
-Fine run. It starts on the orbit of the coarse run and is extrapolated to its own orbit; each extrapolation is checked
+Fine run. It starts on the orbit of the coarse run and is extrapolated to its own orbit. Each extrapolation is checked
 in the same way.
 
 `begin_or_check_member` is the same for every structure. It takes longer to compile than the steps of a batch, so it is
-a kernel of its own, which `run_batch` calls by its address.
+a kernel of its own, which `run_batch` calls by address.
 """
 
 from __future__ import annotations
@@ -48,43 +48,43 @@ from .begin import (
 )
 from .record import largest_force, move_member, undo_extrapolation
 
-#: [period n] A batch: most strobes on which a period is looked for.
+#: [period n] A batch: most strobes that are searched for a period.
 MOST_STROBES_SEARCHED = 4 * LONGEST_PERIOD + 1
-#: [period n] A batch: an approach is extrapolated if more than this many orbits are left to run.
+#: [period n] A batch: an approach is extrapolated if it would take more than this many further orbits.
 _FEWEST_ORBITS_LEFT = 4.0
-#: [period n] A batch: fewest drive periods from an extrapolation that was out of reach to the next one.
+#: [period n] A batch: fewest drive periods from an extrapolation out of reach to the next attempt.
 _PERIODS_AFTER_FAILURE = 8
-#: [period n] A batch: an extrapolation reaches at most this many times as far as change/(1 − contraction factor), the
-#: distance before the last change.
+#: [period n] A batch: an extrapolation reaches at most this many times change/(1 − contraction factor), the distance
+#: before the last change.
 FARTHEST_EXTRAPOLATION = 3.0
-#: [period n] A batch: fewest orbits of the fine run in which changes must shrink, else multipliers are computed.
+#: [period n] A batch: fewest orbits of the fine run over which changes must shrink; otherwise multipliers are computed.
 _ORBITS_TO_GROW = 4
 #: [period n] A batch: most extrapolations of the fine run.
 _MOST_EXTRAPOLATIONS = 6
 #: [period n] A batch: an orbit found by extrapolation is perturbed by this part of the motion.
 _DISTURBANCE = 1e-4
-#: [period n] A batch: orbits in the test of that perturbation.
+#: [period n] A batch: number of orbits in the test of that perturbation.
 _TEST_ORBITS = 16
-#: [no threshold] Orbits from the second quarter of that test to the last, which are compared.
+#: [no threshold] Number of orbits from the second to the last quarter of that test; these two are compared.
 _ORBITS_BETWEEN_QUARTERS = _TEST_ORBITS // 2
-#: [period n] A batch: largest part of the perturbation that may be left at the end of the test, relative to its first
+#: [period n] A batch: largest part of the perturbation that may remain at the end of the test, relative to its first
 #: quarter.
 _PART_LEFT = 0.97
 #: [period n] A batch: drive periods without extrapolation after a perturbation that did not decay.
 _PAUSE_AFTER_FAILED_TEST = 400
-#: [period n] A batch: upper limit of the contraction factor per orbit that is reported for a perturbation that shrank.
-#: Up to 100 beads, multipliers are then computed.
+#: [period n] A batch: upper limit of the reported contraction factor per orbit of a perturbation that has shrunk. Up to
+#: 100 beads, multipliers are then computed.
 _LARGEST_REPORTED_CONTRACTION = 0.9999
-#: [period n] A batch: largest contraction factor per drive period that is assumed after an extrapolation. Larger ones
-#: are not measured well enough.
+#: [period n] A batch: largest contraction factor per drive period that is assumed after an extrapolation. Larger
+#: factors are not measured accurately enough.
 _LARGEST_ASSUMED_CONTRACTION = 0.98
 
 
 @internal
 def extrapolate_member(state, member, n, contraction, change):
-    """Move a member to the limit of its last strobes, n periods apart; returns whether that was within reach.
+    """Move a member to the limit of its last strobes, n periods apart; return whether that was within reach.
 
-    `change` is the last change over n periods, `contraction` its factor per n periods, as `detect_period` returns them.
+    `change` is the last change over n periods, `contraction` the factor per n periods, both from `detect_period`.
     """
     record, work, limit = state.record, state.work, state.work.limit
     last = record.strobe_count[member] - 1
@@ -104,11 +104,11 @@ def extrapolate_member(state, member, n, contraction, change):
 
 @internal
 def check_coarse(state, member):
-    """Whether a member's last strobes are periodic; if they only approach an orbit, the transient is extrapolated."""
+    """Check whether a member's last strobes are periodic; if they only approach an orbit, extrapolate the transient."""
     search, schedule, record = state.search, state.schedule, state.record
     strobes = record.strobes[member, record.first_strobe[0, member] : record.strobe_count[member]]
     periods, count = record.periods[member], strobes.shape[0]
-    detected = detect_period(  # an int64, as from Python: one version serves
+    detected = detect_period(  # int64, as from Python: one specialization
         strobes[max(0, count - MOST_STROBES_SEARCHED) :], np.int64(LONGEST_PERIOD), ROUNDING, SETTLED_DISTANCE,
         search.slowest_contraction[member], state.work.scale, state.work.change)
     n, contraction, change = detected.approached, detected.approach_contraction, detected.approach_change
@@ -130,7 +130,7 @@ def check_coarse(state, member):
     if periods < search.extrapolate_from[member] or left <= SETTLED_DISTANCE:
         return False
     if log(SETTLED_DISTANCE / left) > _FEWEST_ORBITS_LEFT * log(contraction):
-        return False  # it settles sooner without extrapolation
+        return False  # it will settle sooner without extrapolation
     keep_state_before(search, strobes[count - 1], member)
     if extrapolate_member(state, member, n, contraction, change):
         search.change_before[member] = change
@@ -146,7 +146,7 @@ def check_coarse(state, member):
 
 @inline_numba
 def go_back_and_wait(state, member):
-    """Undo a coarse member's extrapolation, and wait twice as long as after the one before until the next."""
+    """Undo a coarse member's extrapolation, and wait twice as long as last time before the next."""
     search, periods = state.search, state.record.periods
     undo_extrapolation(state, member)
     search.slowest_contraction[member] = search.contraction_before[member]
@@ -157,14 +157,14 @@ def go_back_and_wait(state, member):
 
 @internal
 def keep_state_before(search, strobe, member):
-    """Keep a member's state, to which it returns if an extrapolation is undone or a perturbation has decayed."""
+    """Keep the state to which a member returns if an extrapolation is undone or a perturbation has decayed."""
     copy(strobe[0], search.state_before[member, 0])
     copy(strobe[1], search.state_before[member, 1])
 
 
 @inline_numba
 def perturb(state, member, period):
-    """Perturb a member that seems to be on an orbit, keeping the orbit's state and forces."""
+    """Perturb a member that seems to be on an orbit; keep the orbit's state and forces."""
     record, search, work = state.record, state.search, state.work
     keep_state_before(search, record.strobes[member, record.strobe_count[member] - 1], member)
     for q in range(2):
@@ -180,15 +180,15 @@ def perturb(state, member, period):
 
 @inline_numba
 def judge_perturbation(state, member):
-    """Whether a member's perturbation has decayed, at the end of the test.
+    """Check whether a member's perturbation has decayed, at the end of the test.
 
-    The member then goes back to its orbit, and the contraction factor is recorded; else extrapolation pauses.
+    If so, the member returns to its orbit, and the contraction factor is recorded. Otherwise extrapolation pauses.
     """
     search, record, scale = state.search, state.record, state.work.scale
     n, bodies = search.tested_period[member], state.work.limit.shape[1]
     strobes = record.strobes[member, record.first_strobe[0, member] : record.strobe_count[member]]
     search.tested_period[member] = 0
-    write_scale(strobes[: _TEST_ORBITS * n + 1], scale)  # other members have used it since
+    write_scale(strobes[: _TEST_ORBITS * n + 1], scale)  # other members have used it in the meantime
     first, middle, late, last = 0.0, 0.0, 0.0, 0.0
     for k in range(_TEST_ORBITS + 1):
         largest, squares = 0.0, 0.0
@@ -208,14 +208,14 @@ def judge_perturbation(state, member):
         search.last_check[member, CHECK_CONTRACTION] = max(search.last_check[member, CHECK_CONTRACTION], contraction)
         return True
     search.slowest_contraction[member], search.change_before[member] = 0.0, 0.0
-    search.last_check[member, CHECK_PERIOD] = 0.0  # this member does not stay on the orbit that was found
+    search.last_check[member, CHECK_PERIOD] = 0.0  # this member leaves the orbit that was found
     search.extrapolate_from[member] = record.periods[member] + _PAUSE_AFTER_FAILED_TEST
     return False
 
 
 @inline_numba
 def check_fine(state, member):
-    """Whether the coarse orbit's error has decayed in a fine member; if not, its transient is extrapolated.
+    """Check whether the coarse orbit's error has decayed in a fine member; if not, extrapolate its transient.
 
     If changes are not smaller after an extrapolation, it is undone, and the member is not extrapolated again.
     """
@@ -235,7 +235,7 @@ def check_fine(state, member):
         fine[FINE_EXTRAPOLATIONS] = _MOST_EXTRAPOLATIONS
         return False
     moved = 0.0
-    for q in range(1, 3):  # the forces on the wall, the last to come to rest
+    for q in range(1, 3):  # the forces on the wall, the last to settle
         largest = largest_force(record, member, n, q)
         moved = max(moved, abs(largest - fine[FINE_FORCES + q]) / largest if largest > 0.0 else 0.0)
     close = last_check[CHECK_DISTANCE] <= max(SETTLED_DISTANCE, COARSE_ERROR_LEFT * moved)
@@ -256,9 +256,9 @@ def check_fine(state, member):
 
 @inline_numba
 def period_of_fine_run(state, member, n):
-    """Period of the fine run's orbit: n or a divisor of n, since an orbit may double with coarse steps alone.
+    """Period of the fine run's orbit: n or a divisor of n, since the period may be doubled by coarse steps alone.
 
-    It is n where the record has fewer than two orbits.
+    It is n if the record has fewer than two orbits.
     """
     record = state.record
     strobes = record.strobes[member, record.first_strobe[0, member] : record.strobe_count[member]]
@@ -275,11 +275,11 @@ def periods_to_next_check(record, member):
 
 @kernel
 def begin_or_check_member(state, member):
-    """Begin a member that is new; else check its regime, or what is left of its perturbation.
+    """Begin a new member; otherwise check its regime, or how much of its perturbation remains.
 
-    Returns whether the member is due. A coarse member whose orbit is found begins its fine run instead, if one is
-    wanted. If nothing is decided, the next check is set. A beginning goes through here to be compiled once for all
-    structures.
+    Returns whether the member is due. A coarse member whose orbit has been found begins its fine run instead, if one is
+    requested. If nothing is decided, the next check is scheduled. New members begin here so that this code is compiled
+    once for all structures.
     """
     search, schedule, record = state.search, state.schedule, state.record
     if schedule.begins[member] != 0:

@@ -1,6 +1,6 @@
-"""Contacts that open or close within a step of a batch: the step is not split, but its error is subtracted.
+"""Contacts that open or close within a step of a batch: the step is not split; its error is subtracted instead.
 
-The contact is closed for a part r of the step, at its beginning or end, and there its overlap changes at the speed v.
+The contact is closed for a fraction r of the step, at its start or end, and its overlap changes at the speed v there.
 Simpson's rule integrates force and damping across the kink. Its errors are
 
     impulse  K v^{3/2} h^{5/2} (B_{3/2}(r) + E(r)),   displacement  c v^p h^{p+1} B_p(r)   for G = c δ^p, p = 1 + a
@@ -23,9 +23,9 @@ from .unequal import over_mass, times_stiffness
 
 @inline_llvm
 def next_step_error(r):
-    """The part of B_{3/2}(r) + E(r) that belongs to the next step, to 3e-8.
+    """The next step's part of B_{3/2}(r) + E(r), to 3e-8.
 
-    It is (4 (r + 1/2)^{3/2} + (r + 1)^{3/2})/6 − (2/5)(r + 1)^{5/2} for 0 ≤ r ≤ 1. The polynomial through nine points
+    This is (4 (r + 1/2)^{3/2} + (r + 1)^{3/2})/6 − (2/5)(r + 1)^{5/2} for 0 ≤ r ≤ 1. A polynomial through nine points
     saves two roots.
     """
     high = ((0.00291261 * r - 0.01588264) * r + 0.04025222) * r - 0.06753252
@@ -41,13 +41,13 @@ def impulse_error(r, r_power, mid_power):
 
 @inline_llvm
 def three_halves_by_series(s):
-    """s^{3/2} in all members, 0 or above."""
+    """s^{3/2} for s ≥ 0 in all members."""
     return s * root_by_series(at_least_tiny(s))
 
 
 @by_slot
 def displacement_error(law, r, r_mid, moved, h):
-    """c (vh)^p h B_p(r), v h = `moved`, in all members; `r_mid` is [r − 1/2]_+. Effect absent: nothing."""
+    """c (vh)^p h B_p(r) in all members, with vh = `moved`; `r_mid` is [r − 1/2]_+. Effect absent: 0."""
     return None
 
 
@@ -60,7 +60,7 @@ def _(law, r, r_mid, moved, h):
 
 @by_slot
 def correct_displacement(law, values, y, c, changed, shift):
-    """Correct the displacements on both sides of contact c. Effect absent: they have no such error."""
+    """Correct the displacements on both sides of contact c. Effect absent: nothing, since they have no such error."""
 
 
 @correct_displacement.of(*LAWS)
@@ -70,7 +70,7 @@ def _(law, values, y, c, changed, shift):
 
 @inline_llvm
 def correct_two_beads(values, y, c, row, error):
-    """Correct the two beads beside contact c by a quadrature error, in the row of y that begins at `row`."""
+    """Correct the two beads of contact c by a quadrature error, in the row of y that begins at `row`."""
     if c > 0:
         store(y, row + c, load_batch(y, row + c) + over_mass(values.unequal, c, error))
     if c < values.last:
@@ -79,7 +79,7 @@ def correct_two_beads(values, y, c, row, error):
 
 @inline_llvm
 def correct_contacts(values, y, overlaps, h, u0):
-    """Correct a step at contacts that changed in it; `overlaps` are those before the step, then those after it."""
+    """Correct a step at the contacts that changed in it; update `overlaps`, which are those before the step."""
     law, bodies = values.slots.dissipation, values.last + 2
     left = u0
     for c in range(values.last + 1):

@@ -1,4 +1,4 @@
-"""The end of a batch member's drive period: its strobe and its largest forces are kept, and its regime is checked."""
+"""The end of a batch member's drive period: its strobe and largest forces are recorded, and its regime is checked."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from .record import STROBES_KEPT, append_strobe, is_finite_member
 
 @inline_llvm
 def end_period(state, member, check):
-    """Record a member's strobe and largest forces, set its phase to 0 exactly; returns whether the member is due.
+    """Record a member's strobe and largest forces, set its phase to exactly 0, and return whether the member is due.
 
     `check` is the address of `begin_or_check_member` (checks.py).
     """
@@ -30,7 +30,7 @@ def end_period(state, member, check):
 
 @inline_llvm
 def write_maxima(peaks, maxima, member):
-    """Write a period's largest forces, jumps and unresolved peaks to `maxima` (MAXIMA,); they begin anew."""
+    """Write a period's largest forces, jumps and unresolved peaks to `maxima` (MAXIMA,), and reset them."""
     for q in range(3):
         maxima[q] = peaks[row_of(q), member]
         peaks[row_of(q), member] = 0.0

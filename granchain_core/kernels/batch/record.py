@@ -1,4 +1,4 @@
-"""The record of a batch member: its strobes, and its moves to another state, after which the record begins anew."""
+"""The record of a batch member: its strobes, and its moves to another state, where the record starts again."""
 
 from __future__ import annotations
 
@@ -7,9 +7,10 @@ import numpy as np
 from ..compiling.jit import internal
 from ..equations.motion import copy
 
-#: At least this many of a member's last strobes are kept, once there are as many.
+#: At least this many of a member's last strobes are kept, once there are that many.
 STROBES_KEPT = 432
-#: Numbers kept of a period: three largest forces, and of input and output force the largest jump and unresolved peak.
+#: Numbers recorded per period: three largest forces, and the largest jump and unresolved peak of input and output
+#: force.
 MAXIMA = 7
 
 
@@ -51,7 +52,7 @@ def set_state(motion, member, target):
 
 @internal
 def forget_last_step(motion, member):
-    """Forget the step before: a member goes on from another state, at phase 0, where the driver is at 0."""
+    """Discard data of the previous step: a member continues from another state, at phase 0, with the driver at 0."""
     for c in range(motion.overlaps.shape[0]):
         left = 0.0 if c == 0 else motion.y[c, member]
         motion.overlaps[c, member] = left - motion.y[c + 1, member] + motion.static_overlap[c, member]
@@ -70,7 +71,7 @@ def largest_force(record, member, n, q):
 
 @internal
 def move_member(state, member, target):
-    """Move a member to the state `target` (2, bodies), where its record begins anew."""
+    """Move a member to the state `target` (2, bodies), where its record starts again."""
     record = state.record
     set_state(state.motion, member, target)
     record.first_strobe[1, member] = record.first_strobe[0, member]
@@ -80,7 +81,7 @@ def move_member(state, member, target):
 
 @internal
 def undo_extrapolation(state, member):
-    """Move a member back to its state before the last extrapolation; its record and its periods go on from there."""
+    """Move a member back to its state before the last extrapolation, from where its record and periods continue."""
     record = state.record
     set_state(state.motion, member, state.search.state_before[member])
     record.periods[member] -= record.strobe_count[member] - record.first_strobe[0, member] - 1

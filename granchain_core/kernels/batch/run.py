@@ -1,18 +1,18 @@
-"""Several chains at once, one in each SIMD lane: RK4 in w with a fixed step, for curves and maps.
+"""Several chains at once, one per SIMD lane: RK4 in w with a fixed step, for curves and maps.
 
-All members have the same effects and the same N; every value may differ, as may the step and the number of steps in a
-period. Each member is checked at the ends of its own periods. When one may have settled, or has run as long as it may,
-the kernel returns, and the next scene can have its lane. Index `member` is the lane.
+All members have the same effects and the same N; every value may differ, including the step and the number of steps per
+period. Each member is checked at the ends of its own periods. When a member may have settled, or has reached its last
+period, the kernel returns, and the next scene can take over its lane. The index `member` is the lane.
 
 The order of one step, `take_steps`:
 
-1. overlaps of both end contacts where the step begins (effects/preload.py);
+1. overlaps of both end contacts at the start of the step (effects/preload.py);
 2. `batch_step`: four stages, each a sweep along the chains that computes contacts and beads (step.py);
-3. `update_batch_peaks`: largest forces and jumps up to where the step began (step.py, forces/peaks.py);
+3. `update_batch_peaks`: largest forces and jumps up to the start of the step (step.py, forces/peaks.py);
 4. `correct_contacts`: the step's error at contacts that opened or closed in it (contact_correction.py).
 
-At the end of a member's period `end_period` records its strobe and forces, and checks its regime when that is due
-(period_end.py, checks.py); then its neighbouring trajectory, if it has one, is brought back.
+At the end of a member's period, `end_period` records its strobe and forces, and checks its regime if a check is due
+(period_end.py, checks.py). Then its neighbouring trajectory, if it has one, is brought back.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ from .step import Values, batch_step, update_batch_peaks
 def take_steps(members, motion, count):
     """Take `count` steps in all members.
 
-    Inlined, because a call would copy all arrays of both arguments each time that a period of a member ends.
+    Inlined, because a call would copy all array descriptors of both arguments each time a member's period ends.
     """
     y, before = motion.y, flush_subnormals()
     last = y.shape[0] // 2 - 2
@@ -66,7 +66,7 @@ def take_steps(members, motion, count):
 
 @inline_numba
 def bring_back(state, member):
-    """Record how far a member and its neighbour have parted in a period, and bring the neighbour back."""
+    """Record how far a member and its neighbour have separated in a period, and bring the neighbour back."""
     y, pairs = state.motion.y, state.pairs
     neighbour, rows = pairs.neighbour[member], y.shape[0]
     if not (is_finite_member(y, member) and is_finite_member(y, neighbour)):
@@ -84,13 +84,13 @@ def bring_back(state, member):
 
 @kernel
 def batch_steps(members, motion, count):
-    """Take `count` steps in all members, whose periods do not end: for tests and benchmarks."""
+    """Take `count` steps in all members without ending periods, for tests and benchmarks."""
     take_steps(members, motion, count)
 
 
 @kernel
 def run_batch(members, state, stop, check):
-    """Run until a member is due: its regime is decided, its periods are over, or it is not finite.
+    """Run until a member is due: its regime is decided, its periods are used up, or its state is not finite.
 
     Returns (status, member). Every member that is due is returned before any of them continues. `check` is the address
     of `begin_or_check_member`.

@@ -1,8 +1,8 @@
-"""What a batch knows of its L members (BATCH_SIZE), one in each SIMD lane: arrays with an axis of L.
+"""The data of a batch of L members (L = BATCH_SIZE), one per SIMD lane: arrays with an axis of length L.
 
-The state of a chain with N beads are the displacements of driver, beads and wall, then w of the same: 2(N + 2) numbers.
-An axis of length 2 holds the displacements, then w. R is STROBES_KEPT (record.py): there is room for 2R strobes, of
-which the older half is dropped when all places are taken.
+The state of a chain with N beads consists of the displacements of driver, beads and wall, then their w: 2(N + 2)
+numbers. An axis of length 2 has the displacements, then w. R is STROBES_KEPT (record.py): there is room for 2R strobes,
+of which the older half is dropped when the record is full.
 """
 
 from __future__ import annotations
@@ -11,15 +11,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-#: `Pairs.neighbour` of a member without a neighbouring trajectory, and of one that is a neighbouring trajectory itself.
+#: `Pairs.neighbour` of a member without a neighbouring trajectory, and of one that is itself a neighbouring trajectory.
 NO_NEIGHBOUR, IS_NEIGHBOUR = -1, -2
 
 
 class Members(NamedTuple):
     """Values of the members' scenes.
 
-    `wall` (1, L) is the wall's stiffness; the effects' `slots` hold arrays (1, L) or (rows, L), or are None. `beta`
-    (1, L) is the scaled drive rate. `unequal` holds masses and stiffnesses (unequal.py), or is None.
+    `wall` (1, L) is the wall's stiffness; the effects' `slots` contain arrays (1, L) or (rows, L), or are None. `beta`
+    (1, L) is the scaled drive frequency. `unequal` contains masses and stiffnesses (unequal.py), or is None.
     """
 
     wall: np.ndarray
@@ -29,17 +29,17 @@ class Members(NamedTuple):
 
 
 class Motion(NamedTuple):
-    """What a step reads and changes (step.py, contact_correction.py).
+    """The data that a step reads and changes (step.py, contact_correction.py).
 
-    Written by the steps, by begin.py and record.py where a member begins or is moved, and by `Batch.put`.
+    Written by the steps, by begin.py and record.py when a member begins or is moved, and by `Batch.put`.
 
     y (2(N+2), L)            state
-    h (1, L)                 step
+    h (1, L)                 step size
     phase (2, L)             sine and cosine of the drive phase
-    half_step (2, L)         sine and cosine of the drive phase that half a step takes
-    overlaps (N+1, L)        overlaps of the contacts after the last step, corrected
+    half_step (2, L)         sine and cosine of the drive phase's increase in half a step
+    overlaps (N+1, L)        corrected overlaps of the contacts after the last step
     static_overlap (N+1, L)  overlaps of the contacts at rest, 0 without preload
-    end_contacts (4, L)      one step ago: overlap and rate of the first contact, overlap and rate of the last
+    end_contacts (4, L)      one step ago: overlap and rate of the first contact, then of the last
     peaks (BATCH_PEAKS, L)   largest forces, jumps and unresolved peaks of the period so far, and the last four values
                              of each force (forces/peaks.py)
     stages                   workspace: three states, (2(N+2), L) each
@@ -62,12 +62,12 @@ class Schedule(NamedTuple):
     Written by `Batch.put`, begin.py, checks.py, run.py and period_end.py.
 
     begins        1 for a new member, which begins at the kernel's next call (begin.py)
-    drive_period  scaled period of the drive
-    steps         steps in a period
-    steps_left    how many of them are left in this period
-    fine_steps    steps in a period of the fine run that follows once an orbit is found; 0 for no fine run
+    drive_period  scaled drive period
+    steps         steps per period
+    steps_left    number of steps left in this period
+    fine_steps    steps per period of the fine run that follows once an orbit is found; 0 for no fine run
     next_check    next period at which the strobes are checked
-    return_at     period at which the member is due at the latest
+    return_at     period at which the member becomes due at the latest
     due           1 for a member that is to be returned to the caller
     """
 
@@ -82,17 +82,17 @@ class Schedule(NamedTuple):
 
 
 class Record(NamedTuple):
-    """What is kept of each member's periods.
+    """The record of each member's periods.
 
     Written by record.py and period_end.py.
 
-    periods (L,)             periods run
+    periods (L,)             number of periods run
     strobes (L, 2R, 2, N+2)  states at the ends of periods
-    strobe_count (L,)        strobes kept
-    first_strobe (2, L)      row of the first strobe since the member was last moved to another state, and of the first
-                             since the time before that
-    maxima (L, R, MAXIMA)    of the last R periods, a ring: three largest forces (input, output, elastic output), then
-                             of the input and output force the largest jumps and the largest unresolved peaks
+    strobe_count (L,)        number of strobes kept
+    first_strobe (2, L)      row of the first strobe since the member's last move to another state, and since the move
+                             before that
+    maxima (L, R, MAXIMA)    ring buffer of the last R periods: three largest forces (input, output, elastic output),
+                             then the largest jumps and the largest unresolved peaks of input and output force
     """
 
     periods: np.ndarray
@@ -103,20 +103,20 @@ class Record(NamedTuple):
 
 
 class Search(NamedTuple):
-    """How far the search for each member's orbit has come.
+    """The progress of the search for each member's orbit.
 
     Written by checks.py and begin.py; `fine_record` also by `Batch.put` and `Batch.put_fine`.
 
     extrapolate_from (L,)    period from which a transient may be extrapolated
     wait_after_undo (L,)     periods without extrapolation after the next one that is undone
     slowest_contraction (L,)  contraction factor per drive period of the slowest transient that an extrapolation ended,
-                             0 without one; above 0 an orbit that is found must survive a perturbation
+                              0 without one; if above 0, an orbit that is found must survive a perturbation
     contraction_before (L,)  the same before the last extrapolation, which may be undone
-    change_before (L,)       change per orbit before an extrapolation that is not confirmed yet, else 0
-    tested_period (L,)       period of an orbit that is being perturbed, else 0
+    change_before (L,)       change per orbit before an extrapolation that is not yet confirmed, otherwise 0
+    tested_period (L,)       period of an orbit whose perturbation is being tested, otherwise 0
     state_before (L, 2, N+2)  state before the last extrapolation or perturbation
     last_check (L, CHECK_COLUMNS)  result of the last check (begin.py)
-    coarse_orbit (L, ORBIT_COLUMNS)  what the coarse run found (begin.py)
+    coarse_orbit (L, ORBIT_COLUMNS)  results of the coarse run (begin.py)
     fine_record (L, FINE_COLUMNS)  record of a fine run (begin.py); its period is 0 in a coarse one
     """
 
@@ -133,14 +133,14 @@ class Search(NamedTuple):
 
 
 class Pairs(NamedTuple):
-    """Members whose neighbouring trajectory, in another lane, measures an exponent (steady/lyapunov.py).
+    """Members with a neighbouring trajectory in another lane, for measuring an exponent (steady/lyapunov.py).
 
-    Written by `Batch.put_pair`; growth by `bring_back` (run.py).
+    Written by `Batch.put_pair`; `growth` by `bring_back` (run.py).
 
     neighbour (L,)  lane of the member's neighbouring trajectory; NO_NEIGHBOUR, or IS_NEIGHBOUR
     distance (L,)   distance to which the neighbour is brought back after each period
-    growth (L, R)   logarithm of the factor by which that distance has grown in each period; NaN if a state of the pair
-                    is not finite
+    growth (L, R)   logarithm of the factor by which that distance grew in each period; NaN if a state of the pair is
+                    not finite
     """
 
     neighbour: np.ndarray
@@ -162,7 +162,7 @@ class Work(NamedTuple):
 
 
 class BatchState(NamedTuple):
-    """All of a batch but the values of its scenes."""
+    """The whole state of a batch, without the values of its scenes."""
 
     motion: Motion
     schedule: Schedule

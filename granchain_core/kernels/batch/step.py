@@ -1,8 +1,8 @@
-"""One Runge–Kutta step of several chains, one in each SIMD lane: four stages, each a sweep along the chains.
+"""One RK4 step of several chains, one per SIMD lane: four stages, each a sweep along the chains.
 
-In a sweep no contact waits for another one, so that the processor computes several at once. The square-root instruction
-takes one root in three in batches of eight and two in three in batches of four; the others are taken from an
-estimate and a series where simd/functions.py has one. That keeps both the divider and the multiply–add units busy.
+In a sweep, no contact waits for another, so that the processor computes several at once. The square-root instruction
+computes one root in three in batches of eight, and two in three in batches of four. The others are computed from an
+estimate and a series, where simd/functions.py has one. This keeps both the divider and the multiply–add units busy.
 """
 
 from __future__ import annotations
@@ -32,10 +32,10 @@ from .unequal import over_mass, times_stiffness
 
 
 class Values(NamedTuple):
-    """Values of the members' scenes; what is one number per scene is a vector in a register.
+    """Values of the members' scenes; one number per scene is a vector in a register.
 
-    `wall` is the stiffness of the wall's contact, `slots` the effects with a vector for each number, `unequal` masses
-    and stiffnesses (`Unequal`) or None, `last` the number of the last contact.
+    `wall` is the stiffness of the wall contact, `slots` the effects with a vector for each number, `unequal` the masses
+    and stiffnesses (`Unequal`) or None, and `last` the number of the last contact.
     """
 
     wall: Any
@@ -45,9 +45,7 @@ class Values(NamedTuple):
 
 
 class LeftBead(NamedTuple):
-    """What a sweep knows of a bead when it arrives there, in all members: its displacement, and elastic force and G/λ
-    of the contact on its left.
-    """
+    """The bead at which a sweep arrives, in all members: its displacement, and e and G/λ of the contact on its left."""
 
     u: Any
     e: Any
@@ -62,11 +60,12 @@ def by_sqrt(d):
 
 @inline_llvm
 def by_series(d):
-    """√d, d > 0, by an estimate and a series where simd/functions.py has one, else by the instruction."""
+    """√d, d > 0, by an estimate and a series where simd/functions.py has one, otherwise by the instruction."""
     return root_by_series(d)
 
 
-#: How the last of three roots is taken. The shares that measured best: docs/benchmarks.md, "The step of a batch".
+#: The function for the last of three roots. The fastest shares by measurement: docs/benchmarks.md, "The step of a
+#: batch".
 third_root = by_series if BATCH_SIZE == 8 else by_sqrt
 
 
@@ -101,7 +100,7 @@ class Inner(NamedTuple):
 class Final(NamedTuple):
     """The fourth stage, which completes the step; y1, y2, y3 are the targets of the first three, `sixth` is h/6.
 
-    No slopes need be stored, since y + h (k1 + 2k2 + 2k3 + k4)/6 = (y1 + 2y2 + y3 − y)/3 + h k4/6.
+    No slopes need to be stored, since y + h (k1 + 2k2 + 2k3 + k4)/6 = (y1 + 2y2 + y3 − y)/3 + h k4/6.
     """
 
     y: Any
@@ -129,7 +128,7 @@ def _(stage, row, slope):
 
 @inline_llvm
 def bead(values, root_of, stage, source, i, left, is_last):
-    """Bead i of a stage whose state is `source`; returns its velocity and the next bead's `LeftBead`."""
+    """Compute bead i of a stage whose state is `source`; return its velocity and the next bead's `LeftBead`."""
     bodies = values.last + 2
     right = load_batch(source, i + 1)
     e, right_primitive = contact(values, root_of, left.u, right, i, is_last)
@@ -152,7 +151,7 @@ class ChainEnds(NamedTuple):
 
 @inline_llvm
 def run_stage(values, stage, source, driver):
-    """One stage at the state `source` with the driver at `driver`; returns its `ChainEnds`."""
+    """Compute one stage at the state `source` with the driver at `driver`; return its `ChainEnds`."""
     last, u = values.last, load_batch(source, 1)
     e_first, first_primitive = contact(values, by_series, driver, u, 0, False)
     left, v_first = LeftBead(u, e_first, first_primitive), u
@@ -170,7 +169,7 @@ def run_stage(values, stage, source, driver):
 
 @inline_llvm
 def batch_step(values, y, stages, h, u0, middle, end):
-    """One RK4 step in place, the driver at u0, at `middle` and at `end`; returns the `ChainEnds` where it began.
+    """Take one RK4 step in place, the driver at u0, `middle` and `end`; return the `ChainEnds` at its start.
 
     `stages` has room for the states of three stages.
     """
@@ -184,7 +183,7 @@ def batch_step(values, y, stages, h, u0, middle, end):
 
 @inline_llvm
 def update_batch_peaks(values, h, first_overlap, last_overlap, v0, chain_ends, before, peaks):
-    """Update the peaks of input force, output force and its elastic part in all members, where a step began."""
+    """Update the peaks of input force, output force and its elastic part in all members, at the start of a step."""
     law = values.slots.dissipation
     first, last = Approach(first_overlap, v0 - chain_ends.v_first), Approach(last_overlap, chain_ends.v_last)
     first_force = chain_ends.first_elastic + dashpot_force(law, first.overlap, first.rate)
@@ -197,7 +196,7 @@ def update_batch_peaks(values, h, first_overlap, last_overlap, v0, chain_ends, b
 
 @by_slot
 def update_jumps(law, values, h, first, last, before, peaks):
-    """Update the largest jumps of both end contacts with those of the last step. Absent, and if g(0) = 0: no jumps."""
+    """Update the largest jumps of both end contacts with those of a step. Effect absent, or g(0) = 0: nothing."""
 
 
 @update_jumps.of(*JUMP_LAWS)
@@ -213,7 +212,7 @@ update_jumps.absent_for(*SMOOTH_LAWS)
 def update_jump(law, own_damping, h, approach, before, row, peaks, peak):
     """Update the largest jump of one contact.
 
-    Its overlap and rate a step ago are rows of `before`, which become those of now.
+    Two rows of `before` are its overlap and rate one step ago; they are updated.
     """
     overlap, rate = approach
     overlap_before, rate_before = load_batch(before, row), load_batch(before, row + 1)

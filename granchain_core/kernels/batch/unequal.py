@@ -2,7 +2,7 @@
 
 Equation   m_i and K_c in units of the first bead's
 Values     inverse_mass (N+2, L) and stiffness (N+1, L) for all L members
-Absent     all beads are alike: the wall's stiffness is the only factor in a batch
+Absent     all beads are equal: the wall's stiffness is the only factor in a batch
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from ..simd.vector import load_like
 
 
 class Unequal(NamedTuple):
-    """Slot of chains whose beads are not all alike."""
+    """Slot of chains whose beads are not all equal."""
 
     inverse_mass: np.ndarray
     stiffness: np.ndarray
@@ -24,7 +24,7 @@ class Unequal(NamedTuple):
 
 @by_slot
 def over_mass(unequal, i, force):
-    """A force on bead i over its mass. Effect absent: the force itself."""
+    """A force on bead i over its mass. Effect absent: the force unchanged."""
     return force
 
 
@@ -37,7 +37,7 @@ def _(unequal, i, force):
 def times_stiffness(unequal, wall, i, is_wall, elastic):
     """The elastic force of contact i from d^{3/2}; `wall` is the last contact's stiffness.
 
-    Effect absent: all others are 1.
+    Effect absent: all other stiffnesses are 1.
     """
     return wall * elastic if is_wall else elastic
 

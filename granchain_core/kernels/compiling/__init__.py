@@ -1,1 +1,1 @@
-"""How kernels are compiled, kept on disk and called."""
+"""Compiling kernels, caching them on disk and calling them."""

@@ -1,7 +1,8 @@
-"""A kernel that calls another one by its address, so that the other's code is compiled once and not in every caller.
+"""Calls from one kernel to another by address, so that the callee is compiled once rather than in every caller.
 
-Numba links the code of what a kernel calls into that kernel, and optimises and translates it there again. That pays for
-what is called at each step. It does not for what is called rarely, is long and is the same for every structure.
+Numba links every function that a kernel calls into that kernel, and optimises and translates it there again. This pays
+for functions called at each step. It does not pay for a long one that is called rarely and is the same for every
+structure.
 """
 
 from __future__ import annotations
@@ -15,15 +16,15 @@ from .entry import specialization_for
 
 
 def address_of(kernel: Any, *arguments: Any) -> int:
-    """Address of a kernel's specialization for arguments of these types, compiled first where it is not there yet."""
+    """Return the address of a kernel's specialization for these argument types, compiling it first if necessary."""
     _, specialization = specialization_for(kernel, arguments)
-    # what Numba calls a library is the code of this one specialization
+    # Numba's "library" is the code of this one specialization
     return int(specialization.library.get_pointer_to_function(specialization.fndesc.llvm_func_name))
 
 
 @intrinsic
 def call_at(typing_context, address, arguments):
-    """Call the kernel at an address of `address_of`, for arguments of these very types; it returns a Boolean."""
+    """Call a kernel by an address from `address_of`, with exactly the same argument types; it returns a Boolean."""
     signature = types.boolean(address, arguments)
 
     def generate(context, builder, signature, values):

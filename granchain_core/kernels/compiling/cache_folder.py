@@ -1,6 +1,6 @@
-"""The folder of compiled kernels: which one it is, who may write to it, and when those of other sources are removed.
+"""The folder of compiled kernels: its choice, who may write to it, and when folders of other sources are removed.
 
-Its files are unpickled and run (cache.py), so it must be one that nobody else can have written to.
+Its files are unpickled and run (cache.py), so nobody else may ever have been able to write to it.
 """
 
 from __future__ import annotations
@@ -20,28 +20,29 @@ import numba
 
 from .sources import source_bytes_hash, sources_hash
 
-#: Where messages for the user go: to stderr, unless the program keeps a log.
+#: Logger for messages to the user: they go to stderr, unless the program keeps a log.
 _LOG = logging.getLogger("granchain")
-#: How the names of the files begin by which warm.py marks what is compiled.
+#: Prefix of the names of the files with which warm.py marks structures as compiled.
 MARK = "compiled-"
-#: Folders of other sources are removed when they have not been used for this long [s].
+#: Folders of other sources are removed after not being used for this long [s].
 _MONTH = 30 * 86400.0
-#: Rights of the folder of kernels and of its files, less those that the umask takes away: whatever it leaves to the
-#: group, only this user writes.
+#: Permissions of the folder of kernels and of its files, before the umask: even if the umask would let the group write,
+#: only this user may.
 FOLDER_RIGHTS, FILE_RIGHTS = 0o755, 0o644
-#: Rights of others than the owner to write.
+#: Write permissions of anyone but the owner.
 _OTHERS = stat.S_IWGRP | stat.S_IWOTH
-#: Names of the folders of kernels: each has a hash of the sources, and of what else decides the code (sources.py).
+#: Names of the folders of kernels: each contains a hash of the sources and of everything else that determines the code
+#: (sources.py).
 _FOLDERS = re.compile(r"kernels-[0-9a-f]{12}")
 
 
 def cache_folder() -> Path | None:
-    """The folder of the compiled kernels; None, with one message, where nothing can be kept.
+    """Return the folder of compiled kernels, or None, with one message, if kernels cannot be kept.
 
-    It is in $GRANCHAIN_CACHE, else in the user's cache, if only this user or the administrator can write to it, and
-    nobody else can put another folder in its place. Links on the way there are followed once, here: the path that is
-    returned has none. Where it cannot be written, kernels that are there already are used; else a folder in the
-    temporary directory is, if it is this user's alone.
+    It is in $GRANCHAIN_CACHE or, if that is not set, in the user's cache, provided that only this user and the
+    administrator can write to it and that nobody else can replace it with another folder. Links on the way there are
+    followed once, here: the returned path has none. If the folder exists but cannot be written, the kernels in it are
+    still used. Otherwise a folder in the temporary directory is used, if it belongs to this user alone.
     """
     base, problem = _chosen_base(), "there is no home folder"
     if base is not None:
@@ -66,7 +67,7 @@ def cache_folder() -> Path | None:
 
 
 def _name_in(base: Path) -> str:
-    """Name of the folder of these sources: that of the one in `base` with their fingerprint, else by parsing them."""
+    """Return the name of these sources' folder: by their fingerprint in `base` if it is there, else by parsing them."""
     fingerprint = _fingerprint_file()
     with contextlib.suppress(OSError):
         for folder in base.iterdir():
@@ -77,12 +78,12 @@ def _name_in(base: Path) -> str:
 
 @functools.cache
 def _fingerprint_file() -> str:
-    """Name of the empty file that records a hash of the sources' bytes, so that unchanged sources are not parsed."""
+    """Return the name of an empty file that records the sources' bytes by a hash, to save parsing unchanged sources."""
     return f"sources-{source_bytes_hash()}"
 
 
 def _chosen_base() -> Path | None:
-    """The folder for folders of kernels, without links; None where the system does not know the user."""
+    """Return the parent of the folders of kernels, with links resolved; None if the system does not know the user."""
     chosen = os.environ.get("GRANCHAIN_CACHE")
     try:
         base = Path(chosen or Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "granchain")
@@ -99,19 +100,19 @@ def _holds_kernels(folder: Path) -> bool:
 
 
 def _close_to_others(base: Path) -> None:
-    """Take the right to write from others: earlier versions left it to them in the user's cache where the umask did."""
+    """Revoke others' write permission, which earlier versions left in the user's cache if the umask did."""
     state = base.stat()
     if hasattr(os, "getuid") and state.st_uid == os.getuid() and state.st_mode & _OTHERS:
         base.chmod(stat.S_IMODE(state.st_mode) & ~_OTHERS)
 
 
 def _why_unsafe(base: Path, folder: Path) -> str | None:
-    """Why others than this user and the administrator may have written kernels in `folder`; None if they cannot.
+    """Return why anyone but this user and the administrator may have written kernels in `folder`; None if nobody could.
 
-    The files are unpickled and run. Whoever may write to `base`, or to a folder above it, could put another folder in
-    the place of the one that was looked at, unless the sticky bit leaves every folder in it to its owner. A link in a
-    sticky folder may be another user's, who could let it point to this user's folder now and elsewhere later: `base`
-    has had none since it was chosen, and none is followed here.
+    The files are unpickled and run. Anyone who may write to `base`, or to a folder above it, could replace the folder
+    that was checked, unless the sticky bit reserves every folder there to its owner. A link in a sticky folder may
+    belong to another user, who could point it to this user's folder now and elsewhere later. `base` has contained no
+    links since it was chosen, and none is followed here.
     """
     if not hasattr(os, "getuid"):
         return None
@@ -125,7 +126,7 @@ def _why_unsafe(base: Path, folder: Path) -> str | None:
 
 
 def _temporary_folder(problem: str) -> Path | None:
-    """A folder in the temporary directory, which others write to as well: only one that is ours alone is used."""
+    """Return a folder in the temporary directory; as others can write there too, it must be this user's alone."""
     if hasattr(os, "getuid"):
         base = Path(tempfile.gettempdir()) / f"granchain-{os.getuid()}"
         try:
@@ -144,7 +145,7 @@ def _temporary_folder(problem: str) -> Path | None:
 
 
 def _is_ours(folder: Path) -> bool:
-    """Make the folder, or find it there: no link, with this user as owner and no rights for anybody else."""
+    """Make the folder if it is missing; return whether it is no link and only this user has any permissions."""
     with contextlib.suppress(FileExistsError):
         folder.mkdir(mode=0o700)
     state = folder.lstat()
@@ -152,12 +153,12 @@ def _is_ours(folder: Path) -> bool:
 
 
 def _note_use(base: Path, used: Path) -> None:
-    """Note that a folder is used and by which sources, and remove folders that have not been used for a month."""
+    """Record that these sources use a folder, and remove folders that have not been used for a month."""
     (used / _fingerprint_file()).touch()
     os.utime(used)
     for folder in base.iterdir():
         if _FOLDERS.fullmatch(folder.name) and folder != used:
-            with contextlib.suppress(OSError):  # another process may remove it as well
+            with contextlib.suppress(OSError):  # another process may be removing it too
                 state = folder.lstat()
                 if stat.S_ISDIR(state.st_mode) and time.time() - state.st_mtime > _MONTH:
                     shutil.rmtree(folder, ignore_errors=True)
@@ -165,7 +166,7 @@ def _note_use(base: Path, used: Path) -> None:
 
 @functools.cache
 def warn_once(sentence: str) -> None:
-    """Warn the user of something once in the life of this process."""
+    """Give the user a warning once per process."""
     _LOG.warning(sentence)
 
 

@@ -1,8 +1,9 @@
-"""A lock by which one process compiles a kernel while others that need it wait and then load it.
+"""A lock with which one process compiles a kernel while others that need it wait and then load it.
 
-Without it the workers of a map or of the tests, and the processes of a server, would each compile the same kernel, at
-ten seconds of processor time apiece. The lock is on a file beside the kernel's own; the system releases it when its
-process ends, however it ends. Where there are no locks (another system, some network disks) every process compiles.
+Without it, the workers of a map or of the tests, and the processes of a server, would each compile the same kernel, at
+ten seconds of processor time apiece. The lock is on a file next to the kernel's own. The operating system releases it
+when its process ends, however it ends. Where file locks are not available (other systems, some network disks), every
+process compiles.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ except ImportError:  # not a POSIX system
     fcntl = None  # type: ignore[assignment]
 
 #: Longest wait for another process [s]: a kernel takes ten seconds to compile, fifty on a busy machine. A process that
-#: is stuck must not hold up the others for longer.
+#: is stuck must not hold up the others any longer.
 PATIENCE = 120.0
 #: Seconds between two attempts.
 _INTERVAL = 0.05
@@ -39,10 +40,10 @@ class CompileLock:
         return self._file is not None
 
     def acquire(self, patience: float = PATIENCE) -> None:
-        """Wait for the lock, no longer than `patience` [s].
+        """Wait for the lock, for `patience` [s] at most.
 
-        The caller must look for the kernel afterwards, whether it got the lock or not: another
-        process may have compiled it meanwhile, even without a wait, between the caller's last look and this call.
+        The caller must then look for the kernel again, whether or not it got the lock: another process may have
+        compiled it in the meantime. That can happen even without a wait, between the caller's last look and this call.
         """
         if fcntl is None or self.held:
             return
@@ -61,18 +62,18 @@ class CompileLock:
                 else:
                     self._file = file
                     return
-        except OSError:  # no locks there
+        except OSError:  # no file locks available
             pass
         finally:
             if not self.held:
                 os.close(file)
 
     def release(self) -> None:
-        """Release the lock; call it after the kernel is written.
+        """Release the lock; call this after the kernel has been written.
 
-        Processes that wait have the same file open, so they need no name to go on and look for the kernel. One that
-        comes later makes a new file, and so two processes may hold the lock of one kernel. Both then find the kernel,
-        which was written before; if it could not be written, both compile it.
+        Waiting processes have the same file open, so they do not need its name to continue and look for the kernel. A
+        process that comes later makes a new file, so two processes may hold the lock of one kernel. Both then find the
+        kernel, which was written earlier; if it could not be written, both compile it.
         """
         if self._file is not None:
             with contextlib.suppress(OSError):

@@ -1,4 +1,4 @@
-"""Functions of kernels whose code is chosen by the type of their first argument when a kernel is typed.
+"""Functions of kernels whose code is chosen by the type of their first argument, when a kernel is typed.
 
     `by_slot`      the argument may be None: the slot of an effect that may be absent (the function is then a term of
                    the effect), tangents, a workspace of vectors
@@ -22,7 +22,7 @@ TERMS: list[Any] = []
 
 
 def _by_first_type(declared, forceinline, implementations):
-    """A function whose code, one of `implementations`, the type of its first argument decides."""
+    """Make a function whose code is one of `implementations`, chosen by the type of its first argument."""
 
     def chosen(slot_class):
         if slot_class not in implementations:
@@ -54,13 +54,13 @@ def _by_first_type(declared, forceinline, implementations):
 
 
 def by_slot(absent, forceinline=False):
-    """A function whose code depends on which effect stands in its first argument, decided when it is typed.
+    """Decorate a function whose code depends on the effect in its first argument, chosen when the call is typed.
 
     The decorated function is the code for an absent effect (slot None). `function.of(Slot, …)` registers the code for
-    slots of these NamedTuple classes. The code for None returns an argument as it is, or a zero that callers only add,
-    which leaves no instruction. tests/kernels/test_machine_code.py counts instructions of short chains and batches, and
-    products with zero in the flow with tangents. A slot without code is a TypeError that names slot and function, in
-    Python and while a kernel is typed.
+    slots of these NamedTuple classes. The code for None returns an argument unchanged, or a zero that callers only add,
+    so it leaves no instruction. tests/kernels/test_machine_code.py counts the instructions of short chains and batches,
+    and the products with zero in the flow with tangents. A slot without code raises a TypeError that names the slot and
+    the function, both in Python and while a kernel is typed.
     """
     function = _by_first_type(absent, forceinline, {type(None): absent})
 
@@ -74,12 +74,12 @@ def by_slot(absent, forceinline=False):
 
 
 def by_slot_inlined(absent):
-    """`by_slot` for a term that becomes part of its caller's code: one with many arguments, called at each step."""
+    """Like `by_slot`, for a term to be inlined into its caller: one with many arguments, called at each step."""
     return by_slot(absent, forceinline=True)
 
 
 def by_type(declared, forceinline=False):
-    """`by_slot` for what is never absent, such as a method: the decorated function is only a name and a docstring.
+    """Like `by_slot`, for an argument that is never absent, e.g. a method; the decorated function has no code.
 
     It does not count as a term of an effect.
     """
@@ -87,12 +87,12 @@ def by_type(declared, forceinline=False):
 
 
 def by_type_inlined(declared):
-    """`by_type` for a function that becomes part of its caller's code."""
+    """Like `by_type`, for a function to be inlined into its caller."""
     return by_type(declared, forceinline=True)
 
 
 def require_terms(slot_class, *terms):
-    """Check that all these functions have code for a slot class; TypeError with the names of those that have none."""
+    """Raise a TypeError that names the functions without code for a slot class, if there are any."""
     missing = [term for term in terms if slot_class not in term.implementations]
     if missing:
         raise TypeError(_missing(slot_class, missing))

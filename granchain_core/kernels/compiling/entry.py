@@ -1,8 +1,8 @@
-"""Calls of a kernel without Numba's dispatcher.
+"""Calls of a kernel that bypass Numba's dispatcher.
 
-At each call the dispatcher reads the names of all fields of every named tuple, to choose the specialization: 20 to
-40 µs for the tuples that kernels take here, with the GIL held. Where a kernel is called often, the specialization is
-chosen once.
+At each call, the dispatcher reads the names of all fields of every named tuple to choose the specialization. This takes
+20 to 40 µs for the tuples that kernels take here, with the GIL held. For a kernel that is called often, the
+specialization is therefore chosen once.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ CHECK_TYPES = os.environ.get("GRANCHAIN_CHECK_TYPES", "0") not in ("", "0")
 
 
 def entry(kernel: Any, *arguments: Any) -> Callable[..., Any]:
-    """The specialization of a kernel for arguments of these types, compiled first where it is not there yet.
+    """Return the specialization of a kernel for these argument types, compiling it first if necessary.
 
-    It does not check what it is given unless `CHECK_TYPES`: later arguments must have the same types, layouts of arrays
-    included.
+    It does not check its arguments unless `CHECK_TYPES` is set: later arguments must have the same types, including
+    array layouts.
     """
     types, specialization = specialization_for(kernel, arguments)
     compiled: Callable[..., Any] = specialization.entry_point
@@ -36,9 +36,9 @@ def entry(kernel: Any, *arguments: Any) -> Callable[..., Any]:
 
 
 def type_guard(kernel: Any, *arguments: Any) -> Callable[..., None]:
-    """What raises `TypeError` for arguments of other types than these; it does nothing unless `CHECK_TYPES`.
+    """Return a function that raises `TypeError` for arguments of other types; without `CHECK_TYPES` it does nothing.
 
-    For a kernel that compiled code calls by its address.
+    Used for a kernel that compiled code calls by address.
     """
     if not CHECK_TYPES:
         return lambda *later: None
@@ -52,10 +52,10 @@ def _check_types(kernel: Any, types: tuple[Any, ...], arguments: tuple[Any, ...]
 
 
 class Entries:
-    """The specializations of one kernel, by keys of the caller's: arguments with equal keys must have equal types.
+    """The specializations of one kernel, by keys that the caller chooses: equal keys must mean equal argument types.
 
-    So the caller keeps the type and the layout of what is not in its key, such as the arrays of a call; `CHECK_TYPES`
-    compares them.
+    So the caller must not change the type or layout of anything outside its key, for example the arrays of a call;
+    `CHECK_TYPES` compares them.
     """
 
     def __init__(self, kernel: Any) -> None:
@@ -71,16 +71,16 @@ class Entries:
 
 
 def types_of(value: Any) -> Any:
-    """A key for a value's Numba type: classes of nested tuples, kind and layout of arrays, type of the rest."""
+    """Return a key for a value's Numba type: classes of nested tuples, kind and layout of arrays, type of the rest."""
     if isinstance(value, tuple):
         return type(value), *map(types_of, value)
     if isinstance(value, np.ndarray):
-        return value.dtype.char, value.ndim, value.flags.num  # each flag by its name would take twice the time
+        return value.dtype.char, value.ndim, value.flags.num  # reading each flag by name would take twice as long
     return type(value)
 
 
 def specialization_for(kernel: Any, arguments: tuple[Any, ...]) -> tuple[tuple[Any, ...], Any]:
-    """Types of these arguments and a kernel's specialization for them, compiled first where it is not there yet."""
+    """Return these arguments' types and a kernel's specialization for them, compiling it first if necessary."""
     types = _types(kernel, arguments)
     if types not in kernel.overloads:
         kernel.compile(types)

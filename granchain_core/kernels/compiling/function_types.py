@@ -1,8 +1,8 @@
-"""Numba types of the functions that kernels call: how a call finds the one specialization it shares with others.
+"""Numba types of the functions that kernels call: with them, calls with equal argument types share a specialization.
 
-By itself Numba compiles a function again for each number that is written out in a call, and a function made by
-`overload` again for each set of options of its callers. Here a call asks for a version by the types of its arguments
-alone, which saves a sixth of the versions and of the compiler's time.
+By default, Numba compiles a function again for each literal number in a call, and a function made by `overload` again
+for each set of its callers' options. Here a call selects a specialization by the types of its arguments alone, which
+saves a sixth of the specializations and of the compilation time.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ class FunctionType(types.Dispatcher):
     """The type of one compiled function."""
 
     def get_call_type(self, context: Any, args: Any, kws: Any) -> Any:
-        """The signature of a call; compiles the function for it, or finds that version."""
+        """Return the signature of a call; compile the function for it if necessary."""
         return super().get_call_type(context, *_without_literals(args, kws))
 
 
 class ChoiceType(types.Callable, types.Dummy):
     """The type of a function whose code is chosen by the type of its first argument.
 
-    `choose` returns the compiled function for the type of a first argument; TypeError where there is none.
+    `choose` takes that type and returns the compiled function, or raises a TypeError if there is none.
     """
 
     def __init__(self, name: str, choose: Callable[[Any], Any]) -> None:
@@ -36,22 +36,22 @@ class ChoiceType(types.Callable, types.Dummy):
 
     @property
     def key(self) -> Any:
-        """Types are compared by this: there is one for each such function."""
+        """Identity under which types are compared: one per function."""
         return id(self._choose)
 
     def get_call_type(self, context: Any, args: Any, kws: Any) -> Any:
-        """The signature of a call; compiles the chosen function for it, or finds that version."""
+        """Return the signature of a call; compile the chosen function for it if necessary."""
         dispatcher = self._choose(args[0])
         signature: Any = types.Dispatcher(dispatcher).get_call_type(context, *_without_literals(args, kws))
         self._versions[signature.args] = dispatcher.get_overload(signature.args)
         return signature
 
     def get_call_signatures(self) -> Any:
-        """The signatures of the calls so far, for error messages."""
+        """Return the signatures of the calls so far, for error messages."""
         return list(self._versions), True
 
     def get_impl_key(self, sig: Any) -> Any:
-        """The version that a call with this signature runs."""
+        """Return the specialization that a call with this signature runs."""
         return self._versions[sig.args]
 
 
@@ -60,5 +60,5 @@ register_model(ChoiceType)(models.OpaqueModel)
 
 
 def _without_literals(args: Any, kws: Any) -> Any:
-    """The arguments' types without the values of numbers that are written out."""
+    """Return the arguments' types without the values of literals."""
     return tuple(types.unliteral(each) for each in args), {name: types.unliteral(each) for name, each in kws.items()}

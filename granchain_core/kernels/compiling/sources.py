@@ -1,7 +1,8 @@
-"""Hashes of the kernels' sources, by which compiled code is found again (cache.py).
+"""Hashes of the kernels' sources, by which compiled code is found (cache.py).
 
-Comments, docstrings and line breaks change no instruction, so compiled code is named by a hash of the parsed sources.
-Parsing takes a fifth of a second, so the bytes of the sources are hashed as well, which takes hardly any time.
+Comments, docstrings and line breaks do not change the compiled code, so it is named by a hash of the parsed sources.
+Parsing takes a fifth of a second. So the bytes of the sources are hashed too, which takes hardly any time, and sources
+with a known hash are not parsed.
 """
 
 from __future__ import annotations
@@ -18,27 +19,28 @@ import numba
 
 from ..batch_size import BATCH_SIZE, processor
 
-#: Sources that decide where compiled code is stored and how it is called but do not change it.
+#: Sources that determine where compiled code is stored and how it is called, but do not change the code.
 _NOT_IN_CODE = tuple(f"compiling/{name}.py" for name in ("cache", "cache_folder", "compile_lock", "entry", "sources"))
-#: Settings of Numba (environment variables with NUMBA_ before them) that change machine code: optimisation level,
-#: bounds checks, debug information, vectorisers, AVX, Intel's vector functions, the processor's features.
+#: Settings of Numba (environment variables with the prefix NUMBA_) that change machine code: optimisation level, bounds
+#: checks, debug information, vectorisers, AVX, Intel's vector functions, the processor's features.
 _SETTINGS = ("OPT", "BOUNDSCHECK", "DEBUGINFO_DEFAULT", "SLP_VECTORIZE", "LOOP_VECTORIZE", "ENABLE_AVX",
              "DISABLE_INTEL_SVML", "CPU_FEATURES")
-#: The folder of the kernels. One outside it (hard_cases/touches.py) is kept under its own module's code too (cache.py).
+#: The folder of the kernels' sources. For a kernel outside it (hard_cases/touches.py), the cache key also contains a
+#: hash of its own module (cache.py).
 FOLDER = Path(__file__).parents[1]
 
 
 def sources_hash(folder: Path = FOLDER) -> str:
-    """Hash of everything that determines the kernels' machine code.
+    """Return a hash of everything that determines the kernels' machine code.
 
-    That is their parsed sources except `_NOT_IN_CODE`, the versions of Numba and llvmlite, the processor, the batch's
-    size, and those settings of Numba that change the code (`_SETTINGS`).
+    This is their parsed sources except `_NOT_IN_CODE`, the versions of Numba and llvmlite, the processor, the batch
+    size, and the settings of Numba that change the code (`_SETTINGS`).
     """
     return _hash_of_all(folder, hash_of_code)
 
 
 def source_bytes_hash(folder: Path = FOLDER) -> str:
-    """Hash of the same, with the bytes of the sources in place of what they parse to."""
+    """Return a hash of the same, with the bytes of the sources instead of their parsed code."""
     return _hash_of_all(folder, _hash_of_bytes)
 
 
@@ -58,7 +60,7 @@ def _hash_of_bytes(path: Path) -> str:
 
 
 def hash_of_code(path: Path) -> str:
-    """Hash of a source file without its comments, docstrings and layout; of its bytes if it cannot be parsed."""
+    """Return a hash of a source file without comments, docstrings and layout; of its bytes if it cannot be parsed."""
     content = path.read_bytes()
     with contextlib.suppress(SyntaxError, ValueError, RecursionError):
         tree = ast.parse(content)
@@ -75,9 +77,9 @@ def _drop_docstring(node: ast.Module | ast.ClassDef | ast.FunctionDef | ast.Asyn
 
 
 def constants_hash(function: FunctionType) -> str:
-    """Hash of a function's names and constants, which tell functions of the same name in one file apart.
+    """Return a hash of a function's names and constants, which distinguishes functions of the same name in one file.
 
-    Numba tells them apart by their lines, which a longer comment above them changes.
+    Numba distinguishes them by line number, which a longer comment above them would change.
     """
     return hashlib.sha256(_constants(function.__code__, function.__doc__).encode()).hexdigest()[:12]
 

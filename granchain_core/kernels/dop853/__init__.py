@@ -1,1 +1,1 @@
-"""Dormand and Prince's method of order 8 with contact events located."""
+"""DOP853, the Dormand–Prince method of order 8, with located contact events."""

@@ -58,7 +58,7 @@ def _(method):
 @attempt.of(Dop853)
 def _(method, step):
     slots, drive, y, workspace = step.trajectory
-    for s in range(1, STAGES + 1):  # row 12 is the step itself, its slope the next step's first
+    for s in range(1, STAGES + 1):  # row 12 is the step itself, and its slope the first of the next step
         combine(y, step.h, workspace.k, s, workspace.end)
         evaluate(slots, drive.beta, step.t + C[s] * step.h, workspace.end, workspace.k[s], workspace.forces)
     return error_norm(method.tolerance, step.h, y, workspace, slots.chain.inverse_mass.size)
@@ -66,7 +66,7 @@ def _(method, step):
 
 @inline_numba
 def error_norm(tolerance, h, y, workspace, bodies):
-    """The method's combined error of orders 5 and 3 in units of the tolerance, root mean square over the beads."""
+    """The combined error estimate of orders 5 and 3 in units of the tolerance, as a root mean square over the beads."""
     k = workspace.k
     fifth, third = 0.0, 0.0
     for row in range(2):
@@ -83,7 +83,7 @@ def error_norm(tolerance, h, y, workspace, bodies):
             third += (e3 * unit) ** 2
     if fifth == 0.0 and third == 0.0:
         return 0.0
-    # as in Hairer's dop853.f: 0.01 weighs the error of order 3, which keeps the quotient regular where order 5 is tiny
+    # as in Hairer's dop853.f: 0.01 weights the error of order 3, which keeps the quotient regular where order 5 is tiny
     return abs(h) * fifth / sqrt((fifth + 0.01 * third) * (2 * (bodies - 2)))
 
 

@@ -1,19 +1,18 @@
-"""Coefficients of the Dormand–Prince method of order 8 with error estimates of order 5 and 3 and dense output of
-order 7.
+"""Coefficients of DOP853: method of order 8, error estimates of orders 5 and 3, dense output of order 7.
 
 Source: Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, 2nd ed., sections II.5 (method and error
 estimates) and II.6 (dense output), and the published program DOP853. tests/kernels/dop853/test_tableau.py checks the
-order conditions that such numbers must satisfy.
+order conditions that these numbers must satisfy.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-#: Stages of one step, and their number with those that only the dense output needs.
+#: Number of stages of one step, without and with those that only the dense output needs.
 STAGES = 12
 ALL_STAGES = 16
-#: Evaluations that only the dense output needs: the step's end has its slope already.
+#: Evaluations that only the dense output needs: the slope at the step's end is already known.
 DENSE_EVALUATIONS = ALL_STAGES - STAGES - 1
 
 
@@ -130,7 +129,7 @@ A = _sparse((ALL_STAGES, ALL_STAGES), {
     (15, 14): -9.15095847217987,
 })
 
-#: Error estimate of order 3: b minus the weights of the embedded method; the last is that of the slope at the end.
+#: Error estimate of order 3: b minus the weights of the embedded method; the last weight is for the slope at the end.
 E3 = np.array([
     -0.18980075407240762,
     0.0,

@@ -1,4 +1,4 @@
-"""An accepted step of a short chain: its error is tolerable, and no contact opens in it that it did not aim at."""
+"""Accepted steps of a short chain: the error is tolerable, and only the contact that the step aims at may open."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ from .step import Units, attempt, prepare_dense_rows
 _MIN_FACTOR = 0.1
 #: [step size] dop853-root: safety factor of a step that is repeated, as in Hairer's dop853.f (SAFE).
 _SAFETY_OF_REPEATED = 0.9
-#: [step size] dop853-root: numbers that overflow in a shorter step than this will do so in any.
+#: [step size] dop853-root: numbers that overflow in a step shorter than this overflow in any step.
 _OVERFLOW_STEP = 1e-9
-#: [step size] dop853-root: most attempts to begin a step, and most steps in a row in which no time passes.
+#: [step size] dop853-root: most attempts at one step, and most consecutive steps in which no time passes.
 ATTEMPTS = 60
 
 
 class RunContext(NamedTuple):
-    """What the steps of a run share: chain, method, workspace and counters; p of the time transformation.
+    """Data shared by the steps of a run: chain, method, workspace, counters, and p of the time transformation.
 
-    `last` is the number of the last contact, and of beads. Points of the grid are `spacing` apart, and one that is
-    missed by at most `near` is passed; each `every`-th is recorded, none where it is 0.
+    `last` is the number of the last contact, and of beads. Grid points are `spacing` apart, and a point that is missed
+    by at most `near` counts as passed. Every `every`-th point is recorded, none if `every` is 0.
     """
 
     slots: Any
@@ -49,9 +49,9 @@ class RunContext(NamedTuple):
 
 
 class StepBegin(NamedTuple):
-    """The chain where a step begins: time in the period, point, rates, forces; closed contacts as bits and as 0 or 1.
+    """The chain at a step's start: time in the period, point, rates, forces; closed contacts as bits and as 0 or 1.
 
-    The forces are up to date only where they are recorded.
+    The forces are up to date only if they are being recorded.
     """
 
     t: float
@@ -65,7 +65,8 @@ class StepBegin(NamedTuple):
 class CheckedStep(NamedTuple):
     """An accepted step, the forces at its end, and the first contact that changes in it (−1: none), with the fraction.
 
-    `prepared` says whether its dense output is in the workspace, `exceeds` whether the largest forces may lie inside.
+    `prepared` is true if the dense output is in the workspace, `exceeds` if a new largest force may lie inside the
+    step.
     """
 
     step: Any
@@ -78,7 +79,7 @@ class CheckedStep(NamedTuple):
 
 @inline_numba
 def new_units(context, point, scale):
-    """Raise the scale of the tolerance to the largest values at a point; returns the `Units` of the errors."""
+    """Raise the scale of the tolerance to the largest values at a point; return the `Units` of the errors."""
     for q in range(2):
         largest = largest_of(abs(with_first(point.u if q == 0 else point.w, 0.0)))
         scale[q] = max(scale[q], largest)
@@ -91,7 +92,7 @@ def accepted_attempt(context, begin, chosen, dt, units):
     """Shrink a step until its error is tolerable, in the time next to the event of contact `chosen`, or in t (−1).
 
     Returns (status, step, dt). dt is nominal: the next step is planned from it, and it shrinks by the same factor as
-    the step in ξ, though next to an event their ratio is not constant.
+    the step in ξ, although their ratio is not constant next to an event.
     """
     counts = context.out.counts
     transform, q, h, limited, dt_dxi = transform_at(context.values, begin.closed, chosen), 0.0, dt, False, 1.0
@@ -127,10 +128,10 @@ def accepted_attempt(context, begin, chosen, dt, units):
 
 @inline_numba
 def accepted_step(context, begin, chosen, dt, units, g):
-    """An accepted step past point g of the grid. Only the contact of its time transformation opens in it.
+    """Take an accepted step past grid point g in which only the contact of its time transformation may open.
 
-    If another contact would open, the step is tried again with the time transformation of that contact's event.
-    Returns (status, `CheckedStep`, dt), with dt as in `accepted_attempt`.
+    If another contact would open, the step is tried again with the time transformation of that contact's event. Returns
+    (status, `CheckedStep`, dt), with dt as in `accepted_attempt`.
     """
     slots, work, values, counts = context.slots, context.work, context.values, context.out.counts
     attempts = 1

@@ -1,17 +1,17 @@
 """A short chain in vectors, in a transformed time ξ in which the motion next to one contact's event is smooth.
 
-After a closing at t_e the overlap of contact c grows as t − t_e and its force as the power 3/2, so the motion has no
-Taylor series in t there; the same holds before an opening. It has one in ξ, with
+After contact c closes at t_e, its overlap grows as t − t_e and its force as the power 3/2 of that, so the motion has no
+Taylor series in t there; the same applies before an opening. It has one in ξ, with
 
     q = δ_c^{1/p},    dt/dξ = q^{p−1},    dq/dξ = δ̇_c/p
 
-and p as in flow/event_time.py. (Sundman transformed time so in celestial mechanics.) q and t are integrated along with
-the chain, and the forces of contact c are powers of q. At an opening q passes through zero with everything else smooth,
-so that an attempt may go beyond the opening, which is then a root on its dense output: it need not be repeated.
-Contacts that are open stay so within an attempt, for the same reason. Far from events ξ is the time.
+and p as in flow/event_time.py. (Sundman transformed time in this way in celestial mechanics.) q and t are integrated
+along with the chain, and the forces of contact c are powers of q. At an opening, q passes through zero while everything
+else is smooth. So an attempt may go beyond the opening, which is then a root of its dense output, and need not be
+repeated. For the same reason, open contacts stay open within an attempt. Far from events, ξ is the time.
 
-Lane 0 is the driver, which moves as an oscillator: no stage needs a sine. q and t have vectors of their own, with the
-same number in all lanes: a number that is taken out of a vector and put into another one makes the next stage wait.
+Lane 0 is the driver, which is integrated as an oscillator, so that no stage needs a sine. q and t have vectors of their
+own, with the same number in all lanes: moving a number from one vector to another would delay the next stage.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class Dop853RootWorkspace(NamedTuple):
     """Workspace of steps along a short chain.
 
     `increments` are the slopes in ξ of 16 stages times the size of the step, `dense` the 7 rows of the dense output,
-    `begin` (1 row) the step's start. Rows of `state` (4, width) are named above; `closed` (1, width) is 1 where a
+    `begin` (1 row) the step's start. The rows of `state` (4, width) are named above; `closed` (1, width) is 1 where a
     contact is closed. `polynomial` (8,) is one quantity of the dense output: its seven rows, then its value at the
     start.
     """
@@ -67,10 +67,10 @@ class Dop853RootWorkspace(NamedTuple):
 class TimeTransformation(NamedTuple):
     """The transformed time ξ: that of the event of `contact` (`active` 1), or the time itself (0).
 
-    `others` is 1 for the closed contacts but that one; `stiffness` and `chosen_stiffness` are the stiffness of those
-    and of that one. `pull` is 1 on the bead after that contact and −1 on the one before it: what it does to its two
-    beads is added at the end, because q, on which it depends, is known last. `damping_pull` is λ/m times that, None
-    without damping, and `stiff_pull` the stiffness.
+    `others` is 1 for all other closed contacts; `stiffness` is that of the others, and `chosen_stiffness` that of
+    `contact`. `pull` is 1 on the bead after `contact` and −1 on the bead before it: the contact's action on its two
+    beads is added at the end, because q, on which it depends, is known last. `damping_pull` is λ/m times `pull`, None
+    without damping, and `stiff_pull` is the stiffness times `pull`.
     """
 
     active: float
@@ -92,7 +92,7 @@ class Point(NamedTuple):
 
 
 class Rates(NamedTuple):
-    """Rates in t: velocities and ẇ; overlaps, their rates, elastic forces."""
+    """Rates in t: velocities and ẇ; also overlaps, their rates and elastic forces."""
 
     du: Any
     dw: Any
@@ -131,7 +131,7 @@ def _(law, damping_over_mass, pull):
 
 @by_slot
 def with_damping_of(law, du, damping_pull, power, q):
-    """Velocities du with what the damping of the contact at q adds to those of its beads."""
+    """Add the share of the damping of the contact at q to the velocities du of its beads."""
     return du
 
 
@@ -160,7 +160,7 @@ def rates_at(values, driver, transform, point):
 
 @inline_llvm
 def transform_of(values, closed, chosen, active, contact):
-    """The transformed time next to the event of a contact, for which `chosen` is 1; nowhere, for the time itself."""
+    """The transformed time next to the event of the contact for which `chosen` is 1; if none is, the time itself."""
     others, pull = closed * (1.0 - chosen), from_left(blank(chosen), chosen) - chosen
     stiffness = repeat_like(chosen, splat8(at(values.stiffness, contact)))
     return TimeTransformation(active, contact, others, others * values.stiffness, chosen * stiffness,
@@ -169,7 +169,7 @@ def transform_of(values, closed, chosen, active, contact):
 
 @inline_llvm
 def no_transform(values, closed):
-    """ξ is the time."""
+    """The time itself as ξ."""
     return transform_of(values, closed, blank(closed), 0.0, 0)
 
 

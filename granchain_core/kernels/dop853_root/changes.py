@@ -1,4 +1,4 @@
-"""The time transformation and the size of the next step; contacts that have opened or closed in an accepted step."""
+"""The time transformation and size of the next step, and the contacts that open or close in an accepted step."""
 
 from __future__ import annotations
 
@@ -15,32 +15,32 @@ from .inside import change_before, load_distance, turn_of
 #: [step size] dop853-root: time is transformed if the contact's nearest event, at its present speed, is at most this
 #: many steps away.
 _MOST_STEPS_AWAY = 1.5
-#: [no threshold] Added to speeds, so that none is divided by zero.
+#: [no threshold] Added to speeds to avoid division by zero.
 _LEAST_SPEED = 1e-300
-#: [no threshold] Added to the time to the event of an open contact, which is then never the nearest.
+#: [no threshold] Added to the time to the event of an open contact, so that it is never the nearest.
 _OPEN_AWAY = 1e30
 #: [step size] dop853-root: a contact that moves less than this part of the largest displacement in a step is at rest.
-#: It transforms no time.
+#: The time is not transformed for it.
 _REST_DISPLACEMENT = 1e-9
 #: [step size] dop853-root: length of the first step after a closing, and of the last before an opening, as a part of
-#: the step in t. By measurement, as are the numbers above and below: over seven motions of section 2 and of the rig,
-#: 0.06 to 0.2 here and 0.7 to 2.5 steps away above change the evaluations for an error of 1e-8 by 7 % at most, in
-#: either sense.
+#: the step in t. This number and those above and below were found by measurement. Over seven motions of section 2 and
+#: of the rig, 0.06 to 0.2 here and 0.7 to 2.5 steps away above change the number of evaluations for an error of 1e-8 by
+#: at most 7 %, up or down.
 _STEP_PART_NEXT_TO_EVENT = 0.12
 #: [step size] dop853-root: a step that would reach this part of the way to an opening goes beyond it.
 _OPENING_PART = 0.8
-#: [step size] dop853-root: length of such a step, as a factor of the way to the opening.
+#: [step size] dop853-root: length of such a step, relative to the way to the opening.
 _OPENING_FACTOR = 1.3
-#: [step size] dop853-root: a distance between two values of a step is searched if the cubic's rise above both, enlarged
-#: by this part, reaches 0.
+#: [step size] dop853-root: a step is searched for a touch if the cubic's rise above its two ends, enlarged by this
+#: part, reaches 0.
 _MISSED_PART = 0.25
 
 
 class StepInXi(NamedTuple):
-    """An accepted step in ξ: its time transformation, size, start, end, the rates and dt/dξ at both.
+    """An accepted step in ξ: its time transformation, size, start and end, with rates and dt/dξ at both.
 
-    `error_squared` is the square of its error, in units of the tolerance, as `attempt` (step.py) gives it. `limited`
-    says whether the step was repeated, or made shorter next to an event, so that the next one should not be longer.
+    `error_squared` is the square of its error in units of the tolerance, as returned by `attempt` (step.py). `limited`
+    is true if the step was repeated, or shortened next to an event, so that the next one should not be longer.
     """
 
     transform: Any
@@ -57,7 +57,7 @@ class StepInXi(NamedTuple):
 
 @internal
 def size_in_xi(power, q, speed, dt):
-    """Size of a step in ξ for a step dt in time, limited next to an event; and whether it was limited.
+    """Return the size of a step in ξ for a step dt in time, limited next to an event, and whether it was limited.
 
     The contact has the root q and the rate `speed`, which is not zero.
     """
@@ -73,8 +73,9 @@ def size_in_xi(power, q, speed, dt):
 
 @inline_llvm
 def nearest_event(rates, closed, scale, dt):
-    """The closed contact whose closing or opening is nearest in time, before or after; −1 if none is within
-    `_MOST_STEPS_AWAY` steps of dt.
+    """The closed contact whose closing or opening is nearest in time, past or future; −1 if none is near enough.
+
+    Near enough is within `_MOST_STEPS_AWAY` steps dt.
     """
     speed, at_rest = abs(rates.rate), _REST_DISPLACEMENT * scale
     time_to_event = (abs(rates.overlap) + at_rest) / (speed + _LEAST_SPEED) + _OPEN_AWAY * (1.0 - closed)
@@ -87,7 +88,7 @@ def nearest_event(rates, closed, scale, dt):
 def may_touch(d0, s0, d1, s1):
     """Whether a distance that is negative at both ends of a step, with slopes s0 and s1, may be positive in between.
 
-    The cubic through both says so, with room for what it misses of an accepted step.
+    The cubic through both ends decides, with a margin for its error in an accepted step.
     """
     if not (s0 > 0.0 and s1 < 0.0):
         return False
@@ -115,9 +116,9 @@ def may_change(step, power, bits, turned):
 
 @inline_llvm
 def changes_in(step, bits, contacts):
-    """Bits of the contacts that have opened or closed at the step's end, and of those that have turned in between.
+    """Bits of the contacts that have opened or closed by the step's end, and of those that have turned in between.
 
-    Bit c of `bits` says whether contact c was closed at the start.
+    Bit c of `bits` is 1 if contact c was closed at the start.
     """
     rising, risen, overlap = positive_mask(step.rates.rate), positive_mask(step.end_rates.rate), step.end_rates.overlap
     crossed = (positive_mask(overlap) & ~bits) | (positive_mask(-overlap) & bits)
@@ -131,7 +132,7 @@ def changes_in(step, bits, contacts):
 
 @inline_numba
 def first_event(slots, work, step, bits, crossed, turned):
-    """(contact, fraction) of the first change in the step, whose dense output is prepared; (−1, 2) if there is none."""
+    """Return (contact, fraction) of the first change in the step, whose dense output is prepared; (−1, 2) if none."""
     first, contact = 2.0, -1
     for c in range(slots.chain.stiffness.size):
         if ((crossed | turned) >> c) & 1 == 0:

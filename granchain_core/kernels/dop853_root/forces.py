@@ -1,4 +1,4 @@
-"""The three forces at the ends of a step and inside it, and the largest of them."""
+"""The three forces at the ends of a step and inside it, and their largest values."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class PreparedStep(NamedTuple):
 
 
 class ForceInside(NamedTuple):
-    """Input, output or elastic output force (0, 1, 2) inside a step; its evaluations are counted."""
+    """Input, output or elastic output force (0, 1, 2) inside a step; evaluations are counted."""
 
     number: int
     counts: np.ndarray
@@ -67,7 +67,7 @@ def end_forces(values, driver, point, rates, last):
 
 @inline_llvm
 def in_xi(forces, dt_dxi):
-    """Forces with their slopes in ξ, where dt/dξ is `dt_dxi`."""
+    """The same forces, with slopes in ξ instead of t; dt/dξ is `dt_dxi`."""
     a, b, c = forces.slopes
     return EndForces(forces.values, (dt_dxi * a, dt_dxi * b, dt_dxi * c))
 
@@ -90,7 +90,7 @@ def _(quantity, step, x):
 
 @inline_llvm
 def may_exceed(start, end, h, peaks):
-    """Raise the largest forces to those at the two ends of h in ξ; whether a larger one may lie in between."""
+    """Raise the largest forces to those at both ends of a step h in ξ; return whether a larger one may lie inside."""
     exceeds = False
     for q in range(3):
         update_largest(peaks, row_of(q), max(start.values[q], end.values[q]))
@@ -101,7 +101,7 @@ def may_exceed(start, end, h, peaks):
 
 @internal
 def search_forces(slots, work, start, end, until, h, out):
-    """Raise the largest forces to those inside the step up to the fraction `until`; h is the size of that part."""
+    """Raise the largest forces to those inside the step up to fraction `until`; h is the size of that part."""
     peaks = out.log.peaks
     middle = forces_inside(slots, work, 0.5 * until, out.counts)
     for q in range(3):

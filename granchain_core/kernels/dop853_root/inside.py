@@ -1,4 +1,4 @@
-"""Inside a step, on its dense output: the overlap of a contact or q, the time, and where they are zero or largest."""
+"""Quantities inside a step, on its dense output: an overlap or q, and the time; their zeros and maxima."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ from ..effects.preload import overlap
 from ..error_control.bracket import maximum_inside, value_at
 from ..error_control.step import TURN_SECTIONS
 
-#: A fraction of the step is checked when it changes by less than this; the next change would be far smaller.
+#: The search for a zero ends when the fraction of the step changes by less than this; the next change would be far
+#: smaller.
 _CHECKED_CHANGE = 1e-9
 
 
@@ -25,7 +26,7 @@ class Polynomial(NamedTuple):
 
 @internal
 def load_distance(slots, work, contact, chosen, sign):
-    """Load the overlap of a contact, or q if the contact is `chosen`, times a sign, into the polynomial."""
+    """Load a contact's overlap, or q if the contact is `chosen`, times a sign into the polynomial."""
     p, begin, dense = work.polynomial, work.begin, work.dense
     if chosen:
         p[7] = sign * begin.q[0, 0]
@@ -58,10 +59,10 @@ def _(quantity, step, x):
 
 @internal
 def zero_between(p, low, high, f_low, f_high):
-    """Where the polynomial passes from negative, f_low, to positive, f_high: secants within a bracket, else its middle.
+    """Where the polynomial passes from f_low < 0 to f_high > 0: by secants, or by halving if one leaves the bracket.
 
-    They need fewer evaluations than `root_inside` (error_control/bracket.py), which halves a value at each end that
-    stays. Where 60 do not suffice, the last estimate is returned.
+    This takes fewer evaluations than `root_inside` (error_control/bracket.py), which halves the value at the end that
+    stays. If 60 do not suffice, the last estimate is returned.
     """
     last, x, f_last, f = low, high, f_low, f_high
     for _ in range(60):
@@ -81,7 +82,7 @@ def zero_between(p, low, high, f_low, f_high):
 
 @internal
 def turn_of(p, sign):
-    """(fraction, value) where the polynomial times `sign` is largest, if it has one maximum in the step."""
+    """Return (fraction, value) where the polynomial times `sign` is largest, if it has one maximum in the step."""
     return maximum_inside(Polynomial(p, sign), None, 1.0, TURN_SECTIONS)
 
 
@@ -104,10 +105,10 @@ def fraction_at(work, instant, high):
 
 @internal
 def change_before(p, falls, high):
-    """Fraction up to `high` at which a distance becomes positive; 0 where it is so at the start, unless it `falls`.
+    """Fraction up to `high` at which a distance becomes positive; 0 if it is so at the start, unless it `falls`.
 
-    A distance that falls at first becomes positive after its minimum only. At the start of a contact that has just
-    changed it is zero but for rounding, which may have either sign and would be taken for the root.
+    A distance that falls at first can only become positive after its minimum. For a contact that has just changed, it
+    is zero at the start except for rounding, which may have either sign and would be mistaken for the root.
     """
     low, before = 0.0, p[7]
     if falls:

@@ -1,8 +1,8 @@
-"""Runs along a short chain with error control. An attempt may pass a contact event, a root of its dense output.
+"""Runs along a short chain with error control, in which an attempt may pass a contact event.
 
 The order of one step, `run_dop853_root`:
 
-1. `nearest_event` (changes.py) chooses the contact whose event is near enough to transform the time for it, or none;
+1. `nearest_event` (changes.py) chooses a contact whose event is near enough to transform the time for it, or none;
 2. `accepted_step` (accepted_step.py) tries steps from the nominal size dt: `size_in_xi` (changes.py) gives the size in
    ξ, `attempt` (step.py) the step, and dt shrinks until the error is tolerable. If another contact opens in the step,
    the time is transformed for that contact's event instead, and the attempts begin again;
@@ -54,22 +54,22 @@ from .forces import end_forces, in_xi, may_exceed, search_forces
 from .inside import fraction_at, time_inside
 from .step import point_inside
 
-#: [step size] dop853-root: largest factor between two steps. By measurement it hardly matters: raised to 2, as the
-#: next, 24 motions of section 2 and the rig take 0.3 % more evaluations for errors of 1e-8 and 1e-10.
+#: [step size] dop853-root: largest factor between two steps. It hardly matters by measurement: with 2, as for the next
+#: number, 24 motions of section 2 and the rig take 0.3 % more evaluations for errors of 1e-8 and 1e-10.
 _MAX_FACTOR = 1.3
 #: [step size] dop853-root: largest factor between two steps after an error below `_SMALL_ERROR` tolerances.
 _MAX_FACTOR_OF_SMALL_ERROR = 2.0
-#: [step size] dop853-root: error in tolerances below which a step may grow faster.
+#: [step size] dop853-root: error in units of the tolerance below which a step may grow faster.
 _SMALL_ERROR = 1e-3
-#: [step size] dop853-root: safety factor of the step after an accepted one. By measurement: with 0.9 seven
-#: motions take 5 % more evaluations for an error of 1e-8, with 0.7 1 % fewer.
+#: [step size] dop853-root: safety factor of the step after an accepted one. By measurement, seven motions take 5 % more
+#: evaluations for an error of 1e-8 with 0.9, and 1 % fewer with 0.7.
 _SAFETY = 0.8
 
 
 class StepEnd(NamedTuple):
-    """How far a step is gone: contact that changes there or −1, fraction, time, grid points passed, point, its rates.
+    """The end of a step: the contact that changes there or −1, fraction, time, grid points passed, point, rates.
 
-    `cut` says whether it ends inside the step that was taken.
+    `cut` is true if it lies inside the attempt that was accepted.
     """
 
     contact: int
@@ -83,7 +83,7 @@ class StepEnd(NamedTuple):
 
 @inline_llvm
 def with_contact_toggled(context, begin, contact):
-    """`StepBegin` once a contact has opened or closed."""
+    """`StepBegin` after a contact has opened or closed."""
     work = context.work
     work.closed[0, contact] = 1.0 - work.closed[0, contact]
     closed = load_row(work.chain.width, work.closed, 0)
@@ -108,7 +108,7 @@ def begin_of_run(context, t, y, bodies):
 
 @inline_numba
 def with_driver_in_place(context, begin):
-    """`StepBegin` with the driver where its phase has it, and the rates there."""
+    """`StepBegin` with the driver set to its exact phase, and the rates there."""
     driver, values, theta = context.driver, context.values, context.beta * begin.t
     point = Point(with_first(begin.point.u, driver_displacement(driver, theta)),
                   with_first(begin.point.w, driver_velocity(driver, theta)), splat8(0.0), splat8(begin.t))
@@ -122,7 +122,7 @@ def with_driver_in_place(context, begin):
 
 @inline_numba
 def end_of_step(context, begin, checked, g, left):
-    """The end of a step past point g of the grid: where a contact changes, or at the last of the `left` points."""
+    """The end of a step past grid point g: where a contact changes, or at the last of the `left` points."""
     step, contact, x = checked.step, checked.contact, checked.x
     end, end_rates = step.end, step.end_rates
     time, passed = at(end.t, 0), 0
@@ -145,7 +145,7 @@ def end_of_step(context, begin, checked, g, left):
 
 @inline_numba
 def record_step(context, begin, checked, end, g, row, samples):
-    """Record the forces in a step, and of the grid points past number g in it each `every`-th.
+    """Record the forces in a step, and every `every`-th of its grid points after number g.
 
     Returns the forces at its end and the next free row of `samples`.
     """
@@ -173,7 +173,7 @@ def record_step(context, begin, checked, end, g, row, samples):
 
 @inline_llvm
 def growth(step, end):
-    """Factor from the nominal size of a step in time (`accepted_attempt`) to that of the next one."""
+    """Factor from a step's nominal size in time (`accepted_attempt`) to that of the next step."""
     if end.cut and end.x < 0.5:
         return 1.0
     most = _MAX_FACTOR if step.error_squared > _SMALL_ERROR**2 else _MAX_FACTOR_OF_SMALL_ERROR
@@ -192,7 +192,7 @@ def write_beads(context, begin, y, bodies):
 
 @kernel
 def run_dop853_root(method, work, trajectory, sample_range, samples, out):
-    """Run over a range of the grid, as `run_error_controlled` (error_control/run.py), on the workspace `work`."""
+    """Run over a range of the grid, like `run_error_controlled` (error_control/run.py), on the workspace `work`."""
     slots, drive, y, workspace = trajectory
     points, grid, every, counts = sample_range.points, sample_range.grid, sample_range.every, out.counts
     bodies, period = slots.chain.inverse_mass.size, drive.period
@@ -206,7 +206,7 @@ def run_dop853_root(method, work, trajectory, sample_range, samples, out):
         evaluate(slots, drive.beta, begin.t, y, workspace.k[0], workspace.forces)
         write_sample(slots, 0, y, workspace.k[0], workspace.forces.e, samples)
     while done < points:
-        begin = with_driver_in_place(context, begin)  # within a period its oscillator is as exact as the beads
+        begin = with_driver_in_place(context, begin)  # within a period, its oscillator is as accurate as the beads
         while done < points and not begin.t >= period:
             if out.stop[0] != 0:
                 return CANCELLED, row if every > 0 else done

@@ -1,4 +1,4 @@
-"""One step of the Dormand–Prince method of order 8 in the transformed time: stages, error estimate, dense output."""
+"""One step of DOP853 in the transformed time: stages, error estimate, dense output."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from .chain import Point, powers, rates_at
 
 
 class Units(NamedTuple):
-    """1/(tolerance · scale) of displacements and of w, by which errors are multiplied, and how many components count.
+    """1/(tolerance · scale) of displacements and of w, the factors of their errors, and the number of components.
 
-    The error of t is measured as one of w. The error of q is not measured: q^p is the overlap of a contact, and the
-    displacements on both of its sides are measured already.
+    The error of t is measured on the scale of w. The error of q is not measured: q^p is the overlap of a contact, and
+    the displacements on both sides of it are already measured.
     """
 
     u: float
@@ -40,12 +40,12 @@ def step_size(law, transform, h):
 
 @inline_llvm
 def keep_increment(work, law, transform, h, q, rates, row):
-    """Write the increments of one stage, its slopes in ξ times the size of the step; returns them."""
+    """Write the increments of one stage, i.e. its slopes in ξ times the step size, and return them."""
     dt_dxi, _, _ = powers(smooth_power(law), q)
     dt = h.xi * (1.0 - transform.active + transform.active * dt_dxi)
     dt_like = repeat_like(rates.du, dt)
     contact = transform.contact
-    rise = splat8(at(rates.du, contact)) - splat8(at(rates.du, contact + 1))  # `rates.rate` is known later
+    rise = splat8(at(rates.du, contact)) - splat8(at(rates.du, contact + 1))  # `rates.rate` is not known yet
     increment = Point(rates.du * dt_like, rates.dw * dt_like, h.root * rise, dt)
     store(work.increments.u, row, increment.u)
     store(work.increments.w, row, increment.w)
@@ -55,7 +55,7 @@ def keep_increment(work, law, transform, h, q, rates, row):
 
 
 def _stage(row):
-    """Code of one stage: from the increment of the stage before it to its own."""
+    """Make the code of one stage: from the increment of the previous stage to its own."""
     moved = moved_by_rows(A[row], row - 1)
 
     @inline_llvm
@@ -77,7 +77,7 @@ _dense3, _dense4, _dense5, _dense6 = (weighted_rows(row) for row in DENSE_WEIGHT
 
 @inline_llvm
 def attempt(values, driver, work, transform, start, rates, h, units):
-    """Try a step of size h in ξ; returns the square of the error over the tolerance, the end and its rates.
+    """Try a step of size h in ξ; return the squared error in units of the tolerance, the end, and the rates there.
 
     `rates` are those at the start; `units` are `Units`.
     """
@@ -121,7 +121,7 @@ def _dense_rows(increments, dense, start, end):
 
 @inline_llvm
 def prepare_dense_rows(values, driver, work, transform, start, end, h):
-    """Fill the dense output of the step, with three more stages, and keep its start."""
+    """Fill the dense output of the step, with three more stages, and store its start."""
     increments, dense, begin = work.increments, work.dense, work.begin
     h = step_size(values.slots.dissipation, transform, h)
     k = Point(load_like(start.u, increments.u, STAGES), load_like(start.w, increments.w, STAGES),

@@ -1,8 +1,8 @@
-"""Effects in a batch: the values of all members, one member in each lane.
+"""Effects in a batch: the values of all members, one member per lane.
 
-In the arguments of a batch, every number of a slot is an array (1, L), and every array of a slot one of (rows, L).
-`integrate/batch.py` makes them. A slot of an effect that batches know has code for `batch_values` (in the effect's
-file).
+In the arguments of a batch, every number of a slot is an array (1, L), and every array of a slot is an array (rows, L);
+`integrate/batch.py` makes them. The slot of each effect that batches support has code for `batch_values`, in the
+effect's file.
 """
 
 from __future__ import annotations
@@ -12,5 +12,5 @@ from ..compiling.dispatch import by_slot
 
 @by_slot
 def batch_values(slot):
-    """The slot with its numbers as vectors of all members, read once for many steps. Effect absent: None."""
+    """Return the slot with its numbers as vectors over all members, read once for many steps. Effect absent: None."""
     return None

@@ -1,4 +1,4 @@
-"""Hertz contact of spheres, always present.
+"""Hertz contact of spheres; always present.
 
 Some kernels and closed forms repeat the exponent 3/2; docs/design.md, "The exponent 3/2", lists them.
 
@@ -28,14 +28,14 @@ class Chain(NamedTuple):
 
 
 class FrozenContacts(NamedTuple):
-    """Slot of contacts whose state is fixed while a step is tried: closed (N+1,) is 0 where one stays open."""
+    """Slot of contacts whose state is fixed during an attempt: closed (N+1,) is 0 where a contact stays open."""
 
     closed: np.ndarray
 
 
 @internal
 def positive_part(overlap):
-    """[δ]_+, written so that a NaN overlap stays NaN instead of cutting the chain there."""
+    """[δ]_+, written so that a NaN overlap stays NaN rather than opening the contact."""
     return clip(overlap)
 
 
@@ -43,7 +43,7 @@ def positive_part(overlap):
 def closed_overlap(frozen, c, overlap):
     """[δ]_+ of contact c, 0 where `frozen` keeps it open.
 
-    Effect absent: the overlap's sign says whether it is closed.
+    Effect absent: the sign of the overlap decides.
     """
     return positive_part(overlap)
 
@@ -61,7 +61,7 @@ def three_halves(s):
 
 @internal
 def elastic_force(stiffness, d):
-    """K d^{3/2} for an overlap d that is already non-negative."""
+    """K d^{3/2} for a non-negative overlap d."""
     return stiffness * d * root(d)
 
 
@@ -73,5 +73,5 @@ def elastic_slope(stiffness, d):
 
 @internal
 def elastic_energy(stiffness, d):
-    """(2/5) K d^{5/2}."""
+    """Elastic energy (2/5) K d^{5/2}."""
     return 0.4 * stiffness * d * d * root(d)

@@ -5,7 +5,7 @@ Equation   F_d = λ δ^a δ̇ H(δ),   g = λ δ^a,   G = λ δ^{1+a}/(1 + a)
              Tsuji           a = 1/4   Tsuji, Tanaka & Ishida 1992
              KuwabaraKono    a = 1/2   Kuwabara & Kono 1987
 Values     coefficient: λ = D (A₀/δ_r)^a/(mφ), at an overlap of one length unit where a > 0
-Law        defined by its `exponent` a and its `power` δ^a, from which all other terms follow, here and elsewhere
+Law        defined by its `exponent` a and its `power` δ^a; all other terms follow from these, here and elsewhere
 Terms      damping, damping_slope, dashpot_force, closing_force, dashpot_slope, primitive, times_primitive,
            unit_primitive = G/λ, v_from_w and its inverse w_from_v (absent: v = w); write_primitive, put_primitive and
            copy_primitive write into the array of G
@@ -27,18 +27,18 @@ from .registry import in_simd_kernels
 
 @by_slot_inlined
 def exponent(law):
-    """a of g = λ δ^a. It must return a literal, so that the compiler computes what follows from it."""
+    """Exponent a of g = λ δ^a. It must return a literal, so that the compiler can fold everything computed from it."""
     return 0.0
 
 
 @by_slot_inlined
 def power(law, d, r):
-    """δ^a from d = [δ]_+ and r = √d, for numbers and vectors. A root that is not used is not computed."""
+    """δ^a from d = [δ]_+ and r = √d, for numbers and vectors. An unused root is not computed."""
     return 0.0
 
 
 class LinearDashpot(NamedTuple):
-    """Slot of the paper's dashpot."""
+    """Slot of the paper's linear dashpot."""
 
     coefficient: float
 
@@ -70,7 +70,7 @@ def _(law, d, r):
 
 
 class KuwabaraKono(NamedTuple):
-    """Slot of damping ∝ δ^{1/2}, the viscoelastic sphere."""
+    """Slot of damping ∝ δ^{1/2}: viscoelastic spheres."""
 
     coefficient: float
 
@@ -86,7 +86,7 @@ def _(law, d, r):
 
 
 def checked(*laws):
-    """The laws, each checked to be complete; a TypeError names the law and the missing term."""
+    """Check that each law is complete and return the laws; a TypeError names the law and its fault."""
     for law in laws:
         require_terms(law, exponent, power)
         if law._fields != ("coefficient",):
@@ -103,14 +103,14 @@ def checked(*laws):
 
 #: Every slot class for which an exponent or a power has been registered.
 LAWS = checked(*(slot for slot in exponent.implementations | power.implementations if slot is not type(None)))
-#: Those with g(0) > 0, whose force jumps when a contact closes, and those with g(0) = 0.
+#: Laws with g(0) > 0, whose force jumps when a contact closes, and laws with g(0) = 0.
 JUMP_LAWS = tuple(law for law in LAWS if exponent(law(1.0)) == 0.0)
 SMOOTH_LAWS = tuple(law for law in LAWS if law not in JUMP_LAWS)
 
 
 @by_slot
 def damping(law, d):
-    """Force per speed of approach g(d) for d = [δ]_+; 0 where the contact is open."""
+    """Force per approach speed, g(d), for d = [δ]_+; 0 where the contact is open."""
     return 0.0
 
 
@@ -126,7 +126,7 @@ def _(law, d):
 
 @by_slot_inlined
 def dashpot_force(law, overlap, rate):
-    """F_d = g([δ]_+) δ̇, which adds to a contact's elastic force; for numbers and vectors."""
+    """F_d = g([δ]_+) δ̇, which is added to a contact's elastic force; for numbers and vectors."""
     return 0.0
 
 
@@ -137,7 +137,7 @@ def _(law, overlap, rate):
 
 @by_slot
 def closing_force(law, rate):
-    """g(0+) δ̇, the force just after a closing."""
+    """g(0+) δ̇, the force just after the contact closes."""
     return 0.0
 
 
@@ -148,7 +148,7 @@ def _(law, rate):
 
 @by_slot
 def damping_slope(law, d):
-    """g'(d) for d = [δ]_+; 0 where the contact is open, though it is infinite there where 0 < a < 1."""
+    """g'(d) for d = [δ]_+; 0 where the contact is open, although the limit at d = 0 is infinite for 0 < a < 1."""
     return 0.0
 
 
@@ -218,7 +218,7 @@ def _(law, d, r):
 
 @by_slot
 def write_primitive(law, G, c, d):
-    """Store G of contact c; without dissipation there is no array to store it in."""
+    """Store G of contact c. Effect absent: nothing, since there is no array for it."""
 
 
 @write_primitive.of(*LAWS)
@@ -228,7 +228,7 @@ def _(law, G, c, d):
 
 @by_slot
 def put_primitive(law, G, c, value):
-    """Store a given value of G of contact c; without dissipation there is no array to store it in."""
+    """Store a given value of G of contact c. Effect absent: nothing, since there is no array for it."""
 
 
 @put_primitive.of(*LAWS)
@@ -238,7 +238,7 @@ def _(law, G, c, value):
 
 @by_slot
 def copy_primitive(law, G, source, target):
-    """Copy G of contact `source` to contact `target`; without dissipation there is none."""
+    """Copy G of contact `source` to contact `target`. Effect absent: nothing, since there is no array for it."""
 
 
 @copy_primitive.of(*LAWS)
@@ -269,7 +269,7 @@ def _(law, inverse_mass, v, G, i):
 
 
 def _read_for_batch(slot):
-    """Code of `batch_values` for a law: a compiled function can only make slots of a class named in its source."""
+    """Register `batch_values` for a law: a compiled function can only construct a class that is named in its source."""
 
     @batch_values.of(slot)
     def _(law):

@@ -1,12 +1,12 @@
 """The driver, body 0, with a prescribed motion.
 
 Equation   Harmonic: u_0 = A sin θ,  θ = 2πft;  v_0 = β A cos θ
-           PrescribedMotion: u_0 = p_0 + p_1 θ + p_2 θ² between two knots, θ the time since the first of them
+           PrescribedMotion: u_0 = p_0 + p_1 θ + p_2 θ² between two knots, where θ is the time since the first
 Source     Zhang et al. 2016, eqs. (1) and (2); chirps, tones, noise, measured motion: prescribed_drive/signal.py
 Values     Harmonic: amplitude: 1 in scaled units, 0 for a driver at rest; beta = 2πf/φ
-           PrescribedMotion: piece (3,), which rk4/piecewise.py fills before each piece. The velocity is a straight line
-           there, so that the acceleration, which the energy account needs, does not depend on the time
-Absent     bead 1 has nothing on its left: body 0 stands BODY_FAR_AWAY away and its contact never closes
+           PrescribedMotion: piece (3,), which rk4/piecewise.py fills before each piece. The velocity is linear in time,
+           so that the acceleration, which the energy account needs, is constant within a piece
+Absent     bead 1 has no neighbour on its left: body 0 is BODY_FAR_AWAY away and its contact never closes
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ import numpy as np
 from ..compiling.dispatch import by_slot
 from .registry import in_simd_kernels
 
-#: Where an absent driver or wall stands, in length units: too far to touch, near enough not to overflow.
+#: Distance of an absent driver or wall, in length units: far enough never to touch, near enough not to overflow.
 BODY_FAR_AWAY = 1e30
 
 
@@ -74,7 +74,7 @@ def _(driver, theta):
 
 @by_slot
 def driver_acceleration(driver, u0):
-    """v̇_0 where the driver is at u_0."""
+    """v̇_0 of a driver at displacement u_0."""
     return 0.0
 
 

@@ -1,15 +1,14 @@
 """The energy account: the work of the driver and the energy that the chain loses, integrated with the motion.
 
 Equation   Ẇ = F_{c=0} v_0,   Q̇ = Σ_c (F_c − F^el_c) δ̇_c;   W − Q − ΔE = 0
-           Q is lost in the contacts and to forces from outside the chain; the latter part is added by
-           equations/body_forces.py.
-Method     Both integrands jump with the dashpot force. Integrated by parts they do not: with dG = g δ̇ dt,
+           Q is lost in the contacts and to forces from outside the chain; equations/body_forces.py adds the latter.
+Method     Both integrands jump with the dashpot force. Integrated by parts, with dG = g δ̇ dt, they do not:
              W = ∫ (e_0 v_0 − G_0 v̇_0) dt + G_0 v_0
              Q = −∫ Σ_c G_c (ẇ_c − ẇ_{c+1}) dt + Σ_c G_c (δ̇_c − γ_c/2),   γ_c = δ̇_c − (w_c − w_{c+1}),
            Body 0 has w_0 = v_0. γ = −L G with a symmetric matrix L, by w = v − (G_{i−1} − G_i)/m, so that
            Σ γ_c dG_c = d(½ Σ γ_c G_c): hence the factor ½.
-           The force x_c that the tension cut adds does work of its own, x_c δ̇_c, which is added to Q̇.
-Absent     nothing is integrated: curves and settling do not need it
+           The force x_c added by the tension cut does its own work, x_c δ̇_c, which is added to Q̇.
+Absent     nothing is integrated: curves and settling do not need the account
 """
 
 from __future__ import annotations
@@ -33,7 +32,7 @@ class EnergyAccount(NamedTuple):
 
 @by_slot
 def account_rates(account, slots, y, dy, e):
-    """Write the integrands of W and Q after the motion in dy; needs the velocities in dy and the forces in e."""
+    """Append the integrands of W and Q to the motion in dy, from the velocities in dy and the forces in e."""
 
 
 @account_rates.of(EnergyAccount)
@@ -45,7 +44,7 @@ def _(account, slots, y, dy, e):
     for c in range(e.size):
         d = positive_part(overlap(slots.preload, y, c))
         G = contact_primitive(slots.tension, slots, y, c, d)
-        # the elastic energy that a force-free contact loses is known at the step's end: `lost_in`
+        # the elastic energy lost by a force-free contact is added at the step's end: `lost_in`
         cut = e[c] - unless_force_free(slots.tension, c, elastic_force(slots.chain.stiffness[c], d))
         lost += cut * (dy[c] - dy[c + 1]) - times_primitive(slots.dissipation, G, dy[bodies + c] - dy[bodies + c + 1])
         if c == 0:
@@ -57,7 +56,7 @@ def _(account, slots, y, dy, e):
 
 @by_slot
 def force_free_loss(account, slots, y, end):
-    """Energy that force-free contacts lose from y to `end`. Effect absent: there is no account."""
+    """Energy that force-free contacts lose from y to `end`. Effect absent: 0."""
     return 0.0
 
 
@@ -68,7 +67,7 @@ def _(account, slots, y, end):
 
 @by_slot
 def add_to_account(account, y, work, lost):
-    """Add to the work and to the energy lost in y. Effect absent: there is no account."""
+    """Add to the driver's work and to the lost energy in y. Effect absent: nothing."""
 
 
 @add_to_account.of(EnergyAccount)
@@ -79,7 +78,7 @@ def _(account, y, work, lost):
 
 @internal
 def account_ends(slots, y, dy):
-    """Boundary terms of the integration by parts at a state, to be added to the integrals of W and of Q."""
+    """Boundary terms of the integration by parts at a state, to be added to the integrals for W and Q."""
     bodies = slots.chain.inverse_mass.size
     lost, work = 0.0, 0.0
     for c in range(bodies - 1):
@@ -95,7 +94,7 @@ def account_ends(slots, y, dy):
 
 @by_slot
 def ends_of(account, slots, y, dy):
-    """`account_ends` where there is an account. Effect absent: zero."""
+    """`account_ends` if there is an account. Effect absent: zeros."""
     return 0.0, 0.0
 
 

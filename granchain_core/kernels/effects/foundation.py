@@ -1,8 +1,8 @@
-"""Spring from every bead to the ground: the flexures of the rig.
+"""A spring from every bead to the ground: the flexures of the rig.
 
 Equation   m_i ü_i = … − k u_i
 Source     Zhang et al. 2016, eqs. (3) to (5), figure 8
-Values     stiffness: κ = k/(K√A₀) with K of the contact of two beads like bead 1, the same for all beads
+Values     stiffness: κ = k/(K√A₀), the same for all beads, with K of a contact of two beads like bead 1
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ class Foundation(NamedTuple):
 
 @by_slot
 def add_foundation_force(foundation, force, u):
-    """Force on a bead, `force` with −k u added. Effect absent: `force` itself."""
+    """Add −k u to the force on a bead. Effect absent: `force` unchanged."""
     return force
 
 
@@ -35,7 +35,7 @@ def _(foundation, force, u):
 
 @by_slot
 def foundation_energy(foundation, u):
-    """k u²/2."""
+    """Spring energy k u²/2."""
     return 0.0
 
 
@@ -51,7 +51,7 @@ def _(foundation):
 
 @by_slot
 def add_foundation_slope(foundation, slope, du, factor):
-    """A tangent's slope with the change of the force, −k δu, times `factor` added. Effect absent: the slope itself."""
+    """Add the change of the force, −k δu, times `factor` to a tangent's slope. Effect absent: the slope unchanged."""
     return slope
 
 

@@ -1,13 +1,13 @@
-"""A given force in place of the driver's contact: measured and sampled, or that of a chain acting on its observer.
+"""A given force instead of the driver's contact: measured and sampled, or that of a chain acting on its observer.
 
 Equation   m_1 ü_1 = F_in − F_1 − k u_1;  observer of a chain: F_in is the total force of the chain's own contact 0
 Source     Zhang et al. 2016, eqs. (3) and (4)
-Values     Sampled: piece (4,), the cubic of the force between two samples in the time since the first of them, constant
-           term first; rk4/piecewise.py fills it before each piece, and the phase θ is that time.
+Values     Sampled: piece (4,), the force between two samples as a cubic in the time since the first, constant term
+           first; rk4/piecewise.py fills it before each piece, and the phase θ is that time.
            ObserverCoupling: the harmonic driver of the first chain, and the contact before the observer's first bead
-Terms      put_given_primitive and put_given_force put the force into contact 0 (Sampled) or into the contact named by
-           the coupling. Elastic force e_0 and G_0 are copied separately, so that in w-variables nothing jumps in the
-           observer either
+Terms      put_given_primitive and put_given_force put the force into contact 0 (Sampled) or into the contact that the
+           coupling specifies. Elastic force e_0 and G_0 are copied separately, so that in w-variables nothing jumps in
+           the observer either
 Methods    Sampled: fixed steps, from sample to sample. ObserverCoupling: dop853; the quadrature errors
            that split steps subtract (rk4/step.py) are not copied
 Absent     nothing is prescribed
@@ -41,7 +41,7 @@ class Sampled(NamedTuple):
 
 
 class ObserverCoupling(NamedTuple):
-    """Slot of the harmonic driver of a chain whose input force also acts in contact `contact`, on its observer."""
+    """Slot of the harmonic driver of a chain whose input force also acts on its observer, in contact `contact`."""
 
     amplitude: float
     beta: float
@@ -72,7 +72,7 @@ driver_acceleration.of(ObserverCoupling)(harmonic_acceleration)
 
 @by_slot
 def put_given_primitive(driver, slots, y, G):
-    """Copy the input force's G to the contact of the observer. Effect absent: nothing."""
+    """Copy the input force's G to the observer's contact. Effect absent: nothing."""
 
 
 put_given_primitive.absent_for(Harmonic, PrescribedMotion, Sampled)
@@ -85,7 +85,7 @@ def _(driver, slots, y, G):
 
 @by_slot
 def put_given_force(driver, dy, e):
-    """Put the given force into the contact it acts in. Effect absent: nothing."""
+    """Put the given force into the contact in which it acts. Effect absent: nothing."""
 
 
 put_given_force.absent_for(Harmonic, PrescribedMotion)

@@ -1,6 +1,6 @@
 """Static compression: every contact starts with an overlap.
 
-Equation   δ_c = u_c − u_{c+1} + δ0_c,  δ0_c = (F0/K_c)^{2/3}; displacements count from the compressed rest
+Equation   δ_c = u_c − u_{c+1} + δ0_c,  δ0_c = (F0/K_c)^{2/3}; displacements are measured from the compressed rest
 Values     static overlap (N+1,), in units of the length scale
 """
 
@@ -25,7 +25,7 @@ class Preload(NamedTuple):
 
 @by_slot
 def overlap(preload, y, c):
-    """δ_c from the displacements at the front of y. Effect absent: u_c − u_{c+1}, there is no static overlap."""
+    """δ_c from the displacements at the front of y. Effect absent: u_c − u_{c+1}, without a static overlap."""
     return y[c] - y[c + 1]
 
 
@@ -36,8 +36,10 @@ def _(preload, y, c):
 
 @by_slot
 def vector_overlap(preload, left, right, c):
-    """Overlaps in a vector from the displacements on both sides: of contact c in all members of a batch, or of all
-    contacts in block c of a long chain."""
+    """Overlaps in a vector, from the displacements on both sides.
+
+    They are those of contact c in all members of a batch, or of all contacts in block c of a long chain.
+    """
     return left - right
 
 
@@ -53,7 +55,7 @@ def _(preload):
 
 @by_slot
 def row_values(preload, read, width):
-    """The slot with its values as one vector, read by `read(width, array, 0)`."""
+    """Return the slot with its values as one vector, read by `read(width, array, 0)`."""
     return None
 
 

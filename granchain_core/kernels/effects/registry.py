@@ -1,17 +1,17 @@
-"""Which effects the kernels in vectors know, and whether each effect has all its terms."""
+"""Registry of the effects that the SIMD kernels support, and the check that every effect has all its terms."""
 
 from __future__ import annotations
 
 from ..compiling.dispatch import TERMS, require_terms
 
-#: The folders with kernels in vectors, which repeat the equations, and the slot classes for which each has code.
+#: The folders of SIMD kernels, which repeat the equations, and the slot classes for which each has code.
 _IN_SIMD_KERNELS: dict[str, set[type]] = {"rk4": set(), "batch": set(), "dop853_root": set()}
 
 
 def in_simd_kernels(*folders):
-    """Class decorator for slots that these SIMD kernels know, named by their folders; the other ones refuse them.
+    """Register a slot for the SIMD kernels in these folders (class decorator); the other SIMD kernels refuse it.
 
-    A TypeError names a folder that is not one of these.
+    Raises a TypeError for an unknown folder.
     """
     for folder in folders:
         if folder not in _IN_SIMD_KERNELS:
@@ -27,15 +27,15 @@ def in_simd_kernels(*folders):
 
 
 def unknown_slots(slots, folder):
-    """Names of the effects that are present in these slots and that the SIMD kernels in a folder do not know."""
+    """Return the names of effects that are present in these slots but not supported by the SIMD kernels in a folder."""
     known = _IN_SIMD_KERNELS[folder] | {type(None)}
     return [name for name, slot in zip(slots._fields, slots, strict=True) if type(slot) not in known]
 
 
 def check_effects(package):
-    """Check the effects in the modules of a package: a slot has code for every term of the module it stands in.
+    """Check the effects in a package: each slot must have code for every term that is declared in the slot's module.
 
-    Call it when all effects have been imported. The TypeError names the first slot that lacks a term, and the term.
+    Call this after all effects have been imported. The TypeError names the first slot that lacks a term, and the term.
     """
     for module in sorted({term.__module__ for term in TERMS if term.__module__.startswith(package)}):
         terms = [term for term in TERMS if term.__module__ == module]

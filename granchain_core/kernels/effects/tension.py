@@ -1,14 +1,14 @@
-"""The cut of tension: the contact force is cut at zero while the contact opens.
+"""The tension cut: the contact force is cut at zero while the contact opens.
 
 Equation   F = max(0, K δ^{3/2} + g(δ) δ̇)   for δ > 0
-Source     the alternative to the paper's law, in which the gated dashpot pulls while the contact opens
-Values     force_free (N+1,): 1 for a contact that touches without force throughout the present step, else 0; its
-           G is then offset + slope·δ, both (N+1,)
-Terms      cut_tension raises each elastic force just enough to make the total zero, so that forces still enter in one
-           place, m ẇ = Σ e
-Force-free Just before δ = 0 the added force −g(δ)δ̇ is finite and just after it is zero (linear law), or its slope is
-           infinite (Tsuji). So for one step G is replaced by its tangent at the step's start, which is smooth at
-           δ = 0; at the step's end w is recomputed with the law's own G (`leave_force_free`).
+Source     an alternative to the paper's law, in which the gated dashpot pulls while the contact opens
+Values     force_free (N+1,): 1 for a contact that touches without force throughout the present step, otherwise 0; its G
+           is then offset + slope·δ, both (N+1,)
+Terms      cut_tension raises an elastic force just enough to make a negative total zero, so that forces still enter in
+           one place, m ẇ = Σ e
+Force-free With the linear law, the added force −g(δ)δ̇ is finite just before δ = 0 and zero just after; with Tsuji's,
+           its slope is infinite there. So for one step, G is replaced by its tangent at the step's start, which is
+           smooth at δ = 0. At the step's end, w is recomputed with the law's own G (`leave_force_free`).
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class TensionCut(NamedTuple):
 
 
 def new_tension_cut(contacts: int) -> TensionCut:
-    """The slot for this number of contacts, none of them force-free."""
+    """Return the slot for this number of contacts, none of them force-free."""
     return TensionCut(np.zeros(contacts, dtype=np.uint8), np.zeros(contacts), np.zeros(contacts))
 
 
@@ -48,7 +48,7 @@ def hold_force_free(tension, slots, y, c):
 
 @by_slot
 def contact_primitive(tension, slots, y, c, d):
-    """G of contact c, whose overlap is d if it touches. Effect absent: the law's."""
+    """G of contact c, whose overlap is d while it touches. Effect absent: the law's own G."""
     return primitive(slots.dissipation, d)
 
 
@@ -90,7 +90,7 @@ def _(tension, slots, y, dy, e):
 
 @by_slot
 def cut_at_zero(tension, force):
-    """A contact's force as it acts. Effect absent: tension is allowed."""
+    """A contact's force, cut at zero. Effect absent: the force unchanged, since tension is allowed."""
     return force
 
 
@@ -101,7 +101,7 @@ def _(tension, force):
 
 @by_slot
 def unless_force_free(tension, c, force):
-    """The force of contact c, or 0 where it is force-free. Effect absent: none is."""
+    """The force of contact c, or 0 where it is force-free. Effect absent: no contact is force-free."""
     return force
 
 
@@ -112,7 +112,7 @@ def _(tension, c, force):
 
 @by_slot
 def lost_in(tension, slots, y, end):
-    """Energy that force-free contacts lose from y to `end`: their elastic energy, no quadrature. Effect absent: 0."""
+    """Elastic energy that force-free contacts lose from y to `end`, without quadrature. Effect absent: 0."""
     return 0.0
 
 

@@ -1,8 +1,8 @@
-"""The equation of motion of a short chain, whose bodies fit into one vector of 8, 16 or 32 doubles.
+"""The equations of motion of a short chain, whose bodies fit into one vector of 8, 16 or 32 doubles.
 
-Body i is lane i of the displacements and of w, contact c lane c of the overlaps; bodies beyond the wall have an
-inverse mass of 0 and contacts beyond it no stiffness. rk4/short_chain.py steps it. dop853_root/chain.py repeats it in a
-transformed time, with one contact's force written as a power of q.
+Body i is lane i of the displacements and of w, contact c lane c of the overlaps. Bodies beyond the wall have an inverse
+mass of 0, and contacts beyond it have no stiffness. rk4/short_chain.py uses these equations for its steps.
+dop853_root/chain.py repeats them in a transformed time, with one contact's force written as a power of q.
 """
 
 from __future__ import annotations
@@ -37,12 +37,12 @@ class Width32(NamedTuple):
     width: int = 32
 
 
-#: The widths there are, by their number of bodies.
+#: The available widths, by their number of bodies.
 CHAIN_WIDTHS: dict[int, Any] = {8: Width8(), 16: Width16(), 32: Width32()}
 
 
 class ChainValues(NamedTuple):
-    """The chain's slots, and those of its values that are vectors."""
+    """The chain's slots, with the values used at every step as vectors."""
 
     slots: Any
     inverse_mass: Any
@@ -53,7 +53,7 @@ class ChainValues(NamedTuple):
 
 @by_type
 def load_row(width, array, row):
-    """One row of a (rows, width) array."""
+    """Load one row of a (rows, width) array."""
 
 
 @load_row.of(Width8)
@@ -73,7 +73,7 @@ def _(width, array, row):
 
 @by_slot
 def over_masses(law, inverse_mass):
-    """The damping coefficient over the masses, by which differences of G/λ are multiplied. Effect absent: None."""
+    """Damping coefficient over the masses, the factor of differences of G/λ. Effect absent: None."""
     return None
 
 
@@ -95,7 +95,7 @@ def _(law, w, damping_over_mass, primitives):
 
 @inline_llvm
 def chain_values(short, slots):
-    """The chain's values in registers."""
+    """Load the chain's values into registers."""
     width = short.width
     inverse_mass = load_row(width, short.inverse_mass, 0)
     return ChainValues(slots, inverse_mass, over_masses(slots.dissipation, inverse_mass),
@@ -104,7 +104,7 @@ def chain_values(short, slots):
 
 @inline_llvm
 def chain_slope(values, u0, u, w):
-    """Overlaps, elastic forces, velocities and forces on the beads; the driver's own velocity is left at zero."""
+    """Overlaps, elastic forces, velocities and forces on the beads; the driver's velocity is left at zero."""
     law, here = values.slots.dissipation, with_first(u, u0)
     overlap = row_overlap(values.preload, here, from_right(here, blank(here)))
     d = positive_part(overlap)

@@ -1,6 +1,6 @@
-"""The equations of motion in w-variables, assembled from the effects that are present: the reference form.
+"""The equations of motion in w-variables, assembled from the effects present: the reference form.
 
-chain_in_vector.py, rk4/long_chain.py, dop853_root/chain.py and batch/step.py repeat them in vectors, naive.py states
+chain_in_vector.py, rk4/long_chain.py, dop853_root/chain.py and batch/step.py repeat them in vectors, naive.py writes
 them in (u, v), and flow/tangent.py and flow/velocity_tangent.py linearise them. tests/kernels/equations/test_motion.py
 compares this file with the paper's equations; tests/kernels, tests/numerics/test_methods_agree.py and
 tests/orbits/test_tangents.py compare the others with it.
@@ -34,7 +34,7 @@ from .body_forces import account_for_bodies, force_on_bead, stored_on_bead
 
 
 class Slots(NamedTuple):
-    """One slot per effect, None where it is absent; the types alone decide what is compiled."""
+    """One slot per effect, None if it is absent; the types of the slots alone determine the compiled code."""
 
     chain: Any
     dissipation: Any = None
@@ -47,7 +47,7 @@ class Slots(NamedTuple):
 
 @inline_llvm
 def batch_slots(slots):
-    """The slots of a batch with their numbers as vectors of all members."""
+    """Return the slots of a batch with their numbers as vectors over all members."""
     return Slots(
         slots.chain,
         batch_values(slots.dissipation),
@@ -62,7 +62,7 @@ def batch_slots(slots):
 class Forces(NamedTuple):
     """Workspace of one evaluation: elastic forces e (N+1,) and primitives G (N+1,), None without dissipation.
 
-    `frozen` is None, or says which contacts stay open whatever their overlap.
+    `frozen` is None, or specifies the contacts that stay open whatever their overlap.
     """
 
     e: np.ndarray
@@ -71,10 +71,10 @@ class Forces(NamedTuple):
 
 
 class Trajectory(NamedTuple):
-    """What is integrated: the chain's slots, the drive, state y (M,) and the method's workspace.
+    """The input of an integration: the chain's slots, the drive, state y (M,) and the method's workspace.
 
-    `drive` is a `DriveCycle` for steps of any size (error_control/step.py), a `DriveTable` for equal ones
-    (rk4/step.py). M is twice the number of bodies N + 2, and two more with an energy account.
+    `drive` is a `DriveCycle` for steps of any size (error_control/step.py), or a `DriveTable` for equal steps
+    (rk4/step.py). M is 2(N + 2), plus two with an energy account.
     """
 
     slots: Slots
@@ -89,7 +89,7 @@ check_effects("granchain_core.kernels.effects")
 
 @internal
 def motion(slots, u0, v0, y, dy, forces):
-    """dy/dτ at state y with the driver at (u0, v0); leaves the contact forces in `forces`."""
+    """Compute dy/dτ at state y with the driver at (u0, v0); leave the contact forces in `forces`."""
     inverse_mass, stiffness = slots.chain.inverse_mass, slots.chain.stiffness
     e, G = forces.e, forces.G
     bodies = inverse_mass.size
@@ -120,14 +120,14 @@ def contact_force(slots, y, dy, e, c):
 
 @internal
 def copy(source, target):
-    """Copy one array. A slice assignment takes seconds longer to compile, because Numba adds its shape errors."""
+    """Copy an array. A slice assignment takes seconds longer to compile, because Numba adds checks of the shapes."""
     for i in range(source.size):
         target[i] = source[i]
 
 
 @internal
 def write_w(slots, y, dy, forces):
-    """The variables w of state y from the velocities in dy."""
+    """Write w of state y from the velocities in dy."""
     bodies = slots.chain.inverse_mass.size
     for c in range(bodies - 1):
         write_primitive(slots.dissipation, forces.G, c, positive_part(overlap(slots.preload, y, c)))
@@ -140,7 +140,7 @@ def write_w(slots, y, dy, forces):
 def evaluate_at_phase(slots, theta, y, dy, forces, from_velocity):
     """Evaluate the equations at drive phase θ: the driver's displacement in y, the slope in dy, the forces.
 
-    With `from_velocity` the second row of y holds v and becomes w.
+    With `from_velocity` the second row of y contains v on entry and w on return.
     """
     bodies = slots.chain.inverse_mass.size
     u0 = driver_displacement(slots.driver, theta)
@@ -154,7 +154,7 @@ def evaluate_at_phase(slots, theta, y, dy, forces, from_velocity):
 
 @internal
 def stored_energy(slots, y, dy):
-    """Kinetic, contact and foundation energy; the velocities are read from dy."""
+    """Sum of kinetic energy, contact energy and energy stored in forces from outside; velocities are read from dy."""
     inverse_mass = slots.chain.inverse_mass
     bodies = inverse_mass.size
     energy = 0.0

@@ -1,1 +1,1 @@
-"""Steps whose size an error control sets: the run over the grid, events and kinks located, forces searched."""
+"""Steps with error control: runs over the grid, location of events and kinks, and the search for largest forces."""

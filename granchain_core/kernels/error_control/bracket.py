@@ -1,7 +1,8 @@
-"""Roots and largest values of a quantity inside a step, on its dense output.
+"""Roots and maxima of a quantity inside a step, on the dense output.
 
-A quantity is a NamedTuple that says what it is (an overlap, a force) and has code for `value_at`. Roots are found by
-regula falsi that halves the value at the end that stays (Illinois), largest values by golden section.
+A quantity is a NamedTuple that specifies an overlap or a force, for example, and has code for `value_at`. Roots are
+found by regula falsi with the Illinois modification (the value at the end that stays is halved), maxima by
+golden-section search.
 """
 
 from __future__ import annotations
@@ -11,12 +12,12 @@ from typing import NamedTuple
 from ..compiling.dispatch import by_type
 from ..compiling.jit import inline_numba, internal
 
-#: Factor by which a golden section shrinks the bracket.
+#: Factor by which each golden section shrinks the bracket.
 _RATIO = 0.6180339887498949
 
 
 class Bracket(NamedTuple):
-    """Fractions of a step between which a quantity changes sign, its values there, the end that moved last (−1, 1)."""
+    """Fractions of a step between which a quantity changes sign, its values there, and the last end moved (−1, 1)."""
 
     low: float
     high: float
@@ -32,7 +33,7 @@ def value_at(quantity, step, x):
 
 @internal
 def secant_point(bracket):
-    """Where the straight line through both ends is zero; the middle where rounding has it outside."""
+    """Zero of the straight line through both ends, or the middle where rounding puts that zero outside."""
     low, high, f_low, f_high, _ = bracket
     x = (low * f_high - high * f_low) / (f_high - f_low)
     return x if low <= x <= high else 0.5 * (low + high)
@@ -40,7 +41,7 @@ def secant_point(bracket):
 
 @internal
 def narrowed_to(bracket, x, f):
-    """The part of the bracket in which the sign still changes, once the quantity is known to be f at x."""
+    """The part of the bracket in which the sign changes, given the value f at x."""
     low, high, f_low, f_high, moved = bracket
     if (f > 0.0) == (f_low > 0.0):
         return Bracket(x, high, f, 0.5 * f_high if moved < 0 else f_high, -1)
@@ -51,7 +52,7 @@ def narrowed_to(bracket, x, f):
 def root_inside(quantity, step, bracket, near):
     """Fraction in the bracket at which the quantity changes sign, to about `near`.
 
-    The method takes about ten evaluations. Where 80 do not suffice, the last estimate is returned.
+    This takes about ten evaluations. If 80 do not suffice, the last estimate is returned.
     """
     x = bracket.high
     for _ in range(80):
@@ -86,9 +87,9 @@ def maximum_inside(quantity, step, until, sections):
 def may_turn(d0, s0, d1, s1, sign):
     """Whether an overlap with the same sign at both ends of a step may cross zero in between.
 
-    It must move towards zero first and away last, as in `may_change` (rk4/step.py). If it is convex or concave in the
-    step, the tangents at both ends bound how near it can come. An inflection in the step could hide a touch, which then
-    remains in the error of the step.
+    It must move towards zero at first and away at last, as in `may_change` (rk4/step.py). If it is convex or concave in
+    the step, the tangents at both ends bound its approach to zero. An inflection within the step could hide a touch,
+    which then remains part of the step's error.
     """
     if not (sign * s0 > 0.0 and sign * s1 < 0.0):
         return False

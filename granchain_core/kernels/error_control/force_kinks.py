@@ -1,7 +1,7 @@
-"""Where a contact whose tension is cut stops pushing, or pushes again, while its beads still touch.
+"""Kinks of the force in no-tension contacts: the contact stops pushing, or pushes again, while its beads still touch.
 
-There F = K δ^{3/2} + g(δ) δ̇ = 0: the force has a kink, at which an error-controlled step is to end. Its sign is that of
-F/g = K δ^{3/2}/g(δ) + δ̇, which unlike F passes through zero nowhere else, not even at δ = 0.
+At a kink, F = K δ^{3/2} + g(δ) δ̇ = 0, and a step with error control must end there. F has the same sign as
+F/g = K δ^{3/2}/g(δ) + δ̇, which, unlike F, passes through zero nowhere else, not even at δ = 0.
 """
 
 from __future__ import annotations
@@ -22,16 +22,17 @@ from ..status import EVALUATIONS
 from .bracket import Bracket, root_inside, value_at
 from .step import evaluate, prepare_dense, stages, write_dense_state
 
-#: What `first_kink` finds.
+#: Outcomes of `first_kink`.
 NO_KINK, KINK, WRONG_SIDE = range(3)
-#: A kink nearer to an end of the step than this changes the motion by less than rounding: by its square.
+#: A kink closer to an end of the step than this changes the motion by less than rounding: by the square of the
+#: distance.
 _LEAST_DISTANCE = 1e-8
-#: A contact whose F/g is less than this part of the largest velocity is at rest ahead of a wave: its sign is rounding.
+#: A contact with F/g below this part of the largest velocity is at rest ahead of a wave: the sign is rounding.
 _REST_VELOCITY = 1e-15
 
 
 class ScaledForce(NamedTuple):
-    """F/g of a contact inside a step; its evaluations are counted."""
+    """F/g of a contact inside a step; evaluations are counted."""
 
     contact: int
     counts: np.ndarray
@@ -39,7 +40,7 @@ class ScaledForce(NamedTuple):
 
 @by_slot
 def scaled_force(law, stiffness, d, rate):
-    """F/g for d = [δ]_+ and δ̇ = rate. Effect absent: positive, an elastic contact never pulls."""
+    """F/g for d = [δ]_+ and δ̇ = rate. Effect absent: positive, since an elastic contact never pulls."""
     return 1.0
 
 
@@ -62,9 +63,9 @@ def _(quantity, step, x):
 
 @by_slot
 def enter_force_free(tension, trajectory, t):
-    """Mark the contacts that are force-free at the start of a step and evaluate the slope anew.
+    """Mark the contacts that are force-free at the start of a step and evaluate the slope again.
 
-    Effect absent: none is.
+    Effect absent: nothing.
     """
 
 
@@ -84,9 +85,9 @@ def _(tension, trajectory, t):
 
 @by_slot
 def leave_force_free(tension, trajectory):
-    """End a step's force-free contacts: velocities stay, w and the account use the law's own G again.
+    """End the force-free state of contacts: velocities stay, and w and the account use the law's own G again.
 
-    Returns whether anything changed, and the slope with it. Effect absent: no contact is force-free.
+    Returns whether anything, and therefore the slope, has changed. Effect absent: no contact is force-free.
     """
     return False
 
@@ -109,14 +110,14 @@ def _(tension, trajectory):
 
 @by_slot
 def first_kink(tension, step, until, counts, skip_wrong_side):
-    """Look for the first point of the accepted step, up to `until`, at which the force of a contact reaches F = 0.
+    """Find the first point of the accepted step, up to `until`, at which the force of a contact reaches F = 0.
 
     Returns (outcome, fraction):
         NO_KINK        there is none. Effect absent: always
         KINK           a contact stops pushing, or pushes again, at the fraction
         WRONG_SIDE     rounding put a contact on the wrong side of F = 0 at the start. All such contacts have changed
-                       sides together, to keep a symmetric motion symmetric, and the step is to be repeated; once a step
-                       (`skip_wrong_side`), because where F is only rounding, either choice is right
+                       sides together, to keep a symmetric motion symmetric, and the step must be repeated; at most once
+                       per step (`skip_wrong_side`), because where F is only rounding, either choice is right
     """
     return NO_KINK, 1.0
 
@@ -145,7 +146,7 @@ def _(tension, step, until, counts, skip_wrong_side):
             if abs(f1) < still or free != (f1 > 0.0):
                 continue
         x = 0.0
-        if f0 * f1 < 0.0:  # else F is rounding at the start
+        if f0 * f1 < 0.0:  # otherwise F is rounding at the start
             x = root_inside(force, step, Bracket(0.0, until, f0, f1, 0), 0.1 * _LEAST_DISTANCE)
         if x * step.h > _LEAST_DISTANCE:
             if x < first and x * step.h < until * step.h - _LEAST_DISTANCE:

@@ -1,13 +1,14 @@
-"""The largest forces inside an accepted step with error control, on its dense output.
+"""The largest forces inside an accepted step with error control, on the dense output.
 
-A force is evaluated at both ends of a step and, under the first two conditions below, in its middle. The step begins
-just past an event and ends just past the next, so these values are right limits and the jump of a closing contact is
-one of them. A maximum inside is searched by golden section, on which it is as exact as the dense output, where
+A force is evaluated at both ends of a step and, under the first two conditions below, in the middle. Around events, a
+step begins just past one and ends just past the next, so these values are right limits, and they include the jump of a
+closing contact. A maximum inside the step is searched for by golden section, as accurately as the dense output allows,
+if
 
-- a force at an end of the step is above `SEARCHED` of the largest so far,
+- a force at an end of the step is above `SEARCHED` times the largest so far,
 - the cubic through values and slopes of some force is not monotone (`is_monotone`),
-- that force rises to the middle and falls from it (`may_hold_maximum`), and
-- the larger of the middle and the cubic's top is above `WORTH` of the largest so far.
+- that force may have its maximum inside the step (`may_hold_maximum`), and
+- the larger of its middle value and the cubic's maximum is above `WORTH` times the largest so far.
 """
 
 from __future__ import annotations
@@ -27,8 +28,8 @@ from ..status import EVALUATIONS
 from .bracket import maximum_inside, value_at
 from .step import evaluate, prepare_dense, stages, write_dense_state
 
-#: Golden sections around a maximum of a force; each shrinks the bracket by 0.618 and, since a maximum is flat, its
-#: error by 0.382.
+#: Golden sections around the maximum of a force; each shrinks the bracket by 0.618 and, since a maximum is flat, the
+#: error of its value by 0.382.
 FORCE_SECTIONS = 24
 #: A step whose ends are below this part of the largest force so far is not searched.
 SEARCHED = 0.3
@@ -38,7 +39,7 @@ WORTH = 0.98
 
 
 class Force(NamedTuple):
-    """Input, output or elastic output force (0, 1, 2) inside a step; its evaluations are counted."""
+    """Input, output or elastic output force (0, 1, 2) inside a step; evaluations are counted."""
 
     number: int
     counts: np.ndarray
@@ -46,7 +47,7 @@ class Force(NamedTuple):
 
 @internal
 def forces_of(slots, y, dy):
-    """Input, output and elastic output force at state y, velocities in dy."""
+    """Input, output and elastic output force at state y, with the velocities in dy."""
     last = slots.chain.stiffness.size - 1
     first_overlap, last_overlap = overlap(slots.preload, y, 0), overlap(slots.preload, y, last)
     elastic = elastic_force(slots.chain.stiffness[0], positive_part(first_overlap))
@@ -73,7 +74,7 @@ def _(quantity, step, x):
 
 @internal
 def write_end_elastic_forces(slots, y, dy, e):
-    """The elastic forces, those of a cut included, of the two outer contacts at either end."""
+    """Write the elastic forces, including those of a cut, of the two outermost contacts at either end."""
     last = slots.chain.stiffness.size - 1
     for q in range(4):
         c = min(q, last) if q < 2 else max(last + q - 3, 0)
@@ -97,7 +98,8 @@ def slopes_of(slots, y, dy, workspace):
 def is_monotone(f0, s0, f1, s1, h):
     """Whether the cubic with values f0, f1 and slopes s0, s1 at the ends of a step of size h rises or falls throughout.
 
-    Sufficient: both slopes along the chord and at most three times as steep (Fritsch & Carlson 1980).
+    Sufficient condition: both slopes have the chord's sign and are at most three times as steep (Fritsch & Carlson
+    1980).
     """
     chord = 3.0 * (f1 - f0)
     return chord * s0 >= 0.0 and chord * s1 >= 0.0 and h * max(abs(s0), abs(s1)) <= abs(chord)
@@ -105,16 +107,16 @@ def is_monotone(f0, s0, f1, s1, h):
 
 @inline_llvm
 def may_hold_maximum(start, rises, middle, end, falls):
-    """Whether a force may be largest inside a step: it rises from the start on or to the middle, and falls to the end.
+    """Whether a force may be largest inside a step: it rises at the start or to the middle, and falls towards the end.
 
-    `rises` and `falls` are its slopes at the two ends. Where it turns twice, a slope alone would miss a maximum.
+    `rises` and `falls` are its slopes at the two ends. If it turns twice, the slopes alone would miss a maximum.
     """
     return (rises > 0.0 or middle > start) and (falls < 0.0 or middle > end)
 
 
 @internal
 def update_forces_in_step(step, ready, peaks, counts):
-    """Raise the largest forces to those in the accepted step; returns whether its dense output is prepared now.
+    """Raise the largest forces to those in the accepted step; return whether its dense output has been prepared.
 
     A force that only rises or only falls is largest at an end.
     """

@@ -1,8 +1,8 @@
-"""A step with error control that ends where a contact opens or closes, and where a cut force has a kink.
+"""Steps with error control that end where a contact opens or closes, or where a cut force has a kink.
 
-The slope is continuous across an event but its derivative is not, and after a closing the solution has a term
-(t − t_e)^{5/2}: no method for smooth equations keeps its order across. So every contact event inside a step is located
-on the dense output, the step is repeated so that it ends just past it, and the next one starts small.
+The slope is continuous across an event, but its derivative is not. After a closing, the solution has a term in
+(t − t_e)^{5/2}: no method for smooth equations keeps its order there. So every contact event inside a step is located
+on the dense output, the step is repeated so that it ends just past the event, and the next step starts small.
 """
 
 from __future__ import annotations
@@ -16,31 +16,32 @@ from .bracket import may_turn, value_at
 from .force_kinks import KINK, WRONG_SIDE, enter_force_free, first_kink
 from .step import Overlap, Step, accepted_step, attempt, crossing, is_too_small, prepare_dense, stages, turning_point
 
-#: [step size] dop853: overlap aimed at just past an event, in units of the largest displacement. It is a few roundings.
+#: [step size] dop853: target overlap just past an event, in units of the largest displacement: a few rounding errors.
 _OVERLAP_AIM = 1e-15
-#: [step size] dop853: an overlap past the event that is at most this many times larger is accepted. The event's time is
-#: then as exact as the approach speed allows.
+#: [step size] dop853: an overlap past the event is accepted up to this many times the target. The event's time is then
+#: as accurate as the approach speed allows.
 _ACCEPTED_FACTOR = 4.0
-#: [step size] dop853, tension cut: overlap aimed at just past an event. A force-free contact may linger at δ = 0 and
-#: would chatter with a smaller one.
+#: [step size] dop853, tension cut: target overlap just past an event. A force-free contact may linger at δ = 0 and
+#: would chatter with a smaller target.
 _OVERLAP_AIM_CUT = 1e-14
-#: [step size] dop853, tension cut: an overlap past the event that is at most this many times larger is accepted.
+#: [step size] dop853, tension cut: an overlap past the event is accepted up to this many times the target.
 _ACCEPTED_FACTOR_CUT = 100.0
-#: [step size] dop853: most corrections of a step that is to end at an event. Newton's method for one root, which
-#: doubles the digits.
+#: [step size] dop853: most corrections of a step that must end at an event. They are Newton steps for one root, which
+#: double the number of correct digits.
 _MOST_CORRECTIONS = 6
-#: [step size] dop853: a step that is to end at an event may become longer by this factor.
+#: [step size] dop853: a step that must end at an event may become longer by this factor.
 _EVENT_STRETCH = 1.01
-#: [step size] dop853: an event within this part of a step of its end needs no shorter step before it is located.
+#: [step size] dop853: an event closer to the step's end than this part of the step is located without first shortening
+#: the step.
 _NEAR_END = 1e-9
-#: [step size] dop853: first step after an event over tolerance^{2/5}. For the elastic force and the linear dashpot a
-#: term (t − t_e)^{5/2} follows a closing, so that this step errs by about the tolerance.
+#: [step size] dop853: first step after an event over tolerance^{2/5}. With the elastic force and the linear dashpot,
+#: the solution has a term (t − t_e)^{5/2} after a closing, so the error of this step is about the tolerance.
 _FIRST_STEP_FACTOR = 2.0
 
 
 @inline_numba
 def first_event(step, counts):
-    """(contact, fraction) of the first opening or closing inside the accepted step; (−1, 2) if there is none.
+    """Return (contact, fraction) of the first opening or closing inside the accepted step; (−1, 2) if there is none.
 
     Events closer to t than the resolution of the time are ignored (`is_too_small`).
     """
@@ -59,7 +60,7 @@ def first_event(step, counts):
             counts[EVALUATIONS] += prepare_dense(workspace, step)
             dense_ready = True
         signed_overlap, low, high = Overlap(c, sign), 0.0, 1.0
-        if crossed and sign * change < 0.0:  # moves away first; after an event d0 is rounding, which is no root
+        if crossed and sign * change < 0.0:  # moves away first; after an event d0 is rounding, not a root
             low = turning_point(Overlap(c, -sign), step)
             if value_at(signed_overlap, step, low) > 0.0:
                 low = 0.0
@@ -75,7 +76,7 @@ def first_event(step, counts):
 
 @by_slot
 def event_tolerance(tension):
-    """Target overlap past an event and the accepted factor. Effect absent: the smallest that rounding allows."""
+    """Target overlap past an event, and the accepted factor. Effect absent: the smallest that rounding allows."""
     return _OVERLAP_AIM, _ACCEPTED_FACTOR
 
 
@@ -86,10 +87,10 @@ def _(tension):
 
 @inline_numba
 def locate_event(method, step, limit, c, counts):
-    """Shorten or lengthen a step so that it ends just past the event of contact c; returns its size.
+    """Shorten or lengthen a step so that it ends just past the event of contact c; return its size.
 
-    An event that turns out to lie beyond `limit` is left to the next step. So is one that is approached so slowly that
-    the step would become long enough to pass other events.
+    An event that turns out to lie beyond `limit` is left to the next step. The same applies if the event is approached
+    so slowly that the step would become long enough to pass other events.
     """
     slots, _, y, workspace = step.trajectory
     slope = workspace.k[stages(workspace)]
@@ -115,13 +116,12 @@ def locate_event(method, step, limit, c, counts):
 
 @internal
 def located_step(method, trajectory, t, limit, counts):
-    """One accepted step from y at local time t, at most to `limit`; the result is workspace.end.
+    """Take one accepted step from y at local time t, at most to `limit`; the result is in workspace.end.
 
-    A step is tried. Where a contact event or a kink of a force lies inside, the step is shortened to it and tried
-    again, until nothing lies before its end; Newton's method then puts the end just past the event (`locate_event`).
-    Contacts that rounding put on the wrong side of a kink change sides once (`first_kink`), and the step begins anew.
-
-    Returns (status, step taken, contact that changed at its end or −1); workspace.next_step[0] is the next step to try.
+    A step is tried. If a contact event or a kink of a force lies inside, the step is shortened to it and tried again,
+    until nothing lies before its end. Newton's method then puts the end just past the event (`locate_event`). Contacts
+    that rounding put on the wrong side of a kink change sides once (`first_kink`), and the step starts again. Returns
+    (status, step taken, contact that changed at its end or −1); workspace.next_step[0] is the next step to try.
     """
     tension, next_step = trajectory.slots.tension, trajectory.workspace.next_step
     h = min(next_step[0], method.largest_step, limit - t)
@@ -153,7 +153,7 @@ def located_step(method, trajectory, t, limit, counts):
         h = locate_event(method, step, limit, aimed, counts)
         next_step[0] = min(next_step[0], _FIRST_STEP_FACTOR * method.tolerance**0.4)
     elif not kinked and (h < limit - t or factor < 1.0 or next_step[0] <= h):
-        next_step[0] = h * factor  # after a kink the motion is smooth on both sides: the next step need not start small
+        next_step[0] = h * factor  # the motion is smooth on both sides of a kink: the next step need not start small
     counts[EVENTS] += aimed >= 0 or kinked
     counts[STEPS] += 1
     return DONE, h, aimed

@@ -1,8 +1,8 @@
-"""A run along an orbit that keeps the turning points of all overlaps and the largest forces.
+"""A run along an orbit that records the turning points of all overlaps and the largest forces.
 
-Each accepted step is searched on its dense output. A contact's overlap has a turning point
-where its two bodies move equally fast; one at which the overlap is small is a touch or a separation about to appear or
-to vanish. The largest forces are searched inside the steps (force_search.py).
+Each accepted step is searched on its dense output. A contact's overlap has a turning point where its two bodies have
+the same velocity. A turning point with a small overlap is a touch or a separation that is about to appear or to vanish.
+The largest forces are searched for inside the steps (force_search.py).
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ from .step import GOAL_TOLERANCE, Overlap, Step, evaluate, new_scale, prepare_de
 class OrbitRecord(NamedTuple):
     """The record of an orbit.
 
-    Turning points are rows of `turns` (T, 4): contact, +1 for a largest and −1 for a smallest overlap, scaled time
-    since the orbit's phase 0, overlap.
-    `peaks` (PEAKS,) hold the largest input, output and elastic output force (forces/peaks.py).
+    Turning points are rows of `turns` (T, 4): contact, +1 for a maximum and −1 for a minimum of the overlap, scaled
+    time since the orbit's phase 0, overlap. `peaks` (PEAKS,) contains the largest input, output and elastic output
+    force (forces/peaks.py).
     """
 
     turns: np.ndarray
@@ -35,9 +35,9 @@ class OrbitRecord(NamedTuple):
 
 @inline_numba
 def record_turns(step, since, record, row):
-    """Keep the turning points of all overlaps inside the step; returns the next free row.
+    """Record the turning points of all overlaps inside the step; return the next free row.
 
-    The step begins `since` after the orbit's start.
+    The step begins a time `since` after the orbit's start.
     """
     slots, _, _, workspace = step.trajectory
     slope, end = workspace.k[0], workspace.k[stages(workspace)]

@@ -1,4 +1,4 @@
-"""A run over a range of the grid by steps with error control: samples, closings, largest forces, periods."""
+"""Runs over a range of the grid in steps with error control: samples, closings, largest forces, periods."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from .step import GOAL_TOLERANCE, Step, evaluate, new_scale, prepare_dense, stag
 
 
 class SampleRange(NamedTuple):
-    """What a run covers: `points` points of a grid of `grid` points a period, from number `first` on.
+    """The range of a run: `points` points of a grid with `grid` points per period, from number `first` on.
 
-    With `every` = n > 0 each n-th grid point is recorded, the first one too; with 0 none.
+    With `every` = n > 0, every n-th grid point is recorded, including the first; with 0, none is.
     """
 
     first: int
@@ -30,7 +30,7 @@ class SampleRange(NamedTuple):
 
 @inline_numba
 def record_step(step, point, passed, spacing, row, every, samples, out):
-    """Record the forces in the accepted step, and of the `passed` grid points past number `point` each `every`-th.
+    """Record the forces in the accepted step, and every `every`-th of the `passed` grid points after number `point`.
 
     Returns the next free row of `samples`.
     """
@@ -58,7 +58,7 @@ def record_step(step, point, passed, spacing, row, every, samples, out):
 
 @inline_numba
 def accept(trajectory):
-    """Make the step's end the state; returns whether its slope must be evaluated anew."""
+    """Make the step's end the state; return whether its slope must be evaluated again."""
     slots, _, y, workspace = trajectory
     lost = force_free_loss(slots.account, slots, y, workspace.end)
     copy(workspace.end, y)
@@ -73,7 +73,7 @@ def accept(trajectory):
 def run_error_controlled(method, trajectory, sample_range, samples, out):
     """Run over a range of the grid; its samples, closings and largest forces are recorded if `every` is above 0.
 
-    Row 0 of `samples` is the start. Returns (status, samples filled); where nothing is recorded, (status, points done).
+    Row 0 of `samples` is the start. Returns (status, samples filled), or (status, points done) if nothing is recorded.
     """
     slots, drive, y, workspace = trajectory
     first, points, grid, every = sample_range

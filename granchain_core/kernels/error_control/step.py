@@ -1,7 +1,7 @@
-"""A step with error control: what a method says about its own, and the sizes of steps from its error.
+"""Steps with error control: the functions that each method supplies, and the choice of step sizes from the error.
 
-A method is a slot with its `tolerance` and `largest_step`, whose type chooses `attempt` and `error_order`. The type of
-its workspace chooses `stages` and the dense output, `prepare_dense` and `dense_value`. Every workspace has
+A method is a slot with a `tolerance` and a `largest_step`; its type selects `attempt` and `error_order`. The type of
+its workspace selects `stages` and the dense output, `prepare_dense` and `dense_value`. Every workspace has
 
     k (rows, M)       slopes: k[0] at the state, k[stages] at the step's end
     end (M,)          the state at the step's end
@@ -27,24 +27,24 @@ from .bracket import Bracket, maximum_inside, root_inside, value_at
 
 #: [no threshold] Golden sections around a turning point of an overlap.
 TURN_SECTIONS = 40
-#: [no threshold] An overlap's root is found when its fraction of the step changes by less than this.
+#: [no threshold] The search for an overlap's root ends when its fraction of the step changes by less than this.
 _LAST_ROOT_CHANGE = 1e-15
 #: [step size] dop853: largest factor from one step to the next, as in Hairer's dop853.f (FAC2).
 _MAX_FACTOR = 6.0
-#: [step size] dop853: smallest factor from one attempt to the next (FAC1). Hairer has 1/3; over ten scenes both take as
-#: many evaluations.
+#: [step size] dop853: smallest factor from one attempt to the next (FAC1). Hairer has 1/3; over ten scenes, both take
+#: the same number of evaluations.
 _MIN_FACTOR = 0.1
 #: [step size] dop853: safety factor of the step-size controller, as in Hairer's dop853.f (SAFE).
 _SAFETY = 0.9
 #: [no threshold] ε in the resolution of t, ε·(t + 1/β): the spacing of floating-point numbers at 1.
 _RESOLUTION = 2.2e-16
 #: [step size] Error control: a step that ends closer to a goal (the period's end, a sample) than this, in periods, ends
-#: there. The difference is the rounding of a sum of steps.
+#: at the goal. Such a difference is the rounding of a sum of steps.
 GOAL_TOLERANCE = 1e-13
 
 
 class DriveCycle(NamedTuple):
-    """The driver's cycle in scaled time: its rate β, and its period 2π/β."""
+    """The driver's cycle in scaled time: drive frequency β and period 2π/β."""
 
     beta: float
     period: float
@@ -69,23 +69,23 @@ class Overlap(NamedTuple):
 def attempt(method, step):
     """Make a trial step from y, whose slope is workspace.k[0]; the result is workspace.end, its slope k[stages].
 
-    Returns the error over the tolerance: at most 1 for a step to accept, NaN if the numbers failed.
+    Returns the error in units of the tolerance: at most 1 if the step is acceptable, NaN if the numbers failed.
     """
 
 
 @by_type
 def error_order(method):
-    """The power of the step's size with which the error of `attempt` falls."""
+    """The order of the error of `attempt` in the step size."""
 
 
 @by_type
 def stages(workspace):
-    """Evaluations of an attempt; the slope at its end is in this row of k."""
+    """Number of evaluations in an attempt, and the row of k with the slope at its end."""
 
 
 @by_type
 def prepare_dense(workspace, step):
-    """Prepare the dense output of an accepted step; returns how many evaluations that took."""
+    """Prepare the dense output of an accepted step; return the number of evaluations."""
 
 
 @by_type
@@ -95,7 +95,7 @@ def dense_value(workspace, y, h, x, i):
 
 @kernel
 def evaluate(slots, beta, t, y, dy, forces):
-    """Slope at local time t of the period; the drive phase is βt."""
+    """Evaluate the slope at local time t of the period; the drive phase is βt."""
     motion(slots, driver_displacement(slots.driver, beta * t), driver_velocity(slots.driver, beta * t), y, dy, forces)
 
 
@@ -107,9 +107,9 @@ def shrunk(method, h, error):
 
 @internal
 def growth(method, error, rejected):
-    """Step-size factor after an accepted step; an error below 1e-12 allows no more than the largest factor anyway.
+    """Step-size factor after an accepted step; an error below 1e-12 gives the largest factor in any case.
 
-    After a rejected attempt the step does not grow, as in Hairer's dop853.f: it would be rejected again.
+    After a rejected attempt the step does not grow, as in Hairer's dop853.f, because it would be rejected again.
     """
     most = 1.0 if rejected else _MAX_FACTOR
     return min(most, _SAFETY * max(error, 1e-12) ** (-1.0 / error_order(method)))
@@ -117,17 +117,17 @@ def growth(method, error, rejected):
 
 @internal
 def is_too_small(dt, t, beta):
-    """Whether a step dt at local time t is lost in the resolution of the time within a period.
+    """Whether a step dt at local time t is below the resolution of the time within a period.
 
     The resolution at t itself would be too fine at the start of a period: steps too small to change the state would
-    follow one another without end.
+    follow one another endlessly.
     """
     return not beta * dt > _RESOLUTION * (1.0 + beta * t)
 
 
 @inline_numba
 def accepted_step(method, trajectory, t, h, counts):
-    """Shrink a step from t until its error is tolerable; returns (status, size, factor for the next one)."""
+    """Shrink a step from t until its error is tolerable; return (status, size, factor for the next step)."""
     rejected = False
     while True:
         error = attempt(method, Step(trajectory, t, h))
@@ -167,7 +167,7 @@ def _(quantity, step, x):
     probe, c = workspace.probe, quantity.contact
     for i in range(c, c + 2):
         probe[i] = dense_value(workspace, y, step.h, x, i)
-    if c == 0:  # the driver's own motion is known exactly
+    if c == 0:  # the driver's motion is known exactly
         probe[0] = driver_displacement(slots.driver, drive_phase(step, x))
     return quantity.sign * overlap(slots.preload, probe, c)
 
@@ -188,7 +188,7 @@ def crossing(signed_overlap, step, low, high):
 
 @internal
 def new_scale(y, workspace, bodies):
-    """Raise the scale of the tolerance to the largest values of y."""
+    """Raise the scale of the tolerance to the largest values in y."""
     for row in range(2):
         for i in range(row * bodies + 1, row * bodies + bodies - 1):
             workspace.scale[row] = max(workspace.scale[row], abs(y[i]))

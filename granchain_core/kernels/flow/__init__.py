@@ -1,1 +1,1 @@
-"""The flow under orbits: whole drive periods, contact event by contact event, with its tangents."""
+"""The flow for orbits, with its tangents: whole drive periods, from contact event to contact event."""

@@ -1,9 +1,9 @@
-"""One attempt at a step of the flow: Dormand–Prince 8 in the time in which the motion is smooth, and its first event.
+"""One attempt at a step of the flow, by DOP853 in a time in which the motion is smooth, and its first event.
 
-Which contacts are closed is part of the state (`FrozenContacts` in the workspace's forces) and does not change within a
-step, so that neither the motion's nor the tangents' slopes jump there. A closing is located from before it, where
-nothing is singular yet. The time of an opening is estimated, the step ends there in a time variable that is the root of
-the distance, and Newton's method on the resulting overlap corrects the estimate.
+The set of closed contacts is part of the state (`FrozenContacts` in the workspace's forces) and does not change within
+a step, so that the slopes of motion and tangents do not jump there. A closing is located from the earlier side, where
+nothing is singular yet. The time of an opening is estimated; the step ends there, in a time variable that is the root
+of the distance from the opening, and Newton's method on the resulting overlap corrects the estimate.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ class ContactStatus(NamedTuple):
 
 
 class FlowProblem(NamedTuple):
-    """A trajectory that is followed from contact event to contact event, with its tangents or None."""
+    """A trajectory to be followed from contact event to contact event; `tangent` is None without tangents."""
 
     trajectory: Trajectory
     contacts: ContactStatus
@@ -70,9 +70,9 @@ def _(step, x):
 
 @by_slot
 def record_stage(tangent, state, slope, stage):
-    """Keep what tangents need of one stage: displacements, and velocities from `slope`.
+    """Store the displacements of one stage, and its velocities from `slope`, for the tangents.
 
-    Effect absent: there are none.
+    Effect absent: nothing.
     """
 
 
@@ -80,7 +80,7 @@ def record_stage(tangent, state, slope, stage):
 def attempt_in_time(method, problem, time, h):
     """Try a step of size h in s from y; the result is in workspace.end, its slope in t in workspace.slope.
 
-    Returns the error over the tolerance.
+    Returns the error in units of the tolerance.
     """
     trajectory, contacts, tangent = problem
     slots, drive, y, workspace = trajectory
@@ -97,7 +97,7 @@ def attempt_in_time(method, problem, time, h):
 
 @inline_numba
 def accepted_in_time(method, problem, time, h, counts):
-    """Shrink a step until its error is tolerable; returns (status, size, factor for the next one)."""
+    """Shrink a step until its error is tolerable; return (status, size, factor for the next step)."""
     rejected = False
     while True:
         error = attempt_in_time(method, problem, time, h)
@@ -115,7 +115,7 @@ def accepted_in_time(method, problem, time, h, counts):
 
 @inline_numba
 def prepare_dense_in_time(step):
-    """Fill workspace.dense for the step in s from y to workspace.end; workspace.slope is again that of the end."""
+    """Fill workspace.dense for the step in s from y to workspace.end; restore the end's slope in workspace.slope."""
     slots, drive, y, workspace = step.trajectory
     time, h = step.time, step.h
     for s in range(STAGES + 1, ALL_STAGES):
@@ -127,7 +127,7 @@ def prepare_dense_in_time(step):
 
 @inline_numba
 def first_event(problem, time, h, excluded, counts):
-    """(contact, fraction) of the first change inside the step, of any contact except `excluded`; (−1, 2): none."""
+    """Return (contact, fraction) of the first change of any contact but `excluded` in the step; (−1, 2) if none."""
     trajectory, contacts, _ = problem
     slots, _, y, workspace = trajectory
     step, contact, first, ready = FlowStep(trajectory, time, h), -1, 2.0, False
@@ -136,7 +136,7 @@ def first_event(problem, time, h, excluded, counts):
         if c == excluded:
             continue
         was = contacts.closed[c] != 0
-        sign = -1.0 if was else 1.0  # the change looked for makes sign·δ positive
+        sign = -1.0 if was else 1.0  # the change makes sign·δ positive
         d0, d1 = overlap(slots.preload, y, c), overlap(slots.preload, workspace.end, c)
         start, end = contacts.slope_at_start, workspace.slope
         s0, s1 = dt * (start[c] - start[c + 1]), dt * (end[c] - end[c + 1])

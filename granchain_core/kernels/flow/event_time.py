@@ -1,13 +1,13 @@
-"""Time as a power of the distance from a contact event, in which the motion next to it is smooth.
+"""A time variable in which the motion next to a contact event is smooth: a root of the time from the event.
 
-After the closing t_e of a contact the overlap grows as t − t_e and the elastic force as its power 3/2, so the motion
-has no Taylor series in t there. It has one in s, where
+After a contact closes at t_e, its overlap grows as t − t_e and its elastic force as the power 3/2 of that, so the
+motion has no Taylor series in t there. It has one in s, where
 
     t = t_e + s^p  after a closing,    t = t_e − s^p  before an opening,    p = 2
 
-and p = 4 for damping ∝ δ^{1/4}, δ^{3/4} or δ^{5/4}, whose G grows as a power with quarters. A step of Dormand and
-Prince that begins at an event is then as long as anywhere else, for motion and tangents alike. In t, error control
-would need tiny steps there.
+and p = 4 for damping ∝ δ^{1/4}, δ^{3/4} or δ^{5/4}, where the power of G is a multiple of 1/4. A Dormand–Prince step
+that begins at an event can then be as long as any other, for motion and tangents alike. In t, error control would need
+tiny steps there.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ AFTER, PLAIN, BEFORE = 1, 0, -1
 class Time(NamedTuple):
     """The transformed time s of a step from `start`, next to `event`: its value `s` at the start, and p, the `power`.
 
-    `ds` below is by how much s has changed since the start, without its sign; where the kind is `PLAIN`, s is t.
+    `ds` below is the magnitude of the change of s since the start. If the kind is `PLAIN`, s is t.
     """
 
     kind: int
@@ -39,7 +39,7 @@ class Time(NamedTuple):
 
 @by_slot
 def smooth_power(dissipation):
-    """The power p for which motion and tangents next to an event are smooth in s."""
+    """Return the power p for which motion and tangents next to an event are smooth in s."""
     return 2
 
 
@@ -51,7 +51,7 @@ def _(dissipation):
 
 @internal
 def nonnegative_root(value, power):
-    """The p-th root of a value, 0 where rounding made it negative."""
+    """The p-th root of a value, or 0 where rounding has made it negative."""
     if value <= 0.0:
         return 0.0
     return sqrt(value) if power == 2 else sqrt(sqrt(value))
@@ -59,13 +59,13 @@ def nonnegative_root(value, power):
 
 @internal
 def time_from(kind, event, start, power):
-    """The time transformation of a step from `start`, next to `event`."""
+    """Return the time transformation of a step from `start`, next to `event`."""
     return Time(kind, event, start, nonnegative_root(kind * (start - event), power), power)
 
 
 @internal
 def time_at(time, ds):
-    """The time t after a change ds."""
+    """The time t after s has changed by ds."""
     if time.kind == PLAIN:
         return time.start + ds
     s = time.s + time.kind * ds
@@ -77,7 +77,7 @@ def time_at(time, ds):
 
 @internal
 def dt_ds_at(time, ds):
-    """|dt/ds| after a change ds."""
+    """|dt/ds| after s has changed by ds."""
     if time.kind == PLAIN:
         return 1.0
     s = time.s + time.kind * ds
@@ -86,7 +86,7 @@ def dt_ds_at(time, ds):
 
 @internal
 def size_of(time, dt):
-    """The ds after which dt has passed since the step's start."""
+    """The change ds after which dt has passed since the step's start."""
     if time.kind == PLAIN:
         return dt
     distance = time.kind * (time.start + dt - time.event)
@@ -95,7 +95,7 @@ def size_of(time, dt):
 
 @internal
 def slope_in_s(slots, beta, time, ds, state, row, workspace):
-    """Slope `row` in s, at `state`; the slope in t is left in workspace.slope."""
+    """Compute slope `row` in s, at `state`; leave the slope in t in workspace.slope."""
     evaluate(slots, beta, time_at(time, ds), state, workspace.slope, workspace.forces)
     dt_ds = dt_ds_at(time, ds)
     for i in range(state.size):

@@ -1,6 +1,6 @@
 """Event location for the flow: steps that end at an opening, at a closing, or at neither.
 
-A step returns (status, time, size, contact that changed at its end or −1); the state is in workspace.end.
+A step returns (status, time, size, contact that changed at its end or −1); its final state is in workspace.end.
 """
 
 from __future__ import annotations
@@ -15,24 +15,24 @@ from ..status import DONE, EVALUATIONS, LOST, NOT_FINITE, REJECTED, STEP_TOO_SMA
 from .attempt import accepted_in_time, attempt_in_time, first_event
 from .event_time import AFTER, BEFORE, PLAIN, dt_ds_at, size_of, smooth_power, time_at, time_from
 
-#: [step size] flow: largest overlap at a located event, in units of the largest displacement. It is a few roundings.
+#: [step size] flow: largest overlap at a located event, in units of the largest displacement: a few rounding errors.
 _LARGEST_EVENT_OVERLAP = 1e-14
-#: [step size] flow: a step aims at the next opening if that is at most this many step sizes away.
+#: [step size] flow: a step aims at the next opening if it is at most this many step sizes away.
 _OPENING_STEPS = 1.5
 #: [step size] flow: most attempts to locate one event.
 _LOCATION_ATTEMPTS = 8
 #: [step size] flow: most attempts to take one step.
 _STEP_ATTEMPTS = 60
-#: [step size] flow: shortest next step to try, in t. Two events that rounding puts at nearly the same time do not make
-#: it smaller.
+#: [step size] flow: shortest next step to try, in t. Two events that rounding places at nearly the same time cannot
+#: make it shorter.
 _SHORTEST_STEP = 1e-9
-#: [step size] flow: a first step after a closing covers at most this part of the time to the next opening.
+#: [step size] flow: the first step after a closing covers at most this part of the time to the next opening.
 _FIRST_STEP_PART = 0.5
 
 
 @inline_numba
 def next_opening(slots, y, contacts):
-    """(contact, time left) of the nearest opening at present speeds, (−1, ∞) if no contact opens."""
+    """Return (contact, time left) of the nearest opening at present speeds; (−1, ∞) if no contact opens."""
     contact, first = -1, np.inf
     for c in range(contacts.closed.size):
         if contacts.closed[c] != 0:
@@ -45,10 +45,11 @@ def next_opening(slots, y, contacts):
 
 @inline_numba
 def locate_change(method, problem, time, h, c, counts):
-    """Repeat a step, first with size h, until it ends where contact c opens or closes; returns the size.
+    """Repeat a step, first with size h, until it ends where contact c opens or closes; return the size.
 
-    h is the root on the dense output, and Newton's method improves it. Where the bodies hardly move against each other,
-    near a grazing, Newton's method would lead away: the step then ends at the root as exact as the dense output has it.
+    The first size is the root on the dense output, and Newton's method improves it. Where the bodies hardly move
+    relative to each other, near a grazing, Newton's method would diverge. The step then ends at the root of the dense
+    output.
     """
     slots, _, _, workspace = problem.trajectory
     attempt_in_time(method, problem, time, h)
@@ -71,7 +72,7 @@ def locate_change(method, problem, time, h, c, counts):
 def step_to_opening(method, problem, t, goal, c, counts):
     """Step from t towards the opening of contact c, estimated at `goal`: onto it, or part of the way.
 
-    Returns (status, time, size, c or −1, goal), with a status of LOST where the contact does not open there.
+    Returns (status, time, size, c or −1, goal); the status is LOST if the contact does not open there.
     """
     slots, drive, _, workspace = problem.trajectory
     power, farthest = smooth_power(slots.dissipation), goal + 3.0 * (goal - t)
@@ -112,9 +113,9 @@ def step_to_opening(method, problem, t, goal, c, counts):
 
 @internal
 def flow_step(method, problem, t, last_closing, counts):
-    """One accepted step from y at local time t, at most to the period's end; `last_closing` is a time (−∞: none).
+    """Take one accepted step from y at local time t, at most to the period's end; `last_closing` is a time (−∞: none).
 
-    Returns (status, time, size, contact); a size of 0 with a contact: it changes at t itself.
+    Returns (status, time, size, contact); size 0 with a contact means that it changes at t itself.
     workspace.next_step[0] is the next step to try, in t.
     """
     trajectory, contacts, _ = problem
@@ -159,7 +160,7 @@ def flow_step(method, problem, t, last_closing, counts):
 
 @inline_numba
 def next_dt(time, h, factor, before, limit):
-    """The next step in t after an accepted one of size h in s; not less than before where only the limit cut it."""
+    """The next step in t after an accepted one of size h in s; no shorter than before if only the limit cut that."""
     end = time_at(time, h)
     dt = time_at(time, h + h * factor) - end
     return max(dt, before, _SHORTEST_STEP) if end >= limit else max(dt, _SHORTEST_STEP)

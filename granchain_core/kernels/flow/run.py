@@ -1,6 +1,6 @@
-"""The flow over whole drive periods, contact event by contact event, with or without tangents.
+"""The flow over whole drive periods, from contact event to contact event, with or without tangents.
 
-Where `tangent` is None, no code for tangents is compiled. The events are logged, because the sequence in which contacts
+If `tangent` is None, no code for tangents is compiled. The events are logged, because the sequence in which contacts
 open and close changes where an orbit grazes.
 """
 
@@ -22,14 +22,14 @@ from .tangent import Tangent, propagate
 #: [step size] flow: most steps in one drive period.
 _MOST_STEPS = 5_000_000
 #: [step size] flow: a step that ends closer to the period's end than this, in periods, ends there. It covers the
-#: rounding of a time and of its map to x. `GOAL_TOLERANCE` (error_control/step.py) is larger, because it also meets the
-#: times of samples, products that are rounded themselves; here it would only add to the error of the map.
+#: rounding of a time and of its map to s. `GOAL_TOLERANCE` (error_control/step.py) is larger, because it also covers
+#: the times of samples, which are rounded products; here it would only add to the error of the map.
 _PERIOD_END = 1e-14
 
 
 @by_slot
 def apply_saltation(tangent, slots, c, closes):
-    """Let tangents jump where contact c opens or closes. Effect absent: there are none, or they are continuous in w."""
+    """Apply the tangents' jump where contact c opens or closes. Effect absent: no tangents, or continuous ones in w."""
 
 
 apply_saltation.absent_for(Tangent)
@@ -44,7 +44,7 @@ def begin(slots, y, contacts):
 
 @internal
 def toggle_contact(slots, contacts, tangent, c, t):
-    """Close contact c at time t, or open it; returns whether it closed."""
+    """Close contact c at time t, or open it; return whether it closed."""
     closes = contacts.closed[c] == 0
     contacts.closed[c] = 1 if closes else 0
     apply_saltation(tangent, slots, c, closes)

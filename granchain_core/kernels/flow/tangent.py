@@ -1,11 +1,11 @@
-"""The tangent flow in (u, w): how neighbouring motions grow or shrink along one.
+"""The tangent flow in (u, w): growth or decay of the distance to neighbouring motions.
 
 Equation   δu̇_i = δw_i + (g_{i-1} δδ_{i-1} − g_i δδ_i)/m_i
            m_i δẇ_i = s_{i-1} δδ_{i-1} − s_i δδ_i + δP_i,   δδ_c = δu_c − δu_{c+1},   s = (3/2) K √δ
            with δP_i, such as −k δu_i, from equations/body_forces.py
 Method     The right-hand side is continuous in w, so the tangents cross contact events without a jump (the saltation of
-           the (u, v) form is inside the change of variables). They are integrated with the stages of the accepted
-           step of the motion itself, eight columns in one vector.
+           the (u, v) form is absorbed by the change of variables). They are integrated with the stages of the motion's
+           own accepted step, eight columns in one vector.
 Check      ∫ trace = ∫ (Σ_i ∂P_i/∂v_i/m_i − Σ_c g_c (1/m_c + 1/m_{c+1})) dt is the logarithm of the
            determinant (Liouville).
 """
@@ -37,7 +37,7 @@ class StageMotions(NamedTuple):
 
 
 def new_stage_motions(bodies):
-    """Room for the motion in the stages of a step."""
+    """Allocate arrays for the motion in the stages of a step."""
     return StageMotions(np.zeros((STAGES + 1, bodies)), np.zeros((STAGES + 1, bodies)))
 
 
@@ -52,10 +52,9 @@ class Tangent(NamedTuple):
     """Tangent vectors as columns in blocks of eight, and workspaces.
 
     `matrix` (blocks · 2N, 8): rows δu_1..δu_N, then δw_1..δw_N of the first eight columns, then of the next.
-    `stages` has the motion; `stiffness`, `damping` (stages, N+1) are those of the contacts;
-    `slopes` (2N · stages, 8) and `state` (2N, 8) of one block; `weights`
-    (stages + 1, stages) are the step's size times the tableau.
-    `first_contact` is 0, or 1 for the observer, on which the driver acts by a given force.
+    `stages` has the motion; `stiffness` and `damping` (stages, N+1) are those of the contacts; `slopes` (2N · stages,
+    8) and `state` (2N, 8) belong to one block; `weights` (stages + 1, stages) are the step size times the tableau.
+    `first_contact` is 0, or 1 for an observer, on which a given force acts instead of the driver.
     """
 
     matrix: np.ndarray
@@ -69,7 +68,7 @@ class Tangent(NamedTuple):
 
 
 def new_tangent(start, bodies, first_contact):
-    """The workspace of the tangents that begin with the columns of `start` (2N, columns), eight in a block."""
+    """Return the workspace of tangents that start from the columns of `start` (2N, columns), eight in a block."""
     rows, columns = start.shape
     blocks, contacts = -(-columns // BLOCK_WIDTH), bodies - 1
     matrix = aligned(blocks * rows)
@@ -81,7 +80,7 @@ def new_tangent(start, bodies, first_contact):
 
 
 def columns_of(tangent, columns):
-    """The first tangents as an ordinary matrix (2N, columns)."""
+    """Return the first tangents as an ordinary matrix (2N, columns)."""
     rows = len(tangent.state)
     blocks = tangent.matrix.reshape(-1, rows, BLOCK_WIDTH)
     return np.ascontiguousarray(blocks.transpose(1, 0, 2).reshape(rows, -1)[:, :columns])
@@ -95,9 +94,9 @@ def _(tangent, state, slope, stage):
 
 @by_slot
 def propagate(tangent, slots, time, h, contacts):
-    """Take the tangents through the accepted step of size h; returns its share of ∫ trace, 0 without columns.
+    """Propagate the tangents through the accepted step of size h; return its share of ∫ trace, 0 without columns.
 
-    Effect absent: there are none.
+    Effect absent: nothing, and 0.
     """
     return 0.0
 
@@ -118,7 +117,7 @@ def _(tangent, slots, time, h, contacts):
 
 @inline_numba
 def linearise(slots, time, h, contacts, tangent):
-    """Tangent stiffness s and damping g of every contact in every stage, times |dt/ds|; returns ∫ trace over a step."""
+    """Write stiffness s and damping g of every contact in every stage, times |dt/ds|; return ∫ trace over the step."""
     trace, inverse_mass, stages = 0.0, slots.chain.inverse_mass, tangent.stages
     for stage in range(STAGES):
         dt_ds = dt_ds_at(time, C[stage] * h)
@@ -137,7 +136,7 @@ def linearise(slots, time, h, contacts, tangent):
 
 @by_slot_inlined
 def linearise_dashpot(law, dampings, c, d, dt_ds, weight):
-    """Store the damping g of contact c, times |dt/ds|, 0 where it is open; returns it times `weight`. Effect absent: 0.
+    """Store damping g of contact c times |dt/ds|, 0 if it is open; return it times `weight`. Effect absent: 0.
 
     A closed contact stays damped even if rounding makes its overlap negative.
     """
@@ -153,7 +152,7 @@ def _(law, dampings, c, d, dt_ds, weight):
 
 @inline_llvm
 def stage_value(tangent, stage, i, first):
-    """Row i of the block that begins at `first`, where slope `stage` of the step is taken."""
+    """Row i of the block that begins at `first`, in the state at which slope `stage` of the step is evaluated."""
     value, base = load8(tangent.matrix, first + i), i * STAGES
     for earlier in range(stage):
         value = value + load8(tangent.slopes, base + earlier) * tangent.weights[stage, earlier]
@@ -162,7 +161,7 @@ def stage_value(tangent, stage, i, first):
 
 @by_slot_inlined
 def add_dashpot_slope(law, slope, left, right, inverse_mass, g, i):
-    """The slope of bead i's δu with the share of its two dashpots added. Effect absent: the slope itself."""
+    """Add the share of bead i's two dashpots to the slope of its δu. Effect absent: the slope unchanged."""
     return slope
 
 
@@ -192,7 +191,7 @@ def block_slope(slots, tangent, stage, dt_ds):
 
 @inline_numba
 def propagate_block(slots, time, h, tangent, first):
-    """Take eight columns, whose rows begin at `first`, through the step."""
+    """Propagate eight columns, whose rows begin at `first`, through the step."""
     rows = tangent.state.shape[0]
     for stage in range(STAGES):
         for i in range(rows):

@@ -1,11 +1,11 @@
-"""The tangent flow in (u, v), the second route: tangents jump where a dashpot contact opens or closes.
+"""The tangent flow in (u, v), as a second route: tangents jump where a contact with a dashpot opens or closes.
 
 Equation   m_i δv̇_i = s_{i-1} δδ_{i-1} − s_i δδ_i + g_{i-1} δδ̇_{i-1} − g_i δδ̇_i + δP_i,   δu̇_i = δv_i
 Saltation  at the closing of contact c   δv_c −= (λ/m_c) δδ_c,   δv_{c+1} += (λ/m_{c+1}) δδ_c,   at an opening the
            reverse: neighbouring trajectories cross the event at different times
 Source     saltation matrices: Leine & Nijmeijer 2004, chapter 7; for this force they are constant shears
-Use        a check of flow/tangent.py that shares the motion and its steps with it. The shear has determinant 1, so
-           Liouville's formula cannot see whether it is there; the columns do. Linear dashpot or no damping.
+Use        a check of flow/tangent.py, with the same motion and steps. The shear has determinant 1, so Liouville's
+           formula cannot detect whether it is applied; the columns can. Linear dashpot or no damping.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from .tangent import StageMotions, new_stage_motions, propagate, write_stage_mot
 class VelocityTangent(NamedTuple):
     """Tangent vectors as columns: matrix (2N, columns), rows δu_1..δu_N, then δv_1..δv_N, and workspaces.
 
-    `jumps` is 1; 0 leaves the saltation out, so that a test can see the error this makes.
+    `jumps` is 1; with 0 the saltation is left out, so that a test can measure the resulting error.
     """
 
     matrix: np.ndarray
@@ -41,7 +41,7 @@ class VelocityTangent(NamedTuple):
 
 
 def new_velocity_tangent(start, bodies, jumps):
-    """The workspace of the tangents that begin with the columns of `start` (2N, columns)."""
+    """Return the workspace of tangents that start from the columns of `start` (2N, columns)."""
     return VelocityTangent(start, new_stage_motions(bodies), np.zeros((STAGES, *start.shape)), np.zeros(start.shape),
                            jumps)
 

@@ -1,8 +1,8 @@
-"""Closings of contacts for methods that do not locate events: the jumps of the force between two states a step apart.
+"""Closings of contacts for methods that do not locate events: jumps of the force between two states one step apart.
 
-Without the contact's own damping the rate of an overlap is smooth across a closing: the parabola through it gives the
-rate at the instant at which the overlap is zero. A touch within a step is a maximum of the overlap between two negative
-values.
+Without the contact's own damping, the rate of an overlap is smooth across a closing, and a parabola through it gives
+the rate at the instant when the overlap is zero. A touch within a step shows as a maximum of the overlap between two
+negative values.
 """
 
 from __future__ import annotations
@@ -26,20 +26,20 @@ class Approach(NamedTuple):
 
 @inline_llvm
 def between_0_and_1(s):
-    """The nearest number in 0 to 1. A NaN stays a NaN. For numbers and vectors, below 2^53, where rounding gives 0."""
+    """The nearest number in [0, 1]; a NaN stays a NaN. For numbers and vectors up to 2^53; above, rounding gives 0."""
     least = clip(s)
     return least - clip(least - 1.0)
 
 
 @inline_llvm
 def closing_rate(before, after, rate, open_rate, own_damping, h):
-    """(fraction, δ̇) at which an overlap that was `before` ≤ 0 and is `after` > 0 a step of size h later was zero.
+    """Return (fraction, δ̇) where an overlap is zero that changes from `before` ≤ 0 to `after` > 0 in a step of size h.
 
-    `rate` is δ̇ before the step. `open_rate` is δ̇ after it with the contact's own damping undone: δ̇ + own_damping·δ
-    with own_damping = λ(1/m_c + 1/m_{c+1}). Without that damping the rate is smooth across the closing and is taken as
-    a parabola, whose integral is the overlap's change. Newton's method finds the crossing, and is kept within the step:
-    where the rate is almost zero there, it would leave it, and the parabola means nothing outside. For numbers and
-    vectors.
+    `rate` is δ̇ before the step. `open_rate` is δ̇ after it with the contact's own damping removed: δ̇ + own_damping·δ
+    with own_damping = λ(1/m_c + 1/m_{c+1}). Without that damping, the rate is smooth across the closing and is
+    approximated by a parabola whose integral is the overlap's change. Newton's method finds the crossing. It is
+    confined to the step, because it would leave it where the rate at the crossing is almost zero, and the parabola is
+    meaningless outside. For numbers and vectors.
     """
     s = before / (before - after)
     closed = 0.5 * (1.0 - s) * after
@@ -50,17 +50,17 @@ def closing_rate(before, after, rate, open_rate, own_damping, h):
             s = between_0_and_1(s - delta / (h * (rate + s * (open_rate - rate + bend - s * bend))))
         rate_there = rate + s * (open_rate - rate + bend - s * bend)
         left = 1.0 - s
-        # ∫δ over the closed part, over h: the trapezium with its slopes at both ends
+        # ∫δ over the closed part, divided by h: the trapezoidal rule corrected by the slopes at both ends
         closed = left * (0.5 * after - left * h * (open_rate - own_damping * after - rate_there) * (1.0 / 12.0))
     return s, rate_there
 
 
 @inline_llvm
 def brief_touch(before, after, rate, rate_after, h):
-    """Rate at which a touch within a step closes: √(2 a δ_max) for an overlap with constant acceleration −a.
+    """Rate at which a contact closes for a touch within a step: √(2 a δ_max) if the overlap accelerates at −a.
 
-    The overlap is negative at both ends of the step and turns in between; 0 or a NaN where it does not touch. For
-    numbers and vectors.
+    The overlap is negative at both ends of the step and turns in between. The result is 0 or a NaN if there is no
+    touch. For numbers and vectors.
     """
     fall = (rate - rate_after) / h
     top = 0.5 * (before + after) + 0.25 * (rate * rate + rate_after * rate_after) / fall
@@ -75,7 +75,7 @@ def approach_of(slots, instant, c):
 
 @by_slot
 def end_approaches(law, slots, instant):
-    """First and last contact at the start of a step. Effect absent: no force jumps there."""
+    """`Approach` of the first and last contact at the start of a step. Effect absent: 0, since no force jumps."""
     return 0.0
 
 
@@ -86,7 +86,7 @@ def _(law, slots, instant):
 
 @by_slot
 def record_crossings(law, slots, before, end, span, log):
-    """Record which end contacts closed between two instants a step apart; `before` are their `end_approaches`."""
+    """Record which end contacts closed between two instants one step apart; `before` are their `end_approaches`."""
 
 
 @record_crossings.of(*JUMP_LAWS)
@@ -100,7 +100,7 @@ def _(law, slots, before, end, span, log):
 
 @inline_llvm
 def record_crossing(law, slots, c, before, end, span, log):
-    """Record whether contact c, open at the start of the step, closed in it or touched."""
+    """Record contact c, which was open at the start of the step, if it closed in it or touched."""
     after, h, last = approach_of(slots, end, c), span.h, slots.chain.stiffness.size - 1
     if after.overlap > 0.0:
         own_damping = law.coefficient * (slots.chain.inverse_mass[c] + slots.chain.inverse_mass[c + 1])

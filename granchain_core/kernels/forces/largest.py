@@ -1,10 +1,10 @@
 """The largest forces of a motion: their suprema over the recorded time, the jumps of closing contacts included.
 
-Equation   F = K δ^{3/2} + g(δ) δ̇.  With a linear dashpot F jumps from 0 to λδ̇ at the instant a contact closes. The
-           value after the jump, its right limit, counts: it is often the largest force there is
-Method     Between two states the force is the cubic with its values and slopes at both. At an event it is evaluated on
-           either side: nothing is interpolated across a jump or a kink. Methods that do not locate events look for
-           closings in their own way (crossings.py)
+Equation   F = K δ^{3/2} + g(δ) δ̇. With a linear dashpot, F jumps from 0 to λδ̇ at the instant a contact closes. The
+           value after the jump, the right limit, counts: it is often the largest force of all
+Method     Between two states, the force is the cubic through its values and slopes at both. At an event, it is
+           evaluated on either side, so that nothing is interpolated across a jump or a kink. Methods that do not locate
+           events find closings in their own way (crossings.py)
 Source     Zhang et al. 2016, eq. (1), for the force; docs/model.md for the definition
 """
 
@@ -27,24 +27,24 @@ from ..equations.motion import contact_force
 from ..step_ends import OVERLAP, RATE, TINY
 from .peaks import INPUT, INPUT_JUMP, OUTPUT, OUTPUT_ELASTIC, OUTPUT_JUMP, PEAKS, row_of
 
-#: Only above this part of the largest force so far is a force's slope computed: a maximum inside a step exceeds the
-#: step's ends by h²/8 times the force's curvature, which is a few per cent.
+#: The slope of a force is only computed above this part of the largest force so far: a maximum inside a step exceeds
+#: the values at its ends by h²/8 times the force's curvature, which is a few per cent.
 _SLOPE_COMPUTED_ABOVE = 0.9
-#: Bound on the cubic's slope: the largest rise or fall of a force in one step, over its value. It is needed after a
+#: Bound on the cubic's slope: the largest change of a force in one step, relative to its value. It is needed after a
 #: closing, where g may have an infinite slope.
 _STEEPEST = 3.0
-#: Entries of `ForceLog.counts`: how many contacts closed with a jump, how many of these were touches within a step of a
-#: method that does not locate them, and the number of the last sample.
+#: Entries of `ForceLog.counts`: the number of closings with a jump, the number of these that were touches within a step
+#: of a method that does not locate events, and the number of the last sample.
 CLOSED, UNRESOLVED, SAMPLE = range(3)
 
 
 class ForceLog(NamedTuple):
     """The forces so far: the largest, those at the last state, and the jumps.
 
-    `peaks` (PEAKS,) holds input, output and elastic output force and the largest jumps (peaks.py), `last` (3, 2) value
-    and slope of each force at the last state looked at. Rows of `closings` (C, 4) are the number of the last sample
-    before a contact closed, the drive phase θ, the contact and the force after the jump; `counts` (3,) are the numbers
-    CLOSED, UNRESOLVED and SAMPLE.
+    `peaks` (PEAKS,) contains input, output and elastic output force and the largest jumps (peaks.py); `last` (3, 2) is
+    the value and slope of each force at the last state processed. Rows of `closings` (C, 4) are the number of the last
+    sample before a contact closed, the drive phase θ, the contact and the force after the jump. `counts` (3,) are the
+    numbers CLOSED, UNRESOLVED and SAMPLE.
     """
 
     peaks: np.ndarray
@@ -61,7 +61,7 @@ class Instant(NamedTuple):
 
 
 class Span(NamedTuple):
-    """A step's size, the drive phase θ at its start, and by how much θ grows in it."""
+    """A step's size, the drive phase θ at its start, and the increase of θ in it."""
 
     h: float
     theta: float
@@ -69,7 +69,7 @@ class Span(NamedTuple):
 
 
 def new_log(before: ForceLog | None = None, closings: int = 0) -> ForceLog:
-    """A log with room for a number of closings; largest forces continue from an earlier log."""
+    """Return a log with room for a number of closings; the largest forces continue from an earlier log."""
     peaks, last = (np.zeros(PEAKS), np.zeros((3, 2))) if before is None else (before.peaks, before.last)
     return ForceLog(peaks, last, np.zeros((closings, 4)), np.zeros(3, dtype=np.int64))
 
@@ -135,7 +135,7 @@ def update_maximum(log, q, value, slope, h):
 
 @internal
 def update_forces_at_event(slots, y, dy, e, h, event, closed, log):
-    """Update the largest forces over the h up to state y, whose slope is dy; h = 0 begins anew there."""
+    """Update the largest forces over the last h before state y, whose slope is dy; h = 0 starts a new interval at y."""
     last = e.size - 1
     for q in range(2):
         c = 0 if q == 0 else last
@@ -153,7 +153,7 @@ def update_forces_at_event(slots, y, dy, e, h, event, closed, log):
 
 @internal
 def update_forces(slots, y, dy, e, h, log):
-    """`update_forces_at_event` where no contact changes; values alone where no force can be near a maximum."""
+    """`update_forces_at_event` where no contact changes; without slopes where no force can be near a maximum."""
     last, peaks = e.size - 1, log.peaks
     input_force, output_force = contact_force(slots, y, dy, e, 0), contact_force(slots, y, dy, e, last)
     elastic = elastic_force(slots.chain.stiffness[last], positive_part(overlap(slots.preload, y, last)))
@@ -167,7 +167,7 @@ def update_forces(slots, y, dy, e, h, log):
 
 @internal
 def update_forces_across_event(slots, y, dy, e, h, c, theta, log):
-    """Update the largest forces up to the event of contact c at drive phase θ, and begin anew after it."""
+    """Update the largest forces up to the event of contact c at drive phase θ, and start a new interval after it."""
     rate = dy[c] - dy[c + 1]
     update_forces_at_event(slots, y, dy, e, h, c, rate < 0.0, log)
     update_forces_at_event(slots, y, dy, e, 0.0, c, rate > 0.0, log)
@@ -176,7 +176,7 @@ def update_forces_across_event(slots, y, dy, e, h, c, theta, log):
 
 @inline_numba
 def update_end_forces_at_event(slots, ends, c, theta, log):
-    """Raise the largest forces at the event of contact c; overlaps and rates are in `ends` (step_ends.py)."""
+    """Raise the largest forces to those at the event of contact c; overlaps and rates are in `ends` (step_ends.py)."""
     last = slots.chain.stiffness.size - 1
     for q in range(2):
         contact = 0 if q == 0 else last
@@ -190,7 +190,7 @@ def update_end_forces_at_event(slots, ends, c, theta, log):
 
 @by_slot
 def record_closing(law, rate, c, last, theta, log):
-    """Record the jump of contact c, which closes at `rate` at drive phase θ. Absent, and where g(0) = 0: none."""
+    """Record the jump of contact c, which closes at `rate` at drive phase θ. Effect absent, or g(0) = 0: no jump."""
 
 
 @record_closing.of(*JUMP_LAWS)
@@ -214,8 +214,8 @@ def _(law, rate, c, last, theta, log):
 def record_closings(law, slots, start, end, span, log):
     """Record the contacts that closed in a located step between two instants. Effect absent: no force jumps there.
 
-    The step ends just past an event; an event too near to the step's start to be distinguished from it belongs to
-    the start.
+    The step ends just past an event. An event too close to the step's start to be distinguished from it counts as being
+    at the start.
     """
 
 

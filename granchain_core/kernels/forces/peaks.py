@@ -1,4 +1,4 @@
-"""The largest value of a force known at equal steps: the top of the quartic through five values around a maximum."""
+"""The largest value of a force sampled at equal steps: the top of the quartic through five values around a maximum."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from ..simd.vector import blank, load_batch, positive_mask, store
 #: Values stored for one force: the largest so far, then the last four, newest first.
 ROWS = 5
 
-#: The quartic's maximum is at most this factor times the largest of its values, since only smooth peaks are
-#: interpolated (`choose_peak`). The largest factor of ten million random peaks was 1.055.
+#: The quartic's maximum is at most this factor times the largest of the five values, since only smooth peaks are
+#: interpolated (`choose_peak`). Of ten million random peaks, the largest factor was 1.055.
 HIGHEST = 1.25
 
 #: An array of peaks: for each of the three forces its `ROWS` values, the largest first, ...
 INPUT, OUTPUT, OUTPUT_ELASTIC = 0, ROWS, 2 * ROWS
-#: ... then the largest jumps of the input and of the output force; and the size of the whole.
+#: ... then the largest jumps of input and output force. The last name is the size of the array.
 INPUT_JUMP, OUTPUT_JUMP, PEAKS = 3 * ROWS, 3 * ROWS + 1, 3 * ROWS + 2
-#: In a batch two rows more: the largest peaks of the input and of the output force that are not smooth, and of which
-#: only a value on the grid is known; and the size of the whole.
+#: In a batch, two more rows: the largest peaks of input and output force that are not smooth, so that only their values
+#: at the ends of steps are known. The last name is the size of the array.
 INPUT_UNRESOLVED, OUTPUT_UNRESOLVED, BATCH_PEAKS = PEAKS, PEAKS + 1, PEAKS + 2
 
 
@@ -69,25 +69,25 @@ def update_peak(peaks, row, value):
 
 
 def largest_forces(peaks: np.ndarray) -> np.ndarray:
-    """The largest input, output and elastic output force so far, as a view (3,); for Python."""
+    """Return the largest input, output and elastic output force so far, as a view (3,); for Python."""
     return peaks[:INPUT_JUMP:ROWS]
 
 
 def largest_jumps(peaks: np.ndarray) -> np.ndarray:
-    """The largest jumps of input and output force so far, as a view (2,); for Python."""
+    """Return the largest jumps of input and output force so far, as a view (2,); for Python."""
     return peaks[INPUT_JUMP:]
 
 
 @inline_llvm
 def write_largest_forces(peaks, out):
-    """The largest input, output and elastic output force so far into `out` (3,)."""
+    """Write the largest input, output and elastic output force so far into `out` (3,)."""
     for q in range(3):
         out[q] = peaks[row_of(q)]
 
 
 @brief_kernel
 def reset_peaks(peaks):
-    """Reset the largest value and the last ones."""
+    """Reset the largest value and the last values."""
     for i in range(INPUT_JUMP):
         peaks[i] = -np.inf if i % ROWS == 0 else 0.0
     peaks[INPUT_JUMP], peaks[OUTPUT_JUMP] = 0.0, 0.0
@@ -95,7 +95,7 @@ def reset_peaks(peaks):
 
 @brief_kernel
 def next_period(peaks):
-    """Reset the largest value but keep the last ones: a maximum may lie across the end of a period."""
+    """Reset the largest value but keep the last values: a maximum may span the end of a period."""
     for row in range(0, INPUT_JUMP, ROWS):
         peaks[row] = -np.inf
     peaks[INPUT_JUMP], peaks[OUTPUT_JUMP] = 0.0, 0.0
@@ -105,7 +105,7 @@ def next_period(peaks):
 def update_batch_peak(peaks, row, value, unresolved):
     """Update the largest value of one force in all members; its values begin at row `row` of a (rows, lanes) array.
 
-    Where a peak is not smooth, as next to a closing or in a contact of a few steps, the row `unresolved` takes it.
+    A peak that is not smooth, as next to a closing or in a touch of a few steps, goes into the row `unresolved`.
     """
     d, c = load_batch(peaks, row + 1), load_batch(peaks, row + 2)
     b, a = load_batch(peaks, row + 3), load_batch(peaks, row + 4)

@@ -1,1 +1,1 @@
-"""Runge–Kutta of order 4 with a fixed step, split at contact events: scalar, chain in a register, long chain."""
+"""RK4 with a fixed step that is split at contact events: in scalar code, along a short chain, along a long chain."""

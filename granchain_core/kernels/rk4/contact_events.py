@@ -1,8 +1,8 @@
-"""Contact events inside a step of fixed size: their times, and the quadrature error of a step next to one.
+"""Contact events inside a fixed step: their times, and the quadrature error of a step next to an event.
 
-An overlap is a cubic in between, from its values and rates at the step's two ends. After a closing at s = 0 the
-elastic force grows like s^{3/2}, whose integral Simpson's rule (and RK4 with it) misses by a part of h^{5/2}: that
-part is known, because the speed is, and is subtracted. For laws with a > 0 the corresponding error of ∫G dt is
+Within a step, an overlap is the cubic through its values and rates at both ends. After a closing at s = 0, the elastic
+force grows as s^{3/2}, which Simpson's rule, and therefore RK4, integrates with an error proportional to h^{5/2}. Since
+the speed is known, so is this error, and it is subtracted. For laws with a > 0, the corresponding error of ∫G dt is
 subtracted from the displacement.
 """
 
@@ -17,14 +17,14 @@ from ..effects.contact import three_halves
 from ..effects.dissipation import JUMP_LAWS, SMOOTH_LAWS, exponent, primitive_factor, primitive_power
 from ..step_ends import DISPLACEMENT_ERROR, MOMENTUM_ERROR, OVERLAP, OVERLAP_END, RATE, RATE_END, TINY
 
-#: Most events located in one step. The rest of the step is taken whole, at order 2; that shows in the difference from a
-#: computation with half the step, and so in the stated error.
+#: Most events located in one step. The rest of the step is taken whole, at order 2. This shows in the difference from a
+#: computation with half the step, and therefore in the stated error.
 MOST_SPLITS = 64
 
 
 @internal
 def first_event(ends, contacts, h):
-    """(contact, fraction) of the first opening or closing in a step of size h; (−1, 2) if there is none."""
+    """Return (contact, fraction) of the first opening or closing in a step of size h; (−1, 2) if there is none."""
     contact, first = -1, 2.0
     for c in range(contacts):
         root = contact_root(ends[OVERLAP, c], h * ends[RATE, c], ends[OVERLAP_END, c], h * ends[RATE_END, c])
@@ -35,11 +35,12 @@ def first_event(ends, contacts, h):
 
 @by_slot
 def nearer_event(law, ends, c, last, part, most, h):
-    """A better fraction of a step of size h, below `most`, for the closing of contact c, after a trial step to `part`.
+    """Improve the fraction of a step of size h at which contact c closes, after a trial step to fraction `part`.
 
-    It is one Newton step from the overlap and the rate that were reached there; `last` is the last contact. The cubic's
-    end may lie beyond a kink of the velocity: its root is off by h², and so is the rate there. That matters
-    where a force jumps with the rate and is recorded. Other contacts, openings and laws without a jump: `part`.
+    This is one Newton step from the overlap and the rate at `part`; the result is below `most`, and `last` is the last
+    contact. The end of the cubic may lie beyond a kink of the velocity: its root, and the rate there, are then off by a
+    term of order h². This matters where a recorded force jumps with the rate. For other contacts, openings and laws
+    without a jump, `part` is returned.
     """
     return part
 
@@ -67,12 +68,13 @@ def reset_corrections(ends):
 
 @inline_numba
 def add_quadrature_errors(law, stiffness, ends, c, h, done):
-    """Contact c changes at the part `done` of a step of size h, at the rate in `ends`.
+    """Add the errors of contact c, which changes at fraction `done` of a step of size h, at its rate in `ends`.
 
-    Simpson's rule fails over the part of the step on the contact's closed side and over the whole steps beyond it.
+    Simpson's rule is inexact over the part of the step on which the contact is closed, and over the whole steps beyond
+    it.
     """
     rate = ends[RATE, c]
-    ends[OVERLAP, c] = copysign(TINY, rate)  # the cubic's remainder must not count as a second event
+    ends[OVERLAP, c] = copysign(TINY, rate)  # so that the cubic's remainder does not count as a second event
     speed, part = abs(rate), 1.0 - done if rate > 0.0 else done
     ends[MOMENTUM_ERROR, c] += stiffness * speed * sqrt(speed) * h * h * sqrt(h) * three_halves_excess(part)
     add_displacement_error(law, ends, c, speed, h, part)
@@ -80,9 +82,10 @@ def add_quadrature_errors(law, stiffness, ends, c, h, done):
 
 @inline_llvm
 def simpson_excess(r, p, half, one, inner, middle, far):
-    """Excess of Simpson's rule over the integral of s^p, over a part r of a step from 0 and the two steps after it.
+    """Excess of Simpson's rule over the integral of s^p, over a fraction r of a step from 0 and the next two steps.
 
-    `half` is 2^{−p}; `one`, `middle` and `far` are s^p at r, r + 1 and r + 2, `inner` its sum at r + 1/2 and r + 3/2.
+    `half` is 2^{−p}; `one`, `middle` and `far` are s^p at r, r + 1 and r + 2; `inner` is the sum of s^p at
+    r + 1/2 and r + 3/2.
     """
     part = r * (one + 4.0 * half * one)
     full_steps = one + 4.0 * inner + 2.0 * middle + far
@@ -107,7 +110,7 @@ def primitive_excess(law, r):
 
 @by_slot
 def add_displacement_error(law, ends, c, speed, h, part):
-    """Add the error of Simpson's rule for ∫G dt. Absent, and where G is linear: nothing."""
+    """Add the error of Simpson's rule for ∫G dt. Effect absent, or G linear: nothing."""
 
 
 add_displacement_error.absent_for(*JUMP_LAWS)

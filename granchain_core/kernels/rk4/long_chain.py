@@ -1,8 +1,8 @@
-"""One chain with SIMD along it: RK4 steps in which no contact opens or closes, eight bodies at a time.
+"""SIMD along a long chain: RK4 steps in which no contact opens or closes, eight bodies at a time.
 
-Rows of bodies are blocks of eight. A shuffle of one block and the next pairs the two bodies of each contact, so that
-every memory access is aligned. The signs of all overlaps are compared from step to step. A step in which one of them
-changes is not taken here; it is left to the scalar method, which splits it.
+Rows of bodies are blocks of eight. Shuffling one block with the next pairs the two bodies of each contact, so every
+memory access is aligned. The signs of all overlaps are compared from step to step. A step in which one of them changes
+is left to the scalar method, which splits it.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ class LongChain(NamedTuple):
     """Workspace in blocks of eight bodies: states (2B, 8) hold B blocks of displacements, then B of w.
 
     Chain values are padded with zeros: inverse mass, stiffness and static overlap (B, 8). `overlap`, `velocity` and
-    `elastic` (B, 8) are overlaps, velocities of the bodies and elastic forces at the last step's start, `signs` (B,)
-    the overlaps' signs.
+    `elastic` (B, 8) are the overlaps, the bodies' velocities and the elastic forces at the last step's start, and
+    `signs` (B,) the signs of the overlaps.
     """
 
     inverse_mass: np.ndarray
@@ -46,7 +46,7 @@ class LongChain(NamedTuple):
 
 @inline_numba
 def steps_without_events(simd, trajectory, j, count, peaks):
-    """Take up to `count` steps from half-step index 2j of the drive; returns how many were taken."""
+    """Take up to `count` steps from half-step index 2j of the drive; return the number of steps taken."""
     slots, drive, y, _ = trajectory
     h, now, before, blocks = drive.h, simd.now, simd.before, simd.inverse_mass.shape[0]
     bodies = slots.chain.inverse_mass.size
@@ -59,7 +59,7 @@ def steps_without_events(simd, trajectory, j, count, peaks):
         first_before, last_before = first, last
         first, last = comes_nearer(simd, slots, v0)
         if done > 0:
-            # an overlap that came nearer to zero and now moves away may have crossed it in between
+            # an overlap that approached zero and now moves away may have crossed it in between
             if changed or (first_before and not first) or (last_before and not last):
                 pack(before, blocks, y, bodies)
                 return done - 1
@@ -79,7 +79,7 @@ def steps_without_events(simd, trajectory, j, count, peaks):
 
 @inline_numba
 def first_stage(simd, slots, u0, h):
-    """The slope at the step's start: begins acc and the mid-step state; returns whether a contact changed since."""
+    """Evaluate the slope at a step's start into acc and the mid-step state; return whether a contact has changed."""
     blocks, law, now = simd.inverse_mass.shape[0], slots.dissipation, simd.now
     here, e_before = with_first(load8(now, 0), u0), splat8(0.0)
     G_before, changed = primitive(law, e_before), np.int64(0)
@@ -108,7 +108,7 @@ def first_stage(simd, slots, u0, h):
 
 @internal
 def later_stage(simd, slots, u0, y, out, h, forward, weight):
-    """A later stage at state y: out = now + forward·h·slope, acc += weight·h·slope."""
+    """Evaluate a later stage at state y: out = now + forward·h·slope, acc += weight·h·slope."""
     blocks, law, now = simd.inverse_mass.shape[0], slots.dissipation, simd.now
     here, e_before = with_first(load8(y, 0), u0), splat8(0.0)
     G_before = primitive(law, e_before)
@@ -139,9 +139,10 @@ def _(law, w, inverse_mass, before, G):
 
 @inline_numba
 def comes_nearer(simd, slots, v0):
-    """Whether the overlaps of the first and of the last contact move towards zero at the last step's start.
+    """Whether the overlaps of the first and the last contact move towards zero at the last step's start.
 
-    Half of the test of `may_change` (step.py), for the two contacts that may touch within a step and part again.
+    This is half of the test in `may_change` (step.py), for the two contacts whose touch within a step must not be
+    missed.
     """
     last = slots.chain.stiffness.size - 1
     first_overlap, last_overlap = simd.overlap[0, 0], simd.overlap[last // BLOCK_WIDTH, last % BLOCK_WIDTH]
@@ -164,7 +165,7 @@ def update_long_chain_peaks(slots, simd, v0, peaks):
 
 @inline_numba
 def unpack(y, bodies, blocked, blocks):
-    """Two rows of bodies into two rows of blocks."""
+    """Copy two rows of bodies into two rows of blocks."""
     for row in range(2):
         for i in range(bodies):
             blocked[row * blocks + i // BLOCK_WIDTH, i % BLOCK_WIDTH] = y[row * bodies + i]
@@ -172,7 +173,7 @@ def unpack(y, bodies, blocked, blocks):
 
 @internal
 def pack(blocked, blocks, y, bodies):
-    """Two rows of blocks back into two rows of bodies."""
+    """Copy two rows of blocks back into two rows of bodies."""
     for row in range(2):
         for i in range(bodies):
             y[row * bodies + i] = blocked[row * blocks + i // BLOCK_WIDTH, i % BLOCK_WIDTH]

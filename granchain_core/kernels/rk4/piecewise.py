@@ -1,7 +1,7 @@
-"""A chain whose drive is given piece by piece: a sampled force on bead 1, or a driver with a given motion.
+"""A chain driven piece by piece: by a sampled force on bead 1, or by a driver with a given motion.
 
-Fixed steps in w, split where a contact opens or closes. The force is one cubic between two samples, the driver's
-displacement one quadratic. Steps end at the samples, so that the right-hand side is smooth in each of them.
+Fixed steps in w are split where a contact opens or closes. Between two samples, the force is one cubic, or the driver's
+displacement one quadratic. Steps end at the samples, so that the right-hand side is smooth within each step.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ from .step import DriveTable, step
 
 
 class DrivePieces(NamedTuple):
-    """A force or a motion between its samples: piece i lasts spans[i] and is taken in substeps[i] steps.
+    """A force or a motion between its samples: piece i has the duration spans[i] and is computed in substeps[i] steps.
 
-    `coefficients` (I, 4) are those of the force's cubics, (I, 3) those of the displacement's quadratics, constant term
+    `coefficients` are those of the force's cubics (I, 4), or of the displacement's quadratics (I, 3), constant term
     first.
     """
 
@@ -35,9 +35,9 @@ class DrivePieces(NamedTuple):
 
 @by_slot
 def begin_piece(driver, slots, y, workspace):
-    """Evaluate the slope again where the driver's acceleration jumps, for the energy account.
+    """Re-evaluate the slope where the driver's acceleration jumps, for the energy account.
 
-    Effect absent: nothing jumps.
+    Effect absent: nothing, since nothing jumps.
     """
 
 
@@ -55,8 +55,8 @@ def _(driver, slots, y, workspace):
 def run_pieces(method, trajectory, pieces, samples, out):
     """Run through all pieces and keep the state at every sample, the first one included.
 
-    The trajectory's drive table is empty, so that the force is evaluated at every stage; its step is that of each
-    piece. Returns (status, rows filled).
+    The trajectory's drive table is empty, so the force is evaluated at every stage; its step is set for each piece.
+    Returns (status, rows filled).
     """
     slots, drive, y, workspace = trajectory
     bodies = slots.chain.inverse_mass.size

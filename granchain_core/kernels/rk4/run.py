@@ -1,4 +1,4 @@
-"""Runs of a fixed-step method: whole periods, or samples, with the largest forces between them."""
+"""Runs of a fixed-step method over whole periods or samples, with the largest forces in between."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ from .step import step, tabulated_displacement, tabulated_velocity
 
 @by_slot_inlined
 def advance(simd, method, trajectory, j, count, out):
-    """Take `count` steps from step index j of the period. Without a vector along the chain: one by one.
+    """Take `count` steps from step index j of the period. Without SIMD along the chain: one by one.
 
-    The stop flag is read every `STEPS_BETWEEN_STOP_CHECKS` steps, and fewer steps are taken once it is set. Calls for
-    long chains are short (integrate/parts.py).
+    The stop flag is read every `STEPS_BETWEEN_STOP_CHECKS` steps; once it is set, fewer steps are taken. Calls for long
+    chains are short (integrate/parts.py).
     """
     slots, _, y, workspace = trajectory
     for i in range(j, j + count):
@@ -65,7 +65,7 @@ def _(simd, method, trajectory, j, count, out):
 
 @internal
 def update_peaks_at_step_end(slots, y, dy, e, peaks):
-    """Update the peaks of the three forces at the end of one of the equal steps (forces/peaks.py)."""
+    """Update the peaks of the three forces at the end of one of several equal steps (forces/peaks.py)."""
     last = e.size - 1
     update_peak(peaks, INPUT, contact_force(slots, y, dy, e, 0))
     update_peak(peaks, OUTPUT, contact_force(slots, y, dy, e, last))
@@ -76,8 +76,8 @@ def update_peaks_at_step_end(slots, y, dy, e, peaks):
 class RunRecord(NamedTuple):
     """Arrays that a run fills: either samples, or strobes and maxima of whole periods; the others have no rows.
 
-    `samples` has T rows, the start first. `strobes` (P + 1, 2, N + 2) are displacement and velocity, the start first,
-    `maxima` (P, 3) the largest forces in the order of `peaks`.
+    `samples` has T rows, the first for the start. `strobes` (P + 1, 2, N + 2) are displacement and velocity, the start
+    first; `maxima` (P, 3) are the largest forces in the order of `peaks`.
     """
 
     samples: Samples
@@ -87,10 +87,10 @@ class RunRecord(NamedTuple):
 
 @kernel
 def run_steps(method, trajectory, first_step, stride, record, out):
-    """Run with a fixed-step method from step index `first_step` of the period, recording every stride-th state.
+    """Run a fixed-step method from step index `first_step` of the period, recording every stride-th state.
 
-    One kernel serves samples and whole periods, because most of its code is the steps. Closings are logged. Returns
-    (status, samples filled or periods done).
+    One kernel serves both samples and whole periods, because most of its code is for the steps. Closings are logged.
+    Returns (status, samples filled or periods done).
     """
     slots, _, y, workspace = trajectory
     bodies, log, j = slots.chain.inverse_mass.size, out.log, first_step
@@ -101,7 +101,7 @@ def run_steps(method, trajectory, first_step, stride, record, out):
     else:
         write_strobe(y, workspace.k[0], record.strobes[0])
     for i in range(record.samples.displacement.shape[0] - 1 if sampled else record.maxima.shape[0]):
-        if first_not_finite(y, bodies) != 0:  # checked before a step spreads it, so that the bead can be reported
+        if first_not_finite(y, bodies) != 0:  # before a step spreads the failure, so that the bead can be reported
             return NOT_FINITE, i
         if sampled:
             log.counts[SAMPLE] = i

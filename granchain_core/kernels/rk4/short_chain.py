@@ -1,7 +1,7 @@
 """A short chain: RK4 split at contact events, in one vector (equations/chain_in_vector.py).
 
-A step evaluates three slopes and the one at its end, which is the next step's first. Nothing is evaluated twice, and
-only the forces at the two ends go through memory.
+A step evaluates three slopes and the slope at its end, which is the first of the next step. Nothing is evaluated twice,
+and only the forces at the two ends of the chain go through memory.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from ..equations.chain_in_vector import chain_slope, load_row
 from ..simd.vector import blank, from_left, from_right, store, with_first
 from ..step_ends import OVERLAP_AT, RATE_AT
 
-#: The chain at a step's beginning and at its end in the workspace; the vectors of each, one a row, and their number.
+#: The chain at a step's start and end in the workspace; the rows of vectors for each, and their number.
 BEGIN, END = 0, 1
 U, W, DU, NET_FORCE, ELASTIC, STATE_ROWS = range(6)
 #: Steps whose forces are searched together.
@@ -25,8 +25,8 @@ STEPS_IN_BLOCK = 32
 class ShortChain(NamedTuple):
     """Workspace of a chain of up to `width` bodies: values padded with zeros (1, width), `rows` (10, width) of states.
 
-    `ends` (END_ROWS, width) are overlaps and rates at the ends of a step that is split (step_ends.py), `forces`
-    (3, STEPS_IN_BLOCK) input force, output force and its elastic part of the last steps.
+    `ends` (END_ROWS, width) are overlaps and rates at the ends of a split step (step_ends.py); `forces` (3,
+    STEPS_IN_BLOCK) are the input force, the output force and its elastic part in the last steps.
     """
 
     width: Any
@@ -52,7 +52,7 @@ class ChainState(NamedTuple):
 
 @inline_llvm
 def chain_at(values, u0, v0, u, w):
-    """The chain in state (u, w) with the driver at u0, moving at v0."""
+    """Evaluate the chain in state (u, w) with the driver at u0, moving at v0."""
     overlap, e, du, net_force = chain_slope(values, u0, u, w)
     moving = with_first(du, v0)
     return ChainState(u, w, du, net_force, overlap, moving - from_right(moving, blank(moving)), e)
@@ -60,9 +60,9 @@ def chain_at(values, u0, v0, u, w):
 
 @inline_llvm
 def chain_step(values, ua, ub, vb, h, x, shift, impulse):
-    """One RK4 step from x; the driver at ua at mid-step, at ub, moving at vb, at the end.
+    """Take one RK4 step from x; the driver is at ua at mid-step, and at ub, moving at vb, at the end.
 
-    `shift` and `impulse` are added to displacements and w at the end.
+    `shift` and `impulse` are added to the displacements and to w at the end.
     """
     half, sixth = 0.5 * h, h / 6.0
     half_m, whole_m, sixth_m = half * values.inverse_mass, h * values.inverse_mass, sixth * values.inverse_mass
@@ -75,7 +75,7 @@ def chain_step(values, ua, ub, vb, h, x, shift, impulse):
 
 @inline_llvm
 def store_state(short, end, x):
-    """Write the chain at a step's beginning or end into the workspace."""
+    """Write the chain at a step's start or end into the workspace."""
     first = STATE_ROWS * end
     store(short.rows, first + U, x.u)
     store(short.rows, first + W, x.w)
@@ -88,7 +88,7 @@ def store_state(short, end, x):
 
 @inline_llvm
 def load_state(short, end):
-    """The chain at a step's beginning or end from the workspace."""
+    """Read the chain at a step's start or end from the workspace."""
     width, rows, first = short.width, short.rows, STATE_ROWS * end
     return ChainState(
         load_row(width, rows, first + U), load_row(width, rows, first + W), load_row(width, rows, first + DU),

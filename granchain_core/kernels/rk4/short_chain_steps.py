@@ -1,4 +1,4 @@
-"""Steps of a short chain in one vector: whole ones, those split at contact events, and the forces at the two ends."""
+"""Steps of a short chain in one vector, whole or split at contact events, and the forces at the chain's two ends."""
 
 from __future__ import annotations
 
@@ -45,9 +45,9 @@ from .step import tabulated_displacement, tabulated_velocity
 def split_short_step(short, trajectory, j, u_end, v_end, out):
     """Repeat step j in the workspace from contact event to contact event, and overwrite its end there.
 
-    `split` (step.py) is the same in scalar code, and the reference; tests/kernels/simd/test_simd.py compares runs.
-    The loops are apart since one has the state in vectors, the other in the trajectory's arrays. The driver is
-    at u_end, moving at v_end, at the end.
+    `split` (step.py) is the same in scalar code, and the reference; tests/kernels/simd/test_simd.py compares runs. The
+    loops are separate because one has the state in vectors, the other in the trajectory's arrays. The driver is at
+    u_end, moving at v_end, at the step's end.
     """
     slots, drive, _, _ = trajectory
     h, dtheta, theta = drive.h, drive.dtheta, j * drive.dtheta
@@ -71,7 +71,7 @@ def split_short_step(short, trajectory, j, u_end, v_end, out):
                 break
         done += stepped
         add_quadrature_errors(slots.dissipation, short.stiffness[0, contact], ends, contact, h, done)
-        # after add_quadrature_errors, which gives the overlap the sign that it has after the event
+        # after add_quadrature_errors, which gives the overlap its sign after the event
         update_end_forces_at_event(slots, ends, contact, theta_event, out.log)
         middle = theta + dtheta * 0.5 * (1.0 + done)
         end = chain_step(values, driver_displacement(driver, middle), u_end, v_end, h * (1.0 - done), event,
@@ -84,7 +84,7 @@ def split_short_step(short, trajectory, j, u_end, v_end, out):
 
 @inline_llvm
 def keep_forces(short, values, last, k, x):
-    """Write input force, output force and its elastic part at step k of a block; returns them."""
+    """Write input force, output force and its elastic part at step k of a block, and return them."""
     overlap, rate, elastic = at(x.overlap, last), at(x.rate, last), at(x.elastic, last)
     input_force = at(x.elastic, 0) + dashpot_force(values.slots.dissipation, at(x.overlap, 0), at(x.rate, 0))
     output_force = elastic + dashpot_force(values.slots.dissipation, overlap, rate)
@@ -94,7 +94,7 @@ def keep_forces(short, values, last, k, x):
 
 @internal
 def update_block_peak(values, count, largest, peaks, first):
-    """Update the peak of one force with the steps of a block: one by one only if a largest value may be among them."""
+    """Update the peak of one force with the steps of a block, one by one only if they may contain a new maximum."""
     skipped = 0 if HIGHEST * largest > peaks[first] else max(0, count - 4)
     for k in range(skipped, count):
         update_peak(peaks, first, values[k])
@@ -110,7 +110,7 @@ def update_block_peaks(short, count, maxima, peaks):
 
 @inline_llvm
 def start_chain(short, values, trajectory, j):
-    """The chain in the trajectory's state at step j."""
+    """Evaluate the chain in the trajectory's state at step j."""
     slots, drive, y, _ = trajectory
     rows, bodies = short.rows, slots.chain.inverse_mass.size
     for i in range(bodies):
@@ -136,9 +136,9 @@ def write_chain(short, x, trajectory, j):
 
 @inline_numba
 def run_short_chain(short, trajectory, j, count, out):
-    """Take `count` steps from step index j of the period, slope and forces at the end included.
+    """Take `count` steps from step index j of the period; also write slope and forces at the end.
 
-    If the stop flag is set, fewer are taken.
+    Fewer steps are taken if the stop flag is set.
     """
     slots, drive, _, _ = trajectory
     values, before, last = chain_values(short, slots), flush_subnormals(), slots.chain.stiffness.size - 1

@@ -1,8 +1,8 @@
-"""One step of the fixed-step methods: classical Runge–Kutta of order 4 in w, plain or split at contact events.
+"""One step of the fixed-step methods: classical RK4 in w, plain or split at contact events.
 
-`rk4` is the formula. `step` is the step of each method: plain, or a whole step that is taken back and `split` at every
-contact that opens or closes in it. The drive phase follows from an integer count of steps, so that rounding errors do
-not accumulate in the time.
+`rk4` is the formula. `step` is each method's step: a plain one, or a whole step that is undone and then `split`
+wherever a contact opens or closes in it. The drive phase follows from an integer count of steps, so that rounding
+errors do not accumulate in the time.
 """
 
 from __future__ import annotations
@@ -32,13 +32,13 @@ from .contact_events import (
 
 
 class Rk4(NamedTuple):
-    """Method slot: RK4 in w that ignores contact events; its order is in `integrate.METHODS`."""
+    """Method slot: RK4 in w, ignoring contact events; its order is in `integrate.METHODS`."""
 
     steps_per_period: int
 
 
 class Rk4Split(NamedTuple):
-    """Method slot: RK4 in w whose step is split where a contact opens or closes."""
+    """Method slot: RK4 in w with steps split where a contact opens or closes."""
 
     steps_per_period: int
 
@@ -46,8 +46,8 @@ class Rk4Split(NamedTuple):
 class Rk4Workspace(NamedTuple):
     """Workspace of one step: slopes k (4, M), a stage state and the step's end (M,), force arrays.
 
-    `ends` (6, N+1) are overlaps, rates and quadrature errors of a step that is split; step_ends.py names the rows.
-    `simd` is the workspace of steps with SIMD along the chain (short_chain.py, long_chain.py), None without them.
+    `ends` (6, N+1) are overlaps, rates and quadrature errors of a split step; step_ends.py names the rows. `simd` is
+    the workspace of steps with SIMD along the chain (short_chain.py, long_chain.py), or None.
     """
 
     k: np.ndarray
@@ -59,9 +59,9 @@ class Rk4Workspace(NamedTuple):
 
 
 class DriveTable(NamedTuple):
-    """The driver in equal steps: its (u_0, v_0) at every half step of a period, the phase per step, the step's size.
+    """The driver in equal steps: its (u_0, v_0) at every half step of a period, the phase per step, the step size.
 
-    `values` has no rows if a period has too many steps for a table; the driver is then evaluated at each step.
+    `values` has no rows if a period has too many steps for a table; the driver is then evaluated at every step.
     """
 
     values: np.ndarray
@@ -85,7 +85,7 @@ def tabulated_velocity(slots, drive, i):
 
 @internal
 def rk4(slots, ua, va, ub, vb, h, y, workspace):
-    """One RK4 step of size h from y, whose slope is workspace.k[0], to workspace.end.
+    """Take one RK4 step of size h from y, whose slope is workspace.k[0], to workspace.end.
 
     The driver's displacement and velocity are (ua, va) at mid-step and (ub, vb) at the end.
     """
@@ -108,7 +108,7 @@ def may_change(slots, y, slope, end, end_slope):
     """Whether a contact may open or close within the step: its overlap has another sign at the end, or turns.
 
     docs/method.md has a table of this test in the other integrators; tests/kernels/test_event_predicates.py compares
-    them. There is no branch in the loop, so that the compiler makes vectors of it.
+    them. The loop has no branches, so that the compiler can vectorise it.
     """
     changed = 0
     for c in range(slots.chain.stiffness.size):
@@ -120,7 +120,7 @@ def may_change(slots, y, slope, end, end_slope):
 
 @internal
 def write_overlaps(slots, y, slope, ends, overlaps, rates):
-    """Overlaps and their rates at one end of a step."""
+    """Write overlaps and their rates at one end of a step."""
     for c in range(slots.chain.stiffness.size):
         ends[overlaps, c] = overlap(slots.preload, y, c)
         ends[rates, c] = slope[c] - slope[c + 1]
@@ -154,14 +154,14 @@ def _(account, excess, y):
 def step(method, trajectory, j, out):
     """Advance y by one step from half-step index 2j of the drive; workspace.k[0] is dy/dt at y before and after.
 
-    Largest forces and jumps inside the step go into the log. Returns the time from the last state at which they were
-    followed to the step's end.
+    The largest forces and jumps inside the step go into the log. Returns the time from the last state that the log has
+    covered to the step's end.
     """
 
 
 @internal
 def whole_step(trajectory, j):
-    """One RK4 step from half-step index 2j to workspace.end; returns the driver's displacement and velocity there."""
+    """Take an RK4 step from half-step index 2j to workspace.end; return the driver's displacement and velocity."""
     slots, drive, y, workspace = trajectory
     ua, va = tabulated_displacement(slots, drive, 2 * j + 1), tabulated_velocity(slots, drive, 2 * j + 1)
     ub, vb = tabulated_displacement(slots, drive, 2 * j + 2), tabulated_velocity(slots, drive, 2 * j + 2)
@@ -171,7 +171,7 @@ def whole_step(trajectory, j):
 
 @internal
 def span_of(drive, j):
-    """Step j of the period."""
+    """`Span` of step j of the period."""
     return Span(drive.h, j * drive.dtheta, drive.dtheta)
 
 
@@ -208,8 +208,8 @@ def _(method, trajectory, j, out):
 def split(trajectory, j, u_end, v_end, out):
     """Repeat step j of the period, in which contacts open or close, from event to event; its end is workspace.end.
 
-    `split_short_step` (short_chain_steps.py) is the same in vectors, and is tested against this one. The driver is at
-    u_end, moving at v_end, at the end. Returns the time from the last event to the step's end.
+    `split_short_step` (short_chain_steps.py) is the same in vectors, and is tested against this function. The driver is
+    at u_end, moving at v_end, at the end. Returns the time from the last event to the step's end.
     """
     slots, drive, y, workspace = trajectory
     ends, end, k, h, dtheta = workspace.ends, workspace.end, workspace.k, drive.h, drive.dtheta

@@ -1,1 +1,1 @@
-"""Vectors of doubles as Numba types, functions of them, and subnormal numbers."""
+"""Vectors of doubles as Numba types, functions on them, and the handling of subnormal numbers."""

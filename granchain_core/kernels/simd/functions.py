@@ -2,9 +2,10 @@
 
 A root is computed in one of two ways: by the square-root instruction, which runs on the divider, or from an approximate
 inverse root and some terms of the binomial series, which run on the multiply–add units. The approximation is
-`vrsqrt14pd` for eight doubles on processors with AVX-512, and `rsqrtps` for four on any x86. With AVX-512 the second
-way has more than twice the throughput (1.8 ns against 4.4 ns for eight roots). Used side by side, the two keep both
-units busy: on some of a batch's contacts (batch/step.py), and on every second register of a chain (`chain_root`).
+`vrsqrt14pd` for eight doubles on processors with AVX-512, and `rsqrtps` for four on any x86. With AVX-512, the second
+way has more than twice the throughput (1.8 ns instead of 4.4 ns for eight roots). Used together, the two keep both
+units busy: in a batch two of three roots or one (batch/step.py), in a chain every second register (`chain_root`) take the
+series.
 """
 
 from __future__ import annotations
@@ -19,15 +20,15 @@ from ..batch_size import BATCH_SIZE, has_avx512, is_x86
 from ..compiling.jit import FAST_MATH
 from .vector import VectorType, as_vector
 
-#: Whether the processor has `vrsqrt14pd` for eight doubles, and `rsqrtps` for four floats.
+#: Whether the processor has `vrsqrt14pd` for eight doubles, and whether it has `rsqrtps` for four floats.
 _HAS_RSQRT14, _HAS_RSQRT_PS = has_avx512(), is_x86()
 #: Smallest number whose root is computed; smaller ones are replaced by it. Its power 3/2, the force of such an overlap,
-#: is negligible. Where `rsqrtps` is used it must not become zero in single precision.
+#: is negligible. Where `rsqrtps` is used, it must not underflow to zero in single precision.
 _LEAST_ARGUMENT = 1e-280 if BATCH_SIZE == 8 else 1e-30
-#: A maximum is smooth if its two neighbours are above this part of it; a jump of a dashpot force is not.
+#: A maximum is smooth if both of its neighbours are above this part of it; the jump of a dashpot force is not.
 NEIGHBOUR_PART = 0.8
-#: The same for the two values beyond the neighbours; they are not above the maximum either, since the quartic through a
-#: dip of one step may rise to many times its values.
+#: The same for the two values beyond the neighbours. They must not exceed the maximum either, since the quartic through
+#: a dip of one step may rise to many times the values.
 SECOND_NEIGHBOUR_PART = 0.4
 
 
@@ -59,7 +60,7 @@ def _with_series(builder, value, inverse, coefficients):
 
 
 def _root_of_eight(builder, value, coefficients=(0.5, 0.375)):
-    """From the 14 bits of `vrsqrt14pd`: |e| ≤ 2^{−13}, so the first term left out, 5e³/16, is below 6e-13."""
+    """√x from the 14 bits of `vrsqrt14pd`: |e| ≤ 2^{−13}, so the first omitted term, 5e³/16, is below 6e-13."""
     kind = value.type
     function = cgutils.get_or_insert_function(
         builder.module, ir.FunctionType(kind, [kind, kind, ir.IntType(8)]), "llvm.x86.avx512.rsqrt14.pd.512")
@@ -69,14 +70,14 @@ def _root_of_eight(builder, value, coefficients=(0.5, 0.375)):
 
 
 def _full_root_of_eight(builder, value):
-    """A root of any number that is not negative, to rounding: the first term left out, 35e⁴/128, is below 7e-17."""
+    """A root of any number that is not negative, to rounding: the first omitted term, 35e⁴/128, is below 7e-17."""
     least = ir.Constant(value.type, [1e-280] * value.type.count)
     value = builder.select(builder.fcmp_ordered("<", value, least), least, value)
     return _root_of_eight(builder, value, (0.5, 0.375, 0.3125))
 
 
 def _root_of_four(builder, value):
-    """From the 11 bits of `rsqrtps`: |e| ≤ 2^{−10.4}, so the first term left out, 35e⁴/128, is below 1e-13.
+    """√x from the 11 bits of `rsqrtps`: |e| ≤ 2^{−10.4}, so the first omitted term, 35e⁴/128, is below 1e-13.
 
     Above 3e38, the largest float, the root is NaN, so that an overflow is not hidden.
     """
@@ -99,7 +100,7 @@ def _vector_root(typingctx, value):
 
 @intrinsic
 def root_by_series(typingctx, value):
-    """√ of every lane, all above zero; without the divider where the processor has an approximate inverse root."""
+    """√ of every lane, all above zero; avoids the divider if the processor has an approximate inverse root."""
 
     def codegen(context, builder, sig, args):
         width = sig.return_type.width
@@ -187,7 +188,7 @@ def _vector_peak(typingctx, a, b, c, d, e, top):
 
 
 def choose_peak(a, b, c, d, e, top):
-    """`top` where c is a smooth maximum of five successive values, else c."""
+    """`top` where c is a smooth maximum of five successive values, otherwise c."""
     largest = b < c >= d and a <= c >= e
     near, far = NEIGHBOUR_PART * c, SECOND_NEIGHBOUR_PART * c
     smooth = b > near and d > near and a > far and e > far
@@ -226,7 +227,7 @@ def _vector_abs(typingctx, value):
 def _abs(value):
     if isinstance(value, VectorType):
         return lambda value: _vector_abs(value)
-    return None  # Numba has one for numbers
+    return None  # Numba has its own for numbers
 
 
 @intrinsic
@@ -239,7 +240,7 @@ def _vector_clip(typingctx, value):
 
 
 def clip(overlap):
-    """0 where `overlap` < 0, else `overlap`; a NaN stays a NaN. A single instruction for vectors."""
+    """0 where `overlap` < 0, otherwise `overlap`; a NaN stays a NaN. A single instruction for vectors."""
     return 0.0 if overlap < 0.0 else overlap
 
 
@@ -251,7 +252,7 @@ def _clip(overlap):
 
 
 def gate(overlap, value):
-    """0 where `overlap` ≤ 0, else `value`; a NaN overlap passes `value`, so that it is not hidden."""
+    """0 where `overlap` ≤ 0, otherwise `value`; a NaN overlap passes `value`, so that a failure is not hidden."""
     return 0.0 if overlap <= 0.0 else value
 
 
@@ -263,7 +264,7 @@ def _gate(overlap, value):
 
 
 def larger(a, b):
-    """The larger of two numbers or of every lane; `a` where they cannot be compared."""
+    """The larger of two numbers, or of two vectors lane by lane; `a` where they cannot be compared."""
     return b if b > a else a
 
 

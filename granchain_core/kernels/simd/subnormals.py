@@ -1,4 +1,4 @@
-"""Subnormal numbers taken for zero: ahead of a wave all numbers may be subnormal, which is slow.
+"""Treating subnormal numbers as zero: ahead of a wave, all numbers may be subnormal, which is slow.
 
 `Engine.record` and `Engine.periods`, short chains and batches switch this on; the flow and `run_pieces` do not.
 """
@@ -13,7 +13,7 @@ from numba.extending import intrinsic
 from ..batch_size import is_x86
 from ..compiling.jit import brief_kernel
 
-#: Bits of MXCSR, the control register of x86: flush results to zero (FTZ, 0x8000), take arguments for zero (DAZ, 0x40).
+#: Bits of MXCSR, a control register of x86: flush results to zero (FTZ, 0x8000), treat arguments as zero (DAZ, 0x40).
 _FLUSH = 0x8040
 _IS_X86 = is_x86()
 
@@ -26,7 +26,7 @@ def _control_register(builder, name, pointer):
 
 @intrinsic
 def flush_subnormals(typingctx):
-    """Treat subnormal numbers as zero: arithmetic with them is a hundred times slower. Returns the old setting."""
+    """Treat subnormal numbers as zero, since arithmetic with them is a hundred times slower; return the old setting."""
 
     def codegen(context, builder, sig, args):
         if not _IS_X86:
@@ -57,7 +57,7 @@ def restore_subnormals(typingctx, before):
 
 @brief_kernel
 def begin_flushing():
-    """`flush_subnormals` for Python: in the thread that calls it."""
+    """`flush_subnormals` for Python, in the calling thread."""
     return flush_subnormals()
 
 

@@ -1,4 +1,4 @@
-"""Sums over rows of an array with fixed weights, sums and maxima over the lanes of a vector, single lanes."""
+"""Fixed-weight sums over rows of an array, sums and maxima over the lanes of a vector, and single lanes."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from .vector import require_rows
 
 
 def weighted_rows(weights, latest=-1):
-    """An intrinsic (vector, array) that gives Σ weights[s] · row s of an array of rows as wide as the vector.
+    """Make an intrinsic (vector, array) for Σ weights[s] · row s of an array whose rows are as wide as the vector.
 
-    The vector is row `latest`, which is then not read back from memory; −1: only its type matters. Rows of weight zero
-    are not read either.
+    The vector is row `latest`, which is then not read back from memory; with −1, only its type matters. Rows of weight
+    zero are not read either.
     """
     terms = [(s, float(weight)) for s, weight in enumerate(weights) if weight != 0.0]
-    terms.sort(key=lambda term: term[0] == latest)  # the newest row last: the others need not wait for it
+    terms.sort(key=lambda term: term[0] == latest)  # the newest row last, so that the others need not wait for it
 
     @intrinsic
     def total(typingctx, vector, array):
@@ -40,9 +40,9 @@ def weighted_rows(weights, latest=-1):
 
 
 def moved_by_rows(weights, latest):
-    """A function (start, vector, array) that gives start + Σ weights[s] · row s, where `vector` is row `latest`.
+    """Make a function (start, vector, array) for start + Σ weights[s] · row s, where `vector` is row `latest`.
 
-    That newest row is added last: all the rest need not wait for it.
+    This newest row is added last, so that the rest need not wait for it.
     """
     earlier, weight = weighted_rows([*weights[:latest], 0.0, *weights[latest + 1 :]]), float(weights[latest])
 
@@ -75,7 +75,8 @@ def sum_of(typingctx, value):
 def largest_of(typingctx, value):
     """The largest lane, where none is NaN.
 
-    Halves are compared in turn. LLVM's own maximum of all lanes keeps out every NaN, which takes three times as long.
+    The vector is halved repeatedly. LLVM's own maximum over all lanes filters out NaNs, which takes three times as
+    long.
     """
 
     def codegen(context, builder, sig, args):
@@ -120,7 +121,7 @@ def repeat_like(typingctx, value, eight):
 
 @intrinsic
 def lowest_bit(typingctx, mask):
-    """The number of the lowest bit that is set."""
+    """The number of the lowest set bit."""
 
     def codegen(context, builder, sig, args):
         return builder.cttz(args[0], ir.Constant(ir.IntType(1), 0))
@@ -132,7 +133,7 @@ def lowest_bit(typingctx, mask):
 def inverse_sixteenth_root(typingctx, value):
     """value^{−1/16} of a positive number to about 4 %, from its bits as an approximate logarithm.
 
-    A step of order 8 changes as error^{−1/8}, the square of the error to −1/16; 4 % of a step do no harm.
+    With order 8, the step size changes as error^{−1/8}, which is (error²)^{−1/16}; 4 % of a step size does no harm.
     """
 
     def codegen(context, builder, sig, args):

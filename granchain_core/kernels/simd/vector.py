@@ -25,14 +25,14 @@ from numba.extending import (
 from ..batch_size import BATCH_SIZE
 from ..compiling.jit import FAST_MATH
 
-#: Doubles in a block of a long chain, in one of tangents, and in the vectors of q and t (dop853_root).
+#: Number of doubles in a block of a long chain, in a block of tangents, and in the vectors of q and t (dop853_root).
 BLOCK_WIDTH = 8
-#: Widths of the vectors there are.
+#: The available widths of vectors.
 WIDTHS = (4, 8, 16, 32)
 
 
 class VectorType(types.Type):
-    """The Numba type of a vector of `width` doubles; `ir` is LLVM's type of it."""
+    """The Numba type of a vector of `width` doubles; `ir` is its LLVM type."""
 
     def __init__(self, width: int) -> None:
         super().__init__(name=f"vector{width}")
@@ -58,7 +58,7 @@ def _splat(builder, kind, value):
 
 
 def as_vector(builder, wanted, kind, value):
-    """The value as a vector: a number is put into all lanes."""
+    """The value as a vector; a number is copied into all lanes."""
     return value if isinstance(kind, VectorType) else _splat(builder, wanted.ir, value)
 
 
@@ -100,7 +100,7 @@ for _kind in VECTORS.values():
 
 
 def aligned(rows: int, width: int = BLOCK_WIDTH) -> np.ndarray:
-    """Zeros (rows, width) that begin on a cache line: a vector that lies across two lines costs two accesses."""
+    """Return zeros (rows, width) that start on a cache line: a vector that spans two lines costs two accesses."""
     spare = 8  # doubles in a cache line of 64 bytes
     memory = np.zeros(rows * width + spare)
     first = -(memory.ctypes.data // 8) % spare
@@ -118,9 +118,9 @@ def splat8(typingctx, value):
 
 
 def require_rows(array):
-    """Check, while a kernel is typed, that an array is C-ordered, of float64 and of two axes.
+    """Check, while a kernel is typed, that an array is C-ordered and two-dimensional and contains float64.
 
-    A vector read from any other array would be made of foreign memory. The width of a row is not known then.
+    From any other array, a vector would be read out of foreign memory. The width of a row is not known at that stage.
     """
     fits = isinstance(array, types.Array) and array.ndim == 2 and array.layout == "C" and array.dtype == types.float64
     if not fits:
@@ -135,7 +135,7 @@ def _row_pointer(context, builder, array_type, array, row, kind):
 
 
 def loader(width):
-    """An intrinsic that reads row `row` of a (rows, width) array."""
+    """Make an intrinsic that reads row `row` of a (rows, width) array."""
     kind = VECTORS[width]
 
     @intrinsic
@@ -179,7 +179,7 @@ def store(typingctx, array, row, value):
 
 
 def _shifted(left: bool):
-    """An intrinsic that shifts two vectors, laid side by side, by one lane to the left or right."""
+    """Make an intrinsic that shifts two concatenated vectors by one lane to the left or right."""
 
     @intrinsic
     def shifted(typingctx, here, beside):
@@ -201,7 +201,7 @@ from_left, from_right = _shifted(True), _shifted(False)
 
 @intrinsic
 def with_first(typingctx, value, first):
-    """The vector with another number in its first lane."""
+    """The vector with its first lane replaced by a number."""
 
     def codegen(context, builder, sig, args):
         return builder.insert_element(args[0], args[1], ir.Constant(ir.IntType(32), 0))
@@ -232,7 +232,7 @@ def at(typingctx, value, lane):
 
 @intrinsic
 def positive_mask(typingctx, value):
-    """One bit for each lane: whether it is above zero."""
+    """One bit per lane: 1 if it is above zero."""
 
     def codegen(context, builder, sig, args):
         kind = sig.args[0].ir

@@ -1,1 +1,1 @@
-"""Decisions on states a period apart: whether the motion is periodic, and the limit of a decaying transient."""
+"""Decisions from strobes: whether the motion is periodic, and the limit of a decaying transient."""

@@ -1,7 +1,7 @@
 """The limit of a decaying sequence of states: reduced rank extrapolation.
 
-Near its orbit the stroboscopic map is linear, x_{k+1} − x* = M (x_k − x*). With the differences d_j = x_{j+1} − x_j the
-weights ξ that minimise d_0 + Σ ξ_j (d_{j+1} − d_j) give x* ≈ x_0 + Σ ξ_j d_j: the slowest modes are removed.
+Near an orbit, the stroboscopic map is linear, x_{k+1} − x* = M (x_k − x*). With the differences d_j = x_{j+1} − x_j,
+the weights ξ that minimise |d_0 + Σ ξ_j (d_{j+1} − d_j)| give x* ≈ x_0 + Σ ξ_j d_j: the slowest modes are removed.
 Source: Eddy 1979; Sidi, Vector Extrapolation Methods (2017), chapter 2, by modified Gram–Schmidt.
 """
 
@@ -11,10 +11,10 @@ from math import sqrt
 
 from ..compiling.jit import brief_kernel, internal
 
-#: Differences used; k differences remove k − 1 slow modes.
+#: Number of differences used; k differences remove k − 1 slow modes.
 ORBITS = 8
-#: A second difference counts as linearly dependent on the earlier ones if its part orthogonal to them is below this
-#: fraction of it.
+#: A second difference counts as linearly dependent on the earlier ones if its component orthogonal to them is less than
+#: this fraction of it.
 _DEPENDENT_PART = 1e-9
 
 

@@ -1,10 +1,10 @@
-"""Periodicity of stroboscopic states: changes, the factor by which they shrink, the shortest period.
+"""Periodicity of stroboscopic states: their changes, the factor by which these shrink, the shortest period.
 
-A curve calls these functions thousands of times.
+These functions are called thousands of times for a curve.
 
-States are rows (P, 2, N) of displacement and velocity, or of displacement and w, one per drive period. A change of
-displacements is relative to the largest displacement in the record, a change of velocities (or w) to the largest of
-them.
+States are rows (P, 2, N) of displacement and velocity, or of displacement and w, one per drive period. Changes of
+displacements are relative to the largest displacement in the record, changes of velocities (or w) to the largest
+velocity (or w).
 """
 
 from __future__ import annotations
@@ -15,57 +15,57 @@ import numpy as np
 
 from ..compiling.jit import brief_kernel, inline_llvm, internal, kernel
 
-#: [period n, followed, quasi-periodic] Longest period that a batch tests, in drive periods, and longest period of an
-#: orbit that is looked for beside a motion, in a batch or alone. A longer one is settled alone.
+#: [period n, followed, quasi-periodic] Longest period for which a batch tests, in drive periods, and longest period of
+#: an orbit searched for near a motion, in a batch or alone. Chains with a longer period are settled alone.
 LONGEST_PERIOD = 16
-#: [period n] Fewest changes from which a contraction factor is taken.
+#: [period n] Fewest changes from which a contraction factor is computed.
 LEAST_WINDOW = 8
 #: [period n] A state is on its orbit if the bound on its distance, relative to the largest displacement and velocity,
 #: is at most this.
 SETTLED_DISTANCE = 1e-6
 #: [period n] Changes of a fixed-step map at most this large count as rounding.
 ROUNDING = 1e-12
-#: [period n] A state whose last change over n periods is larger is not settled. Nothing decays a thousandfold in one
+#: [period n] A state is not settled if its last change over n periods is larger. Nothing decays a thousandfold in one
 #: period.
 _LARGEST_SETTLED_CHANGE = 1e-3
-#: [period n] A bound on the distance below this part of the required one needs no steady contraction. A slow mode
-#: hidden in it would have to decay a hundred times more slowly than what is observed.
+#: [period n] If the bound on the distance is below this part of the required bound, the contraction need not be steady.
+#: A hidden slow mode would have to decay a hundred times more slowly than the observed changes.
 _UNEVEN_PART = 1e-2
 #: [period n] A contraction factor is steady if those of both halves of its window agree to this part of the larger one.
 _STEADY_PART = 0.2
-#: [period n] Where the last changes are rounding, the contraction factor is taken from changes above rounding times
-#: this.
+#: [period n] Where the last changes are rounding, the contraction factor is computed from changes above this many times
+#: rounding.
 _ABOVE_ROUNDING = 1e3
 #: [period n] A divisor q of n is the period if changes over q are at most this factor times the bound on the distance …
 _DISTANCES_OVER_DIVISOR = 10.0
-#: [period n] … or at most the required bound times this.
+#: [period n] … or at most this factor times the required bound.
 _SETTLED_OVER_DIVISOR = 3.0
 #: [period n] Changes over q periods that decay more slowly than this, per q periods, may be those of a longer orbit.
-#: Faster ones go to zero.
+#: Faster ones vanish.
 _SLOWEST_APPROACH = 0.97
-#: [period n] A period is looked for, and in a batch extrapolated to, once its change is below this.
+#: [period n] A period is tested for, and in a batch extrapolated to, once the change over it is below this.
 _LARGEST_EXTRAPOLATED_CHANGE = 1e-2
 
-#: [all] Without |μ| a distance is taken to shrink by the observed contraction factor, at most this: the largest factor
-#: that a batch reports. A larger one would make stated errors larger still.
+#: [all] Without |μ|, a distance is assumed to shrink by the observed contraction factor, but at most by this: the
+#: largest factor that a batch reports. A larger one would make stated errors larger still.
 LARGEST_TRUSTED_CONTRACTION = 0.9999
-#: [all] Where no contraction was observed, a distance is taken to shrink by this factor.
+#: [all] Where no contraction was observed, a distance is assumed to shrink by this factor.
 CONTRACTION_NOT_SEEN = 0.5
 
 
 @internal
 def assumed_contraction(observed):
-    """Factor by which a distance is taken to shrink per orbit, from the observed one, which is ≤ 0 if none was seen."""
+    """Factor by which a distance is assumed to shrink per orbit, from the observed factor, ≤ 0 if none was seen."""
     return min(LARGEST_TRUSTED_CONTRACTION, observed) if observed > 0.0 else CONTRACTION_NOT_SEEN
 
 
 class Detected(NamedTuple):
-    """What a record of strobes shows: an orbit, or the approach to one.
+    """The evidence in a record of strobes: an orbit, or the approach to one.
 
-    If `period` > 0 the motion has that period: `contraction` is the factor by which changes shrink per orbit, −1 where
-    none was seen, and `distance` bounds the distance left to the orbit. Else `period` is 0, `approached` is the first
-    period over which changes shrink (0 for none), `approach_contraction` their factor per `approached` drive periods,
-    `approach_change` the latest of them.
+    If `period` > 0, the motion has that period: `contraction` is the factor by which changes shrink per orbit, −1 if
+    none was seen, and `distance` bounds the remaining distance to the orbit. Otherwise `period` is 0, `approached` is
+    the first period over which changes shrink (0 for none), `approach_contraction` is their factor per `approached`
+    drive periods, and `approach_change` is the latest change.
     """
 
     period: int
@@ -79,7 +79,7 @@ class Detected(NamedTuple):
 @internal
 def largest_in(strobes, q):
     """Largest displacement or velocity (q) of a record."""
-    a, b = 0.0, 0.0  # two, so that neither waits for the one before
+    a, b = 0.0, 0.0  # two, so that neither waits for the previous one
     for p in range(strobes.shape[0]):
         row = strobes[p, q]
         for i in range(0, row.size - 1, 2):
@@ -90,7 +90,7 @@ def largest_in(strobes, q):
 
 @internal
 def write_scale(strobes, scale):
-    """Largest displacement and velocity of a record into `scale` (2,); 1 where there is none."""
+    """Write the largest displacement and velocity of a record into `scale` (2,); 1 where they are zero."""
     for q in range(2):
         largest = largest_in(strobes, q)
         scale[q] = largest if largest > 0.0 else 1.0
@@ -99,7 +99,7 @@ def write_scale(strobes, scale):
 @inline_llvm
 def change_in(strobes, q, now, then):
     """Largest change of displacements or velocities (q) from state `then` to state `now`."""
-    a, b, c, d = 0.0, 0.0, 0.0, 0.0  # four, so that none of them waits for the one before
+    a, b, c, d = 0.0, 0.0, 0.0, 0.0  # four, so that none waits for the previous one
     beads = strobes.shape[2]
     for i in range(0, beads - 3, 4):
         a = max(a, abs(strobes[now, q, i] - strobes[then, q, i]))
@@ -119,7 +119,7 @@ def change_between(strobes, scale, now, then):
 
 @internal
 def changes_before(strobes, scale, n, end, out):
-    """The last out.size changes over n periods up to state `end`, oldest first."""
+    """Write the last out.size changes over n periods up to state `end` into `out`, oldest first."""
     for k in range(out.size):
         now = end - out.size + 1 + k
         out[k] = change_between(strobes, scale, now, now - n)
@@ -136,10 +136,10 @@ def largest_change(change, first, count):
 
 @internal
 def contraction_in(change, count, n):
-    """Factor per n drive periods by which `count` changes shrink, and whether both halves of them show the same.
+    """Return the factor per n drive periods by which `count` changes shrink, and whether both halves of them agree.
 
-    Largest changes over one orbit at the window's start, middle and end are compared, so that turning complex
-    multipliers do not look like decay or growth; the slower half counts.
+    The largest changes over one orbit at the window's start, middle and end are compared, so that the rotation of
+    complex multipliers does not look like decay or growth. The slower half counts.
     """
     first = largest_change(change, 0, n)
     middle = largest_change(change, (count - n) // 2, n)
@@ -154,15 +154,13 @@ def contraction_in(change, count, n):
 
 @internal
 def window_of(n):
-    """Number of changes from which a contraction factor over n periods is taken."""
+    """Number of changes from which a contraction factor over n periods is computed."""
     return max(LEAST_WINDOW, 3 * n)
 
 
 @internal
 def shortest(strobes, scale, n, distance, settled):
-    """The shortest period that divides n and over which these states hardly change; `distance` bounds theirs to the
-    orbit.
-    """
+    """The shortest divisor of n over which these states hardly change; `distance` bounds theirs from the orbit."""
     run, negligible = strobes.shape[0] - 1, max(_DISTANCES_OVER_DIVISOR * distance, _SETTLED_OVER_DIVISOR * settled)
     for q in range(1, n):
         if n % q != 0:
@@ -177,7 +175,7 @@ def shortest(strobes, scale, n, distance, settled):
 
 @internal
 def earlier_contraction(strobes, scale, n, rounding, change):
-    """The contraction factor over n periods from the last part of the record well above rounding; −1 if none is."""
+    """The contraction factor over n periods from the record's last part well above rounding; −1 if there is none."""
     end, count = strobes.shape[0] - 1, window_of(n)
     while end >= n and change_between(strobes, scale, end, end - n) <= _ABOVE_ROUNDING * rounding:
         end -= 1
@@ -190,12 +188,12 @@ def earlier_contraction(strobes, scale, n, rounding, change):
 
 @brief_kernel
 def detect_period(strobes, longest, rounding, settled, slowest, scale, change):
-    """The shortest period of a record of strobes and the contraction towards it, as `Detected`.
+    """Find the shortest period of a record of strobes and the contraction towards it, as `Detected`.
 
-    That period is the smallest whose distance bound change·c/(1 − c), c the contraction factor, is at most `settled`;
-    changes below `rounding` count as none. `slowest` is a contraction factor per drive period that is known to occur,
-    whether these states show it or not.
-    `scale` (2,) and `change` (`window_of(longest)` or more,) are workspaces.
+    It is the smallest period with a distance bound change·c/(1 − c) of at most `settled`, where c is the contraction
+    factor; changes below `rounding` count as zero. `slowest` is a contraction factor per drive period that is known to
+    occur, whether or not these states show it. `scale` (2,) and `change` (`window_of(longest)` or more,) are
+    workspaces.
     """
     run = strobes.shape[0] - 1
     write_scale(strobes, scale)
@@ -209,9 +207,9 @@ def detect_period(strobes, longest, rounding, settled, slowest, scale, change):
             nearer = nearer or (approaching >> q & 1 == 1 and n % q == 0)
         now = change_between(strobes, scale, run, run - n)
         if nearer:
-            continue  # a shorter period is being approached, which is why the change over this one is small
+            continue  # the change over n is small because a shorter period is being approached
         if now > _LARGEST_EXTRAPOLATED_CHANGE:
-            continue  # still far from an orbit of n periods: how its changes shrink says nothing
+            continue  # still far from an orbit of n periods: the contraction is meaningless
         changes_before(strobes, scale, n, run, change[:count])
         if largest_change(change, 0, count) <= rounding:
             q = shortest(strobes, scale, n, rounding, settled)
@@ -236,7 +234,7 @@ def detect_period(strobes, longest, rounding, settled, slowest, scale, change):
 
 @internal
 def first_above(strobes, order, value):
-    """Place in `order` of the first state whose first bead is displaced by more than `value`."""
+    """Index into `order` of the first state whose first bead is displaced by more than `value`."""
     low, high = 0, order.size
     while low < high:
         middle = (low + high) // 2
@@ -249,10 +247,11 @@ def first_above(strobes, order, value):
 
 @kernel
 def nearest_neighbours(strobes, order, scale, nearest):
-    """Distance of every state in the later half of a record from the nearest one in the earlier half.
+    """Compute the distance of every state in the later half of a record from the nearest state in the earlier half.
 
-    `order` are the states of the earlier half by the displacement of their first bead: the search goes from the state's
-    own place in both directions, as long as this displacement alone does not differ by more than the distance found.
+    `order` lists the states of the earlier half by the displacement of their first bead. The search goes in both
+    directions from the state's own place in this order, until this displacement alone differs by more than the distance
+    found.
     """
     write_scale(strobes, scale)
     half = order.size
@@ -263,21 +262,21 @@ def nearest_neighbours(strobes, order, scale, nearest):
             k = place - 1 if step < 0 else place
             while 0 <= k < half and abs(strobes[order[k], 0, 0] - own) < nearest[p] * scale[0]:
                 distance = change_in(strobes, 0, half + p, order[k]) / scale[0]
-                if distance < nearest[p]:  # else the velocities do not matter
+                if distance < nearest[p]:  # otherwise the velocities do not matter
                     nearest[p] = min(nearest[p], max(distance, change_in(strobes, 1, half + p, order[k]) / scale[1]))
                 k += step
 
 
 @brief_kernel
 def record_changes(strobes, n, scale, out):
-    """The last out.size changes over n periods of a record, oldest first."""
+    """Write the last out.size changes over n periods of a record into `out`, oldest first."""
     write_scale(strobes, scale)
     changes_before(strobes, scale, n, strobes.shape[0] - 1, out)
 
 
 @internal
 def raise_changes(largest, now, then):
-    """Raise the first elements of `largest` to the changes from `then` to `now`, of the same length."""
+    """Raise the first elements of `largest` to the changes from `then` to `now`, which have the same length."""
     for j in range(now.size):
         change = abs(now[j] - then[j])
         largest[j] = change if change > largest[j] else largest[j]
@@ -285,10 +284,10 @@ def raise_changes(largest, now, then):
 
 @kernel
 def window_changes(strobes, window, scale, largest, out):
-    """Largest changes over 1, 2, … periods in the last W windows of `window` states, into `out` (periods, W).
+    """Write the largest changes over 1, 2, … periods in the last W windows of `window` states to `out` (periods, W).
 
-    The oldest window comes first. `scale` (2,) and `largest` (S, 2, N) are workspaces: S states at a time are compared,
-    so that the loop over them is long enough for vectors.
+    The oldest window comes first. `scale` (2,) and `largest` (S, 2, N) are workspaces: S states are compared at a time,
+    so that the loop over them is long enough to be vectorised.
     """
     write_scale(strobes, scale)
     flat, most, numbers = strobes.reshape(-1), largest.reshape(-1), strobes.shape[1] * strobes.shape[2]
