@@ -4,8 +4,8 @@ A root is computed in one of two ways: by the square-root instruction, which run
 inverse root and some terms of the binomial series, which run on the multiply–add units. The approximation is
 `vrsqrt14pd` for eight doubles on processors with AVX-512, and `rsqrtps` for four on any x86. With AVX-512, the second
 way has more than twice the throughput (1.8 ns instead of 4.4 ns for eight roots). Used together, the two keep both
-units busy: in a batch two of three roots or one (batch/step.py), in a chain every second register (`chain_root`) take the
-series.
+units busy. The series serves one or two of three roots in a batch (batch/step.py), and every second register of a short
+chain (`chain_root`).
 """
 
 from __future__ import annotations
