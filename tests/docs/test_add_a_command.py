@@ -27,7 +27,7 @@ def test_an_option_edits_four_files_and_writes_one() -> None:
     before = len(blocks(PAGE, until="## Add an option\n"))
     files = [block.path for block in blocks(PAGE)[before:]]
     assert len(files) == len(set(files)) == 4 + 1
-    assert "An option edits 4 files and writes or edits one of tests." in PAGE.read_text(encoding="utf-8")
+    assert "An option needs edits in 4 files and a new or edited test file." in PAGE.read_text(encoding="utf-8")
 
 
 def test_the_option_passes_its_tests(tree: Path) -> None:

@@ -17,7 +17,7 @@ MODELLED = [f"{1e6 * amplitude:g}" for amplitude in MODEL_AMPLITUDES]
 #: Words that each text must have; spaces and line breaks count alike.
 NAMED = {
     "docs/paper.md": (f"form peak, valley, peak: {AT_60}, {AT_90} and {AT_50} µm", f"at {RIG} µm the broad high region",
-                      f"At {RIG} µm the model has *no* anti-resonance"),
+                      f"At {RIG} µm, the model has *no* anti-resonance"),
     "assets/paper/statements.toml": (
         f"with a constant {', '.join(MODELLED[:-1])} and {MODELLED[-1]} µm:",
         f"{RIG} µm is V0 =", f"with a constant {RIG} µm:", f"kN/m at {MODELLED[0]} µm and **44.2** at {MODELLED[-1]} µm",

@@ -74,7 +74,7 @@ def test_the_limits_of_the_document_are_those_of_the_code() -> None:
 
 def test_what_pages_may_be_asked_is_what_the_document_says() -> None:
     assert {
-        "beads of a chain": QUANTITIES["N"].high, "pins": len(PINS), "beads whose state a link holds": starts.MOST_BEADS,
+        "beads of a chain": QUANTITIES["N"].high, "pins": len(PINS), "beads whose state a link contains": starts.MOST_BEADS,
         "points of a measurement": MOST_UPLOADED_POINTS, "points of a branch, each way": MOST_POINTS,
         "Analysis: beads": questions.MOST_BEADS, "Analysis: values of a knob": questions.MOST_VALUES,
         "Analysis: starts of each of two knobs": questions.MOST_STARTS, "Analysis: drive periods": questions.MOST_PERIODS,
