@@ -17,8 +17,6 @@ from ..errors import BadInput, ComputationError
 from ..execution.stop import Stop
 from ..inputs.checks import numbers_in, unknown_name, whole_number
 from ..integrate import Engine
-from ..integrate.methods import typical_error
-from ..integrate.safety_factors import IRREGULAR
 from ..results.regime import Regime
 from ..results.regime_columns import evidence_columns, regime_columns
 from ..scene import Scene
@@ -28,6 +26,7 @@ from ..scene.state import State
 from ..steady.batch.starts import methods_alone
 from ..steady.batch.threads import on_all_cores
 from ..steady.curve.order import CURVE_STARTS, coarse_first
+from ..steady.orbit_errors import error_of_displacements
 from ..steady.settling.advance import SettlingRun, run_until_settled
 from ..steady.settling.refine_orbit import refined_orbit
 from ..tables import Column, Labelled, Table, axis, bead_axis, provenance
@@ -254,6 +253,5 @@ def _refined(settling: SettlingRun) -> tuple[Engine, np.ndarray, float | None] |
     before, strobes = (engine.periods(regime.period, watch=False)[0][1:] for engine in (coarse, finer))
     largest = np.abs(strobes).max(axis=(0, 2), keepdims=True)
     change = float((np.abs(strobes - before) / np.where(largest > 0.0, largest, 1.0)).max())
-    integration = max(IRREGULAR * change, typical_error(finer.setting)) / (1.0 - regime.assumed_contraction)
-    error = integration + distance
+    error = error_of_displacements(change, finer.setting, regime.assumed_contraction) + distance
     return (finer, strobes, error) if error <= _APART else None

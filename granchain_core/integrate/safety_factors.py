@@ -1,8 +1,7 @@
 """Safety factors by which the difference of two computations is multiplied to obtain the stated error.
 
-Two errors of displacements have no factor. For a settled orbit, the error is the difference over 1 − the contraction
-factor (steady/settling/recording.py). For a motion without a drive, as shown on the page, it is at least the method's
-typical error (steady/settling/undriven.py).
+One error of displacements has no factor. For a motion without a drive, as shown on the page, it is at least the
+method's typical error (steady/settling/undriven.py).
 
 Where the error falls with the method's order, the difference is itself an overestimate: with half the step at order 4,
 it is about 15 times the error of the finer computation. Contact events make the decrease irregular. The factors are
@@ -15,8 +14,8 @@ from __future__ import annotations
 #: (`Method.converges_regularly`).
 REGULAR = 1.5
 #: [safety factor] Displacements whose error falls irregularly: at contact events with the other methods, with tension
-#: cut, and between the samples of a measured force. Also strobes of an orbit, which an error of its map may shift by
-#: more than 1/(1 − |μ|) times that error.
+#: cut, and between the samples of a measured force. Also displacements of an orbit, which an error of its map may shift
+#: by more than 1/(1 − |μ|) times that error.
 IRREGULAR = 3.0
 #: [safety factor] Largest forces of a run where no force jumps, on top of the factor for displacements. Found by trial,
 #: like the next one (`python -m tests.numerics.forces run`).

@@ -1,12 +1,12 @@
-"""The stated errors of the largest forces on a periodic orbit: one rule for pictures, curves and maps."""
+"""The stated errors of a periodic orbit, of its displacements and largest forces: one rule for all results."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from ..integrate import Engine
+from ..integrate import Engine, MethodSetting
 from ..integrate.methods import jump_errors, typical_error
-from ..integrate.safety_factors import ORBIT_FORCES
+from ..integrate.safety_factors import IRREGULAR, ORBIT_FORCES
 from ..integrate.scaling import ScaledChain
 from ..integrate.stated import relative_changes
 from ..scene.hertz import EXPONENT, OVERLAP_POWER
@@ -26,6 +26,16 @@ def force_distances(distance: float, scaled: ScaledChain, maxima: np.ndarray, y:
                 for force, c in zip(maxima, (0, -1, -1), strict=True)]
     nearer = [largest / overlap if 0.0 < overlap < largest else 1.0 for overlap in overlaps]
     return EXPONENT * distance * np.array(nearer)
+
+
+def error_of_displacements(change: float, finer: MethodSetting, contraction: float) -> float:
+    """Relative error of the displacements on an orbit, from the relative `change` from one computation to a finer one.
+
+    Both began in the same state. `finer` is the setting of the finer one, whose typical error is the least, because two
+    computations may agree by chance. Contact events make the error fall irregularly, and an error of the n-period map
+    moves its fixed point by about 1/(1 − contraction) times that error.
+    """
+    return max(IRREGULAR * change, typical_error(finer)) / (1.0 - contraction)
 
 
 def errors_of_map(change: np.ndarray, least_errors: float, contraction: float) -> np.ndarray:

@@ -13,7 +13,7 @@ from ...integrate import Engine
 from ...integrate.stated import relative_difference
 from ...results.regime import Regime
 from ...results.run import Cost, run_from
-from ..orbit_errors import errors_between
+from ..orbit_errors import error_of_displacements, errors_between
 from .advance import SettlingRun
 from .outcome import Settled
 from .refine_orbit import FARTHEST_FROM_ORBIT, refined_orbit
@@ -58,7 +58,7 @@ def recorded_orbit(motion: SettlingRun, samples: int, began: float, origin: str)
     fine.counts.array += motion.engine.counts.array + engine.counts.array + coarse.counts.array
     cost = Cost.of(time.perf_counter() - began, fine.counts, fine.setting.method)
     regime = replace(motion.regime, distance=distance)
-    integration /= 1.0 - motion.regime.assumed_contraction
+    integration = error_of_displacements(integration, fine.setting, motion.regime.assumed_contraction)
     forces = errors_between(fine, coarse.maxima, motion.regime.assumed_contraction, distance)
     run = run_from(fine, record, 0, regime, integration + distance, cost, force_errors=forces, start=origin)
     return Settled(run, regime, start, preview=False, final=True)

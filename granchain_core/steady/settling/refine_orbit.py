@@ -43,9 +43,10 @@ def refined_orbit(settling: SettlingRun, accuracy: float, samples: int = 1) -> t
     """An engine of the finer method on its own orbit, and the bound on the distance left.
 
     The orbit that the chain settled on differs from the true one by the error of its steps; a few more periods remove
-    it. With r the contraction of the regime (|μ| where it was computed, else the observed factor) and `change` from one
-    n-period map to the next, the distance left is change·r/(1 − r). After an extrapolation it is known from the changes
-    that follow; if these are not smaller, the extrapolation is undone.
+    it. With r the contraction of the regime (|μ| where it was computed, otherwise the observed factor) and `change` from
+    one n-period map to the next, the distance left is change·r/(1 − r), or `change` if that is larger: a map that is not
+    normal contracts by |μ| in the long run only. After an extrapolation the distance is known from the changes that
+    follow; if these are not smaller, the extrapolation is undone.
     """
     scene, n = settling.scene, settling.regime.period
     assert n is not None
@@ -63,7 +64,7 @@ def refined_orbit(settling: SettlingRun, accuracy: float, samples: int = 1) -> t
             change = float(changes(states, 1, 1)[0])
             if unproved is not None and change >= unproved[1]:
                 break
-            unproved, bound = None, change * contraction / (1.0 - contraction)
+            unproved, bound = None, change * max(1.0, contraction / (1.0 - contraction))
             if bound <= _DISTANCE_FRACTION * accuracy:
                 return engine, bound
         if unproved is not None:  # the extrapolation did not lead nearer: back to where it began
