@@ -18,8 +18,8 @@ import { explainTerms } from "./terms.js";
 import { watchVisibility } from "./visibility.js";
 
 // Functions that make the tabs. If a function returns `show`, this redraws the tab when its page publishes something.
-// A tab that `updatesItself` is not rebuilt when the state changes, so the element under the pointer stays. A tab without
-// an overlay needs its function here (tests/dashboard/test_table.py).
+// A tab that `updatesItself` is not rebuilt when the state changes, so the element under the pointer stays. A tab
+// without an overlay needs a function here (tests/dashboard/test_table.py).
 const TABS = {
   stories: storiesTab,
   "look at": lookAtTab,
@@ -35,7 +35,7 @@ const TABS = {
   data: dataTab,
 };
 
-// A tab without a function in TABS: its page's sentence or its placeholder, and, for an overlay, a button that opens it.
+// A tab without a function in TABS: its page's sentence or placeholder and, for an overlay, a button that opens it.
 function plainTab({ state: { pages } }, { name, placeholder }) {
   const line = paragraph();
   const show = () => {

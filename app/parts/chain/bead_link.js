@@ -1,5 +1,5 @@
-// Joins the bead under the pointer, or otherwise the chosen bead, by a line to its framed column of the map. The chain is
-// wider than the map, so a bead is not above its column.
+// Joins the bead under the pointer, or otherwise the chosen bead, by a line to its framed column of the map. The chain
+// is wider than the map, so a bead is not above its column.
 
 import { draw } from "../toolkit/svg.js";
 
