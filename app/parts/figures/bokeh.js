@@ -1,5 +1,5 @@
-// The undocumented parts of BokehJS that the page uses. Apart from connection.js, only this file uses the global, so that
-// a new release is checked here (tests/browser/test_bokeh_internals.py); docs/libraries.md lists the rest.
+// The undocumented parts of BokehJS that the page uses. Apart from connection.js, only this file uses the global, so
+// that a new release is checked here (tests/browser/test_bokeh_internals.py); docs/libraries.md lists the rest.
 
 // All models of this name on the page. Each figure has a document of its own.
 export const modelsNamed = (name) =>

@@ -52,7 +52,7 @@ class Header {
     ];
     this.root = element("div", { className: "part bar" }, ...(window.granchain.embedded ? small : all));
     this.order = [...this.root.children];
-    this.root.append(this.scenes.gallery.root); // not among the elements that layoutControls() moves: a moved dialog closes
+    this.root.append(this.scenes.gallery.root); // layoutControls() does not move it: a moved dialog closes
   }
 
   makeButtons() {
