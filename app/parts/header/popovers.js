@@ -7,7 +7,7 @@ import { opensHelp } from "./keys.js";
 const HELP = [
   [
     "knobs",
-    "Drag, type, or use the arrow keys (Shift: larger steps). Double-click or press Delete to restore the scene's value.",
+    "Drag, type, or use the arrow keys (Shift: larger steps). Double-click or press Delete for the scene's own value.",
   ],
   ["time", "Runs downwards in all pictures. Drag in a picture to stop and move through time; press Space to play."],
   [

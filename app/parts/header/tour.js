@@ -1,5 +1,5 @@
-// The tour on a first visit: five steps, each next to a part of the page. A visitor can leave it at any time. It appears
-// once and interrupts nothing: it takes the focus only from the page as a whole, never from a control.
+// The tour on a first visit: five steps, each next to a part of the page. A visitor can leave it at any time. It
+// appears once and interrupts nothing: it takes the focus only from the page as a whole, never from a control.
 
 import { button, element, PHONE } from "../toolkit/dom.js";
 
@@ -45,7 +45,7 @@ export class Tour {
     document.addEventListener("keydown", ({ key }) => key === "Escape" && !this.root.hidden && this.end());
   }
 
-  // Starts the tour on a first visit once there is a picture, but not in an embedded page or over what a link has opened.
+  // Starts the tour on a first visit once there is a picture, but not in an embedded page or if a link opens a tab or page.
   begin() {
     const { granchain } = window;
     if (remembered() || granchain.embedded || granchain.address.place.page || granchain.address.place.tab) return;

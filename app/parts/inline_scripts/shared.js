@@ -93,7 +93,7 @@ window.granchain = (() => {
       this.#events.emit("theme", name);
     }
 
-    /** Applies, after a step back or forward, the theme of the address or, if it has none, the one before any choice. */
+    /** Applies, after a step back or forward, the theme of the address or, without one, the theme before any choice. */
     restore(name) {
       this.#chosen = THEMES.includes(name);
       this.set(this.#chosen ? name : this.#first, false);
@@ -167,8 +167,8 @@ window.granchain = (() => {
     }
 
     /**
-     * Keeps what a page publishes for other parts, for example its tab, and announces it as the event "page:NAME", which
-     * cannot be confused with an event that has the name of a page.
+     * Keeps what a page publishes for other parts, for example its tab, and announces it as the event "page:NAME",
+     * which cannot be confused with an event that has the name of a page.
      */
     publish(name, data) {
       this.pages.set(name, data);

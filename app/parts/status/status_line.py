@@ -49,8 +49,8 @@ class StatusLine(Component):
 def settled_entries(settled: Settled, place: Place | None, force: str) -> dict[str, Any]:
     """Return the entries of the line for a settled picture.
 
-    `place` is where it lies on the curve from rest, None while that is being computed; `force` is the largest output force in
-    words.
+    `place` is where it lies on the curve from rest, None while that is being computed; `force` is the largest output
+    force in words.
     """
     regime, pushed = settled.regime.sentence, pushes(settled.run)
     name = regime.split(",")[0]  # without the evidence
@@ -138,7 +138,7 @@ def why_no_error(run: Run) -> str:
 def force_hint(run: Run) -> str:
     """Return an explanation of the force in the line, with its error."""
     return ("The largest output force in the periods shown, the dashpot's part included; relative error "
-            f"{error_words(run.force_errors.output)}. A force is positive where the bodies push each other; below zero, "
+            f"{error_words(run.force_errors.output)}. A force is positive where the bodies push; below zero, "
             "the dashpot of an opening contact pulls. The force at the wall may be larger than that of the driver: a "
             f"wave presses harder where it is reflected."
             f"{why_no_error(run) if run.force_errors.output is None else ''}")

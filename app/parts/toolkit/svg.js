@@ -1,4 +1,4 @@
-// Elements of SVG, and a frame with axes.
+// SVG elements, and a frame with axes.
 
 export const SVG = "http://www.w3.org/2000/svg";
 export const draw = (tag, attributes = {}, ...children) => {
