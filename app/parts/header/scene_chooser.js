@@ -5,8 +5,8 @@ import { Gallery } from "./gallery.js";
 import { icon, iconButton } from "./icons.js";
 
 export class SceneChooser {
-  // `ask` requests the gallery's cards from the server, `choose` opens a scene, and `changed` is called when the width of
-  // the list changes.
+  // `ask` requests the gallery's cards from the server, `choose` opens a scene, and `changed` is called when the width
+  // of the list changes.
   constructor(ask, choose, changed) {
     this.list = chooser("scene", "scene", choose);
     this.list.addEventListener("mousedown", () => this.openList());

@@ -154,7 +154,7 @@ class ForceTrains:
         return words
 
     def output_words(self, force: float, error: float | None) -> str:
-        """Return a force at the wall [N] in the unit of its axis, or its own; `error` determines the number of figures."""
+        """Return a force at the wall [N] in the unit of its axis, or its own; `error` sets the number of figures."""
         factor, unit = self._readable(force, self._factors[1], self._units[2])
         return f"{'about ' if error is None else ''}{with_figures(force / factor, figures_of(error))} {unit}"
 
@@ -192,7 +192,7 @@ def _glyph(style: LineStyle, column: str = "force") -> Line:
 
 
 def _span(largest: float, pull: float, *series: np.ndarray) -> tuple[float, float]:
-    """Return a range from −`pull` to `largest` that contains all values and stays the same while they change a little."""
+    """Return a range from −`pull` to `largest` that contains all values and does not follow small changes of them."""
     high = round_up(max(largest, *(float(s.max(initial=0.0)) for s in series)))
     pull = max(pull, *(float(-s.min(initial=0.0)) for s in series))
     return (-0.06 * high if pull < 0.02 * high else -round_up(pull)), 1.04 * high

@@ -57,8 +57,8 @@ export function showMeaning(anchor, words, ...controls) {
   if (controls.length) bubble.focus();
 }
 
-// A button that shows its meaning when it is pressed, since a touch screen has no hover. `meaning` returns the words and
-// the controls.
+// A button that shows its meaning when it is pressed, since a touch screen has no hover. `meaning` returns the words
+// and the controls.
 export function explainingButton(properties, meaning) {
   const made = button("", () => showMeaning(made, ...meaning()), properties);
   return made;

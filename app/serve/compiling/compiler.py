@@ -124,7 +124,7 @@ class Requests:
         self._compilations: dict[tuple[str, str], Future[None]] = {}
 
     def failure(self, scene: Scene, *pieces: str) -> Exception | None:
-        """Ask for these kernels. Return the error if a piece could not be compiled; None as long as no failure is known."""
+        """Ask for these kernels. Return the error if one could not be compiled; None while no failure is known."""
         for piece in pieces:
             key = structure(scene), piece
             if key not in self._compilations:

@@ -154,7 +154,7 @@ class LatestWins:
                 return
 
     def _do(self, work: TurnWork) -> None:
-        """Deliver the results of a computation. If newer work is waiting, end after the next result. Report a failure."""
+        """Deliver the results of a computation. If newer work is waiting, end after the next result."""
         try:
             for result in work(self._stop):
                 if self._closed:

@@ -14,7 +14,7 @@ import threading
 from concurrent.futures import Future
 from queue import SimpleQueue
 
-#: Added to the nice value of a thread of lower priority; it then gets a tenth of a processor that it shares with another.
+#: Added to the nice value of a thread of lower priority; sharing a processor, it then gets a tenth of it.
 ADDED_NICENESS = 10
 
 
@@ -27,7 +27,7 @@ class _Starter:
         self._thread: threading.Thread | None = None
 
     def run(self) -> bool:
-        """Start this thread unless it is running; called by a thread of usual priority. Return whether it is running."""
+        """Start this thread unless it is running, from a thread of usual priority; return whether it is running."""
         with self._lock:
             if self._thread is None or not self._thread.is_alive():
                 thread = threading.Thread(target=self._serve, daemon=True, name="starter")

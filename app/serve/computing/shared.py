@@ -36,7 +36,7 @@ class _Computation(Generic[Item]):
 
 
 def _own(error: Exception) -> Exception:
-    """Return a copy of an error for one session, so that raising it adds only that session's frames to the traceback."""
+    """Return a copy of an error for one session: raising it adds only that session's frames to the traceback."""
     own = type(error).__new__(type(error), *error.args)  # copy.copy would call __init__, which may take other arguments
     own.__dict__.update(error.__dict__)
     own.__cause__, own.__suppress_context__ = error.__cause__, error.__suppress_context__
