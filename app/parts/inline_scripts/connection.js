@@ -2,8 +2,8 @@
 // grey, the knobs are disabled, and a banner says why. Once the server is back, the page reloads from its link.
 (() => {
   const { granchain } = window;
-  // All in milliseconds. For PING_EVERY + PING_TIMEOUT, a page without its server still looks alive, so the sum is below
-  // 2 s; it is not shorter because a server that is merely busy must not count as lost.
+  // All in milliseconds. For PING_EVERY + PING_TIMEOUT, a page without its server still looks alive, so the sum is
+  // below 2 s; it is not shorter because a server that is merely busy must not count as lost.
   const TICK = 100, // how often the state is checked
     PING_EVERY = 600, // from an answer to the next ping
     PING_TIMEOUT = 1300, // silence after a ping that counts as a lost connection

@@ -68,9 +68,9 @@ class WorkerPool:
     def submit(self, work: Callable[..., Result], *args: object, owner: object = None) -> Future[Result]:
         """Call `work` as soon as a thread is free; the returned future gets its result or error.
 
-        Work without an `owner` has no limit. Raises the error of `Thread.start` if the pool has no thread and the system
-        allows none. If the future is cancelled before the work begins, the work is not done, and nothing keeps the work
-        or its arguments alive.
+        Work without an `owner` has no limit. Raises the error of `Thread.start` if the pool has no thread and the
+        system allows none. If the future is cancelled before the work begins, the work is not done, and nothing keeps
+        the work or its arguments alive.
         """
         future: Future[Result] = Future()
         limited = self.per_owner_limit is not None and owner is not None
@@ -203,12 +203,12 @@ ANALYSES = WorkerPool(
     "analyses", 8,
     "while the knobs rest: Stability, pinned motions, the motion of a story's step, the names of peaks, where a "
     "measured series lies over the picture", low_priority=True)
-#: On the event loop, this work would hold up everyone. The files of one session are read one by one, so that they cannot
-#: take both threads.
+#: On the event loop, this work would hold up everyone. The files of one session are read one by one, so that they
+#: cannot take both threads.
 FILES = WorkerPool("files", 2, "reading a measurement, writing an export", per_owner_limit=1)
 LOADING = WorkerPool("loading", 1, "kernels loaded before a session needs them")
-#: A map waits for a curve that is under way. In a single pool, maps could take all threads and wait for curves that have
-#: no thread.
+#: A map waits for a curve that is under way. In a single pool, maps could take all threads and wait for curves that
+#: have no thread.
 CURVES = WorkerPool("curves", 200, "a thread for each session that waits for its resonance curve, or for that of a "
                                    "pinned picture")
 #: Each computation uses all cores, which the system divides among them.

@@ -13,9 +13,9 @@ Picture = TypeVar("Picture")
 
 
 #: Pictures in flight at once: one being painted, and one on its way. Live mode always has this many in flight. Measured
-#: in live mode with `live_figures` of tests/benchmarks/browser_latency.py, 2026-11-26, on two cores with other work: with
-#: an added round trip of 50 ms, 14 pictures a second with one in flight and 26 with two; without it, 54 and 69 pictures
-#: a second, with a median lag of 14 and 17 ms.
+#: in live mode with `live_figures` of tests/benchmarks/browser_latency.py, 2026-11-26, on two cores with other work:
+#: with an added round trip of 50 ms, 14 pictures a second with one in flight and 26 with two; without it, 54 and 69
+#: pictures a second, with a median lag of 14 and 17 ms.
 _MOST_IN_FLIGHT = 2
 
 

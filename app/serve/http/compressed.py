@@ -1,7 +1,7 @@
 """Compressed scripts and styles, each compressed once: a page needs 1 MB instead of 3.4 MB.
 
-In a lecture hall, a hundred laptops fetch these files over one wireless network. Tornado would compress every file again
-for each of them.
+In a lecture hall, a hundred laptops fetch these files over one wireless network. Tornado would compress every file
+again for each of them.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """The rate of websocket frames.
 
-Tornado passes on whole messages. It answers pings itself and joins the frames of a fragmented message, so a client could
-send any number of pings and fragments that no handler would see. Frames are therefore counted in the bytes that Tornado
-reads, by the format of RFC 6455, section 5.2.
+Tornado passes on whole messages. It answers pings itself and joins the frames of a fragmented message, so a client
+could send any number of pings and fragments that no handler would see. Frames are therefore counted in the bytes that
+Tornado reads, by the format of RFC 6455, section 5.2.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Request guard: checks host, session and the number of sessions, and adds security headers.
 
-docs/security.md has the promises. The handlers of Bokeh, Panel and Tornado are not changed: a class derived from each of
-them checks a request first (`app/serve/monkeypatches/request_handlers.py`).
+docs/security.md has the promises. The handlers of Bokeh, Panel and Tornado are not changed: a class derived from each
+of them checks a request first (`app/serve/monkeypatches/request_handlers.py`).
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ _IS_GUARDED: ContextVar[bool] = ContextVar("is_guarded", default=False)
 
 
 class Guard(RequestHandler):
-    """A mixin that checks a request before the handler does anything; `install_guards` sets `rules`."""
+    """A mixin that checks a request before the handler does anything; `Guards` sets `rules`."""
 
     rules: Rules
     request_id = ""

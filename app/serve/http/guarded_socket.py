@@ -77,8 +77,8 @@ class GuardedSocket(Guard):
     def select_subprotocol(self, subprotocols: list[str]) -> str | None:
         """Give the session its only connection; raise `HTTPError` if the session has already had one.
 
-        Tornado has checked the origin and headers of the handshake by now. If this came earlier, a failing request would
-        use up the page's connection.
+        Tornado has checked the origin and headers of the handshake by now. If this came earlier, a failing request
+        would use up the page's connection.
         """
         if not self.rules.sessions.claim_connection(self._offered):
             raise HTTPError(403, "a second connection to one session, or a page that has lost its place")
