@@ -74,7 +74,7 @@ class PageHost(WorkHost, Protocol):
         """Whether a resonance curve is being computed."""
 
     def complete_curve(self) -> list[CurvePoint]:
-        """Return the complete resonance curve from rest of the present knobs, by frequency; empty if it is not complete."""
+        """Return the resonance curve from rest of the present knobs, by frequency; empty unless it is complete."""
 
     def show_measured_curve(self, measured: Measured | None) -> Difference | None:
         """Draw a measured curve over the resonance curve, or remove it; return its difference from a complete curve."""

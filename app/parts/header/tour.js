@@ -45,7 +45,8 @@ export class Tour {
     document.addEventListener("keydown", ({ key }) => key === "Escape" && !this.root.hidden && this.end());
   }
 
-  // Starts the tour on a first visit once there is a picture, unless the page is embedded or a link opens a tab or page.
+  // Starts the tour on a first visit once there is a picture, unless the page is embedded or a link opens a tab or an
+  // overlay.
   begin() {
     const { granchain } = window;
     if (remembered() || granchain.embedded || granchain.address.place.page || granchain.address.place.tab) return;

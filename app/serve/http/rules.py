@@ -52,6 +52,6 @@ class Rules:
         return sent if self.embedding else {**sent, "X-Frame-Options": "SAMEORIGIN"}
 
     def serves(self, host: str) -> bool:
-        """Return whether requests for this host are answered; `hosts` may have Bokeh's wildcards, like *.example.org."""
+        """Return whether requests for this host are answered; `hosts` may have Bokeh's wildcards (*.example.org)."""
         plain = host.lower().strip("[]")  # in a pattern, the brackets of IPv6 would be a character set
         return not self.hosts or any(fnmatchcase(plain, name) for name in self.hosts)

@@ -74,8 +74,8 @@ COUNTERS = {
 class Metric(NamedTuple):
     """A Prometheus metric; the name of a counter ends with `_total`.
 
-    `read` is called at each request for `/metrics`. With a `label`, it returns a number for each value of the label. The
-    prefix is `process` for metrics that Prometheus clients report for any program.
+    `read` is called at each request for `/metrics`. With a `label`, it returns a number for each value of the label.
+    The prefix is `process` for metrics that Prometheus clients report for any program.
     """
 
     name: str
@@ -115,7 +115,7 @@ class Histogram:
 
 
 class Metrics:
-    """Counts since the server started; an answer is the time from a change to its first picture. Any thread may count."""
+    """Counts since the server start; an answer is the time from a change to its first picture. Any thread may count."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()

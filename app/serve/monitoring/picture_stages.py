@@ -54,7 +54,7 @@ class PictureStages:
         """Count the stages of a picture that is on the screen, and log a slow picture.
 
         `browser_ms` is the time from the browser's script to the screen, as reported by the browser [ms]. It is not
-        trusted: a value that is not a finite number is ignored, and one that is too long is cut.
+        trusted: a value that is not a finite number is ignored, and one out of range is clipped.
         """
         seconds = self.end("travel")
         if isinstance(browser_ms, (int, float)) and not isinstance(browser_ms, bool) and math.isfinite(browser_ms):

@@ -91,8 +91,8 @@ def _merges_once(overridden: Any, defaults: _Remembered) -> Callable[[type], dic
 def _asks_once(unstable: Any, defaults: _Remembered) -> Callable[[Any, Any], bool]:
     """Return a function that says whether each model has its own default.
 
-    For a new model, the answer is no if its default would be empty: the default is made when it is requested, and is not
-    sent to the browser anyway.
+    For a new model, the answer is no if its default would be empty: the default is made when it is requested, and is
+    not sent to the browser anyway.
     """
 
     def is_unstable(descriptor: Any, model: Any) -> bool:

@@ -66,7 +66,7 @@ class _Common(NamedTuple):
                    type(data), own | {"name"})
 
     def properties_of(self, part: Any, imported: dict[str, ImportedStyleSheet]) -> dict[str, Any]:
-        """Return the properties of another instance; `imported` has the sheets that its document imports, by address."""
+        """Return the properties of another instance; `imported` has the sheets that its document imports, by URL."""
         sheets = [text if is_text else imported.get(text) or imported.setdefault(text, ImportedStyleSheet(url=text))
                   for is_text, text in self.sheets]
         return {**self.properties, "stylesheets": sheets,
