@@ -25,7 +25,7 @@ _LONGEST_COMPUTING = 0.1
 
 @dataclass(frozen=True)
 class LiveStep:
-    """One step of the live run: the last few periods, the run of the newest samples, the drive periods since the start."""
+    """One step of the live run: the last few periods, the newest samples as a run, drive periods since the start."""
 
     frames: Frames
     run: Run
