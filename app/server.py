@@ -39,8 +39,8 @@ from .session.session import Session
 #: Largest message from a page: an uploaded file in base64 [bytes].
 LARGEST_MESSAGE = 4 * LARGEST_UPLOAD // 3 + 100_000
 #: Time for which a thread may keep the GIL from the event loop [s]. Answering one knob move acquires the GIL about ten
-#: times, so with Python's default, 5 ms, the answer could wait 50 ms for a busy thread. With 60 visitors, the
-#: shorter time helps; with 24, it makes no difference (docs/reliability.md, "Many visitors").
+#: times, so with Python's default, 5 ms, the answer could wait 50 ms for a busy thread. The shorter time helps with 60
+#: visitors, and makes no difference with 24 (docs/reliability.md, "Many visitors").
 SWITCH_INTERVAL = 5e-4
 #: Time until a silent connection is closed [s]; the head of a request must arrive within this time.
 IDLE_TIME = 60

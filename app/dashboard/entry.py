@@ -43,7 +43,7 @@ def page() -> None:
 def _handler(controller: Controller) -> Callable[[Exception], None]:
     """Return a handler that reports a failure to the controller without keeping the controller alive.
 
-    Panel keeps the handler as long as the document lives, and the controller has the document. With a strong
+    Panel keeps the handler as long as the document lives, and the controller refers to the document. With a strong
     reference, no page would ever be freed.
     """
     show_failure = weakref.WeakMethod(controller.show_failure)

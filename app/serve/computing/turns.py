@@ -25,8 +25,8 @@ Result = TypeVar("Result")
 #: Processor time after which a computation is no longer new, even without a result [s]. A first picture of ten beads
 #: takes a tenth of it.
 _NEW_CPU_TIME = 0.03
-#: Time for which a turn is kept although others are waiting [s]. Passing it on at every pause would cost too much:
-#: each handover to another thread waits for the GIL several times.
+#: Time for which a turn is kept although others are waiting [s]. Passing it on at every pause would cost too much: each
+#: handover to another thread waits for the GIL several times.
 _TIME_SLICE = 0.02
 #: Largest number of new computations whose waits are averaged.
 _MOST_WAITS = 200

@@ -46,8 +46,8 @@ def only_when_debugging(_record: logging.LogRecord) -> bool:
 def log_request(handler: RequestHandler) -> None:
     """Log an answered request, only with --log-level debug; it replaces Tornado's own function.
 
-    The guard has logged every request that was refused or has failed, with its id. In addition, a
-    full server answers `/readiness` with 503 again and again, which is not a failure.
+    The guard has logged every request that was refused or has failed, with its id. In addition, a full server answers
+    `/readiness` with 503 again and again, which is not a failure.
     """
     request = handler.request
     logging.getLogger("tornado.access").debug(
