@@ -149,7 +149,7 @@ def jumps_of(run: Run, contact: int) -> np.ndarray:
 
 
 def samples_for(scene: Scene) -> int:
-    """Return rows per drive period: enough for the pulses, which are short compared with a long drive period.
+    """Return the rows per drive period: enough for the pulses, which are short compared with a long drive period.
 
     Without a drive, a picture covers one time 1/f and has as many rows as `PERIODS` periods would have with one.
     """

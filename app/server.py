@@ -62,7 +62,7 @@ class Access:
 
     `secret` signs sessions; without it a server makes a random one. `origins` are the names under which browsers reach
     the server (`HOST` or `HOST:PORT`), `sign_in` the keyword arguments of Panel's `serve` for basic authentication or
-    OAuth. Behind a `proxy`, the visitor's address is in a header: `proxy_header`, if that is not empty.
+    OAuth. Behind a `proxy`, the visitor's address is in a header, which is `proxy_header` if that is not empty.
     """
 
     origins: tuple[str, ...] = ()
@@ -160,8 +160,8 @@ def add_shared_metrics() -> None:
                                      f"{', '.join(pool.name for pool in COMPUTING)}.",
                lambda: TURNS.running + sum(pool.busy_threads for pool in COMPUTING)),
         Metric("turns_waiting", "gauge",
-               "Computations that wait for a turn; each also keeps a thread of its pool busy.", lambda: TURNS.waiting),
-        Metric("pool_queued", "gauge", "Work that waits for a thread of the worker pool or for its owner's share.",
+               "Computations waiting for a turn; each also keeps a thread of its pool busy.", lambda: TURNS.waiting),
+        Metric("pool_queued", "gauge", "Work waiting for a thread of the worker pool or for its owner's share.",
                queued, "pool"),
         Metric("pool_busy_threads", "gauge", "Threads of the worker pool that have work, even if it waits for a turn "
                                              "or another pool.", busy, "pool"),

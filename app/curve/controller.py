@@ -158,7 +158,7 @@ class CurveController:
         return self.selection(scene)
 
     def switch(self, name: str, wanted: bool, scene: Scene) -> None:
-        """Select or deselect the curve of a start, or the stated features."""
+        """Select or deselect the curve from a start, or the stated features."""
         if name not in self._wanted:
             return
         self._wanted[name] = wanted

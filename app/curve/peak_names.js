@@ -154,7 +154,7 @@ export class PeakNames {
     if (!this.names.length && !this.stated.length) return;
     const frame = this.frame();
     if (!frame) return;
-    // A peak's name can move aside and a valley's hardly, so valleys come first, unless a peak then has no place.
+    // A peak's name can move aside more than a valley's, so valleys come first, unless a peak then has no place.
     if (!this.fill(frame, true)) this.fill(frame, false);
   }
 

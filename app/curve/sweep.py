@@ -28,7 +28,7 @@ _FINER_PASSES = 2
 
 @dataclass
 class Progress:
-    """The progress of the curve of one start, `done` from 0 to 1; `points` are new since the last report.
+    """The progress of the curve from one start, `done` from 0 to 1; `points` are new since the last report.
 
     `covers` says that the points cover the whole range, `complete` that no more will come.
     """

@@ -158,7 +158,7 @@ class CurveFigure:
         self._pinned.draw(self._scale[0])
 
     def pinned_curves(self, curves: Sequence[list[CurvePoint]]) -> None:
-        """Draw the pins' curves in order, dashed like their force trains; one that the present curve shows is empty."""
+        """Draw the pins' curves in order, dashed like their force trains; one equal to the present curve is empty."""
         if self._pinned.take(curves):
             self._rescale()
             self._pinned.draw(self._scale[0])
@@ -174,7 +174,7 @@ class CurveFigure:
         return self._scale[0]
 
     def points(self, start: str) -> list[CurvePoint]:
-        """Return the points of the curve of this start, in ascending frequency."""
+        """Return the points of the curve from this start, in ascending frequency."""
         return sorted(self._points[start], key=lambda point: point.frequency)
 
     def place(self, run: Run) -> Place | None:

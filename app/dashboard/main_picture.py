@@ -77,7 +77,7 @@ class MainPicture:
         #: The stages of pictures in flight, by their numbers.
         self._in_flight: dict[int, PictureStages] = {}
         self._numbers = itertools.count(1)
-        #: The number of the last request whose picture has come.
+        #: The number of the last request whose picture has arrived.
         self._answered = 0
         #: Frames of the last pictures. The cache of `prepared_frames` has only weak references, so without these the
         #: event loop would prepare the frames again.

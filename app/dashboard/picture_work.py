@@ -140,7 +140,7 @@ class PictureWork:
 
         Another process compiles these kernels, and the other kernels of the picture and its curve.
         """
-        needed = MOTION_KERNELS if scene.cuts_tension else (FIXED_STEP_KERNELS,)  # settled by dop853
+        needed = MOTION_KERNELS if scene.cuts_tension else (FIXED_STEP_KERNELS,)  # dop853 settles tension cuts
         if not COMPILER.has(scene, *needed):
             words = compiling_words("the kernels for this set of effects", FIXED_STEP_KERNELS).capitalize()
             self._caller.next_tick(self._show_notice, f"{words}; the picture then appears automatically.")

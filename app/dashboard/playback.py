@@ -54,7 +54,7 @@ class Playback:
         self._pictures.next_live_step()
 
     def _reconnected(self, message: dict[str, Any]) -> None:
-        """Restore the pause after a lost connection, which no link contains, and say what could not be restored."""
+        """Restore the pause, which no link contains, after a lost connection, and say what could not be restored."""
         if not message.get("playing"):
             self._playing({"value": False})
             self._header.show_session(self._session)

@@ -106,7 +106,7 @@ def _pieces(screen: Screen) -> list[tuple[str, str]]:
     chain = f'scene("{shown.name}")' + (f".evolve({arguments})" if arguments else "")
     head = f'''"""What granchain {__version__} showed: {shown.title}, {shown.f:g} Hz.
 
-Install granchain, then run this with Python. It computes the picture again and compares.
+Install granchain, then run this with Python. It computes the picture again and compares the results.
 Address on the page: ?{screen.query}
 """
 
@@ -118,7 +118,7 @@ chain = {chain}'''
     picture = f"""{_start(screen.initial_state)}
 run = settle(chain, start=start, samples={screen.run.samples}).run"""
     forces = {title: float(getattr(screen.run, field)) for title, field in _FORCES.items()}
-    numbers = f"""# What the page showed, and what was computed now.
+    numbers = f"""# The values on the page, and the same values computed now.
 page = {pprint.pformat(forces, sort_dicts=False, width=100)}
 fields = {pprint.pformat(_FORCES, sort_dicts=False, width=100)}
 here = {{name: float(getattr(run, field)) for name, field in fields.items()}}
@@ -135,7 +135,7 @@ for name, value in here.items():
 def _start(start: State | None) -> str:
     if start is None:
         return "start = None  # at rest"
-    return (f"# The state in which the motion on the page began: another start may settle to another motion.\n"
+    return (f"# The state in which the motion on the page began; another start may lead to another motion.\n"
             f"start = State(displacement={_array(start.displacement)},\n"
             f"              velocity={_array(start.velocity)}, phase={start.phase!r})")
 

@@ -41,7 +41,7 @@ class Page:
         """Called when the session was set from an address, after a step back or forward."""
 
     def picture_ready(self, settled: Settled) -> None:
-        """Called when a settled picture was offered to the browser, where it may still have to wait for its turn.
+        """Called when a settled picture was offered to the browser; it may still wait until the browser is ready.
 
         Unless `settled.final`, a better picture for these knobs may follow.
         """

@@ -21,7 +21,7 @@ export class BeadLink {
     return this.drawing.canvas.getBoundingClientRect();
   }
 
-  // Call this when the pointer moves to a bead or its column, or with 0 when it is at neither.
+  // Sets the bead under the pointer, or whose column is under it; 0 for none.
   point(bead) {
     const known = bead >= 1 && bead <= this.drawing.beads ? bead : 0;
     if (known === this.drawing.pointed) return;

@@ -1,7 +1,7 @@
 // The undocumented parts of BokehJS that the page uses. Apart from connection.js, only this file uses the global, so
 // that a new release is checked here (tests/browser/test_bokeh_internals.py); docs/libraries.md lists the rest.
 
-// All models of this name on the page. Each figure has a document of its own.
+// All models of this name on the page. Each figure has its own document.
 export const modelsNamed = (name) =>
   window.Bokeh.documents.map((shown) => shown.get_model_by_name(name)).filter(Boolean);
 

@@ -6,7 +6,7 @@ import { Knob } from "./knob.js";
 const KEPT = "κ = k/(K√A₀): at fixed k, κ changes with A₀. Set κ to get the old value back.";
 const FREQUENCY = "Frequency of one bead on its foundation spring alone: √(k/m) / 2π.";
 
-// Sends at most one message per animation frame and knob, since faster changes cannot be seen; the first at once.
+// Sends the first message at once and then at most one per animation frame and knob: faster changes cannot be seen.
 class Sender {
   constructor(model) {
     this.model = model;

@@ -27,7 +27,7 @@ function hideIfMoved() {
   if (explained && !isThere(explained)) hideMeaning();
 }
 
-// Call this when the explained element is gone: explains the one of `others` in its place, or else hides the bubble.
+// After the explained element is gone, explains the one of `others` that is in its place, or hides the bubble.
 export function explainSuccessor(others, meaningOf) {
   const successor = others.find(isThere);
   if (!successor) {
@@ -35,7 +35,7 @@ export function explainSuccessor(others, meaningOf) {
     return;
   }
   showMeaning(successor, meaningOf(successor));
-  // If the pointer moves away before the browser has noticed the successor, there is no event of leaving it.
+  // If the pointer moves away before the browser has noticed the successor, no event says that it has left.
   const moved = (event) => {
     if (explained === successor && !event.composedPath().includes(successor)) hideMeaning();
   };

@@ -28,7 +28,7 @@ _SMALLEST_COMPRESSED = 1400
 
 @functools.lru_cache(maxsize=512)
 def compressed(path: str, modified: int, size: int) -> bytes | None:
-    """Return the compressed file; None if that saves nothing. `modified` and `size` tell a changed file apart."""
+    """Return the compressed file; None if that saves nothing. `modified` and `size` identify the file's version."""
     if size < _SMALLEST_COMPRESSED or Path(path).suffix not in _COMPRESSED_SUFFIXES:
         return None
     content = Path(path).read_bytes()

@@ -65,7 +65,7 @@ class GuardedSocket(Guard):
         except Exception:  # a stranger may have sent anything
             session = None
         if session is None:
-            raise HTTPError(403, "no token of ours")
+            raise HTTPError(403, "no token of this server")
         self._offered = session
 
     def admit(self) -> None:
@@ -116,9 +116,9 @@ class GuardedSocket(Guard):
 
         def write_and_count(data: bytes | memoryview) -> Future[None]:
             if unsent.of(self) > MOST_UNSENT:
-                self.drop("too much that waits to be sent")
+                self.drop("too many unsent bytes")
             elif unsent.total > MOST_UNSENT_TOGETHER:
-                unsent.largest().drop("too much that waits to be sent to all pages together")
+                unsent.largest().drop("too many unsent bytes of all pages together")
             if stream.closed():
                 unwritten: Future[None] = Future()
                 unwritten.set_exception(StreamClosedError())
@@ -148,13 +148,13 @@ class GuardedSocket(Guard):
             if not self._counted:
                 raise RefusedMessage("frames that were not counted")
             if not self._has_connection:
-                raise RefusedMessage("a connection that no session was given")
+                raise RefusedMessage("a connection without a session")
             if not isinstance(fragment, str):
                 raise RefusedMessage("binary data")
             self._fragments = (*self._fragments, fragment)
             if len(self._fragments) < 3:
                 if len(fragment) > LARGEST_HEADER:
-                    raise RefusedMessage("too long a header")
+                    raise RefusedMessage("header too long")
                 return None
             fragments, self._fragments = self._fragments, ()
             content = checked_content(fragments[0], fragments[2])

@@ -44,7 +44,7 @@ def checked_content(header: str, content: str) -> dict[str, Any]:
         raise RefusedMessage("binary data")
     given = _object("content", content)
     if len(content) > LARGEST_PLAIN_CONTENT and not _is_upload(given):
-        raise RefusedMessage("too long a message")
+        raise RefusedMessage("message too long")
     if head["msgtype"] == "PULL-DOC-REQ":
         return given
     events = given.get("events")
@@ -94,7 +94,7 @@ def _check_value(value: Any, deepest: int) -> None:
     if not isinstance(value, (dict, list)):
         return
     if deepest == 0:
-        raise RefusedMessage("too deep a value")
+        raise RefusedMessage("value nested too deeply")
     if isinstance(value, dict):
         if "type" in value and value["type"] not in TYPES:
             raise RefusedMessage("a value of a kind that no page sends")

@@ -30,12 +30,12 @@ class Stage(NamedTuple):
 
 #: The stages of a picture, by their label in `/metrics`.
 STAGES = {
-    "turn": Stage("it waits for the session's computation before it, for a thread and for a time slice (turn)",
+    "turn": Stage("it waits for the session's previous computation, for a thread and for a time slice (turn)",
                   "more cores, or another machine"),
     "kernels": Stage("it waits for kernels that are being compiled", "compile them beforehand with `granchain warm`"),
-    "compute": Stage("it is computed, or a session waits for the same picture of another",
+    "compute": Stage("it is computed, or the session waits for the same picture of another session",
                      "nothing: the visitor's chain is long"),
-    "prepare": Stage("the arrays that are drawn are made", "more cores: other threads have them"),
+    "prepare": Stage("the arrays to be drawn are prepared", "more cores: other threads are using them"),
     "loop": Stage("it waits for the event loop", "another process: a process uses one core for its event loop"),
     "pace": Stage("it waits until the browser has painted earlier pictures", "nothing: see `travel` and `paint`"),
     "travel": Stage("it is sent and its acknowledgement comes back; both wait for an event loop",
@@ -63,10 +63,10 @@ COUNTERS = {
     "pictures": "Pictures sent, steps of live runs included. Pictures that were replaced before they were sent are not "
                 "counted.",
     "cancelled": "Computations of pictures that were cancelled.",
-    "refused_sessions": "Sessions refused because there were as many as `--max-sessions`.",
+    "refused_sessions": "Sessions refused because `--max-sessions` were already open.",
     "refused_pictures": "Pictures refused because they would take too long.",
-    "refused_messages": "Messages that no page sends, too many frames, and too much that waits to be sent; each closed "
-                        "its connection.",
+    "refused_messages": "Messages that no page sends, too many frames, and too many unsent bytes; each closed its "
+                        "connection.",
     "errors": "Unexpected failures; each is in the log.",
 }
 
@@ -186,7 +186,7 @@ class Metrics:
     def table(self) -> list[Metric]:
         """Return all metrics except the histograms."""
         return [
-            Metric("build_info", "gauge", "Always 1; the label says which release of granchain answers.",
+            Metric("build_info", "gauge", "Always 1; the label is the running release of granchain.",
                    lambda: {__version__: 1}, "version"),
             Metric("sessions", "gauge", "Sessions: pages that are open.", lambda: self.sessions),
             Metric("sessions_opened_total", "counter", "Sessions opened.", lambda: self.opened),
@@ -199,11 +199,11 @@ class Metrics:
                    f"Largest lag of the event loop in the last ten seconds; above {_BUSY_STALL:g} the page says that "
                    "the server is busy.", lambda: self.largest_lag),
             Metric("turn_wait_seconds", "gauge",
-                   "Mean wait of a computation before it could begin in the last ten seconds; above "
+                   "Mean wait of computations before they could begin, in the last ten seconds; above "
                    f"{_BUSY_WAIT:g} the page says that the server is busy.", self.turn_wait),
             Metric("resident_memory_bytes", "gauge", "Resident memory.", resident_memory, prefix="process"),
             Metric("threads", "gauge", "Threads of the operating system.", os_threads, prefix="process"),
-            Metric("threads", "gauge", "Threads that Python knows; threads of numerical libraries are missing.",
+            Metric("threads", "gauge", "Threads known to Python, which exclude those of numerical libraries.",
                    threading.active_count),
             Metric("cpu_seconds_total", "counter", "Processor time of all threads, user and system.", cpu_seconds,
                    prefix="process"),
@@ -211,8 +211,8 @@ class Metrics:
                    prefix="process"),
             Metric("open_fds", "gauge", "Open file descriptors, sockets included.", open_descriptors,
                    prefix="process"),
-            Metric("max_fds", "gauge", "Most open file descriptors that the system allows.", most_descriptors,
-                   prefix="process"),
+            Metric("max_fds", "gauge", "Largest number of open file descriptors that the system allows.",
+                   most_descriptors, prefix="process"),
             *self.added,
         ]
 

@@ -54,7 +54,7 @@ class _Common(NamedTuple):
 
     @classmethod
     def of(cls, part: Any, properties: dict[str, Any]) -> _Common | None:
-        """Return them for the properties of a class's first instance; None if these are not as expected."""
+        """Make this from the properties of a class's first instance; None if they are not as expected."""
         properties = {**properties, "_defs": []}  # the data class is defined only once
         data, sheets = properties.pop("data", None), properties.pop("stylesheets", [])
         if not isinstance(data, Model) or collect_models(properties):
