@@ -64,7 +64,7 @@ def test_plain_values_pass(value: Any) -> None:
     {"type": "object", "name": "CustomJS", "id": "x"}, {"type": "slice", "start": 0, "stop": 1, "step": 1}, {"type": []},
     {"type": "map", "entries": [["a", {"type": "bytes", "data": "AAAA"}]]}, nested(DEEPEST + 1)])
 def test_values_that_no_page_sends_are_refused(value: Any) -> None:
-    with pytest.raises(RefusedMessage, match="too deep" if isinstance(value, list) else "of a kind that no page sends"):
+    with pytest.raises(RefusedMessage, match="too deeply" if isinstance(value, list) else "of a kind that no page sends"):
         checked_content(HEADER, content(value))
 
 
