@@ -84,7 +84,7 @@ def test_no_other_property_is_set_by_a_browser(name: object) -> None:
 
 @pytest.mark.parametrize("value", ["text", [1], {"type": "number", "value": "nan"}, {"type": "map", "entries": []}])
 def test_a_size_is_a_number(value: object) -> None:
-    with pytest.raises(RefusedMessage, match="no number"):
+    with pytest.raises(RefusedMessage, match="not a number"):
         checked_content(HEADER, changed("inner_width", value))
 
 
