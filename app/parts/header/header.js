@@ -212,7 +212,7 @@ class Header {
   showChoices(state) {
     const { scenes = [], scene = "", speeds = [], speed = 1, mode } = state;
     this.scenes.show(scenes, scene);
-    const each = (value) => `${value} period${value > 1 ? "s" : ""} per second`;
+    const each = (value) => `${value} period${value > 1 ? "s" : ""} a second`;
     this.speed.replaceChildren(...speeds.map((value) => new Option(each(value), value)));
     this.speed.value = String(speed);
     window.granchain.emit("speed", speed);

@@ -6,7 +6,7 @@ import { button, element, onWidth, PHONE } from "../toolkit/dom.js";
 const ENTRIES = [
   ["busy", (v) => v, "The server is busy: computations queue and intermediate pictures are skipped."],
   ["force", (v) => v, ""], // its title comes with it
-  ["start", (v) => v, "The start of the approach to the steady state."],
+  ["start", (v) => v, "The start from which the steady state was reached."],
   ["accuracy", (v) => v, ""], // its title comes with it
   [
     "energy",
