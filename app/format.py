@@ -9,7 +9,7 @@ _PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, 
 
 
 def prefixed(largest: float) -> tuple[float, str]:
-    """The factor and letter of the SI prefix in which `largest` reads between 1 and 1000, rounded to three figures."""
+    """Return factor and letter of the SI prefix that puts `largest` between 1 and 1000, rounded to three figures."""
     for factor, letter in _PREFIXES:
         if largest >= 0.9995 * factor:  # 999.6 would read "1e+03"; the same in parts/toolkit/round_numbers.js
             return factor, letter
@@ -17,25 +17,28 @@ def prefixed(largest: float) -> tuple[float, str]:
 
 
 def short_error(error: float) -> str:
-    """An error or accuracy to one figure, "3e-7"."""
+    """Return an error or accuracy to one figure, "3e-7"."""
     mantissa, exponent = f"{error:.0e}".split("e")
     return f"{mantissa}e{int(exponent)}"
 
 
 def duration(seconds: float) -> str:
-    """Seconds to three figures, in milliseconds, microseconds … where that reads better; whole ones from 1000 on."""
+    """Return a time to three figures, with an SI prefix below 1 s; in whole seconds from 1000 s on."""
     if seconds >= 999.5:
         return f"{seconds:.0f} s"
     factor, letter = prefixed(min(seconds, 1.0))
     return f"{seconds / factor:.3g} {letter}s"
 
 
-#: The numbers that are written without a power of ten.
+#: The range of numbers that are written without a power of ten.
 _SMALLEST_PLAIN, _LARGEST_PLAIN = 1e-6, 1e9
 
 
 def with_figures(value: float, figures: int) -> str:
-    """A number to `figures` significant figures, with zeros: "5.040", "150"; very large and small ones in powers."""
+    """Return a number to `figures` significant figures, trailing zeros included: "5.040", "150".
+
+    Very large and very small numbers are written with a power of ten.
+    """
     if not math.isfinite(value):
         return f"{value}"
     if value and not _SMALLEST_PLAIN <= abs(value) < _LARGEST_PLAIN:
@@ -46,7 +49,7 @@ def with_figures(value: float, figures: int) -> str:
 
 
 def with_decimals(value: float, decimals: int) -> str:
-    """A number rounded to a decimal place, left of the point where `decimals` is negative; its sign is a minus sign."""
+    """Return a number rounded to `decimals` places (left of the point if negative), with a true minus sign."""
     return f"{round(value, decimals) + 0.0:.{max(0, decimals)}f}".replace("-", "\N{MINUS SIGN}")
 
 
@@ -55,7 +58,7 @@ UNSURE_FIGURES = 2
 
 
 def figures_of(relative_error: float | None, most: int = 4) -> int:
-    """How many figures of a number its relative error leaves: at least two, at most `most`; two where it is unknown."""
+    """Return how many figures a relative error leaves: at least two, at most `most`; two if the error is unknown."""
     if relative_error is None or not math.isfinite(relative_error):
         return UNSURE_FIGURES
     if relative_error <= 10.0 ** -most:
@@ -64,17 +67,17 @@ def figures_of(relative_error: float | None, most: int = 4) -> int:
 
 
 def in_words(value: float, unit: str, figures: int = 4) -> str:
-    """A value in SI with its prefix, "597.2 mN"."""
+    """Return a value in SI with its prefix, "597.2 mN"."""
     factor, letter = prefixed(abs(value))
     return f"{with_figures(value / factor, figures)} {letter}{unit}"
 
 
 def given_in_words(value: float, unit: str, figures: int = 4) -> str:
-    """The same of a number that somebody measured: without zeros that nobody wrote, "5.5 N"."""
+    """Return the same for a measured number, without zeros that nobody wrote: "5.5 N"."""
     factor, letter = prefixed(abs(value))
     return f"{value / factor:.{figures}g} {letter}{unit}"
 
 
 def signed_in_words(value: float, unit: str, figures: int = 3) -> str:
-    """A difference in SI with its sign and prefix, "+500 mN"."""
+    """Return a difference in SI with its sign and prefix, "+500 mN"."""
     return f"{'−' if value < 0.0 else '+'}{in_words(abs(value), unit, figures)}"

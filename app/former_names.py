@@ -1,6 +1,6 @@
-"""Former names of the command line and the server that still work, a row for each. Delete a row, and its name is gone.
+"""Former names of the command line and the server that still work, one row each. Delete a row to retire its name.
 
-docs/python.md lists those of commands, options, tabs and keys of JSON, docs/deployment.md those of metrics.
+docs/python.md lists the former commands, options, tabs and JSON keys, docs/deployment.md the former metrics.
 granchain_core/former_names.py has the others.
 """
 
@@ -12,13 +12,13 @@ from typing import NamedTuple
 
 from granchain_core.former_names import FormerName
 
-#: Commands; former ones are on no list.
+#: Commands; lists of commands leave out the former ones.
 COMMANDS = (FormerName("strobes", "bifurcation-diagram", "stays"),)
 #: Options.
 OPTIONS = (FormerName("--most-visitors", "--max-sessions", "stays"),)
-#: Tabs of the dashboard, which links that were sent still have.
+#: Tabs of the dashboard; links shared earlier still have the former names.
 TABS = (FormerName("hard", "hard-cases", "stays"),)
-#: Keys of JSON, after the command that prints them.
+#: JSON keys, each after the command that prints it.
 KEYS = (
     FormerName("pulse.speed_beads", "pulse.speed_beads_s", "stays"),
     FormerName("pulse.speed", "pulse.speed_m_s", "stays"),
@@ -26,7 +26,7 @@ KEYS = (
 
 
 class FormerMetric(NamedTuple):
-    """A former name of a metric; its label, and its values of the label that have changed, where they have."""
+    """A former name of a metric, with its label and the former values of the label that have changed, if any."""
 
     former: str
     name: str
@@ -50,20 +50,20 @@ _TABS = {row.former: row.name for row in TABS}
 
 
 def present_command(word: str) -> str:
-    """The present name of a command, which may be `word` itself."""
+    """Return the present name of a command, which may be `word` itself."""
     return _COMMANDS.get(word, word)
 
 
 def present_tab(name: str) -> str:
-    """The present name of a tab, which may be `name` itself."""
+    """Return the present name of a tab, which may be `name` itself."""
     return _TABS.get(name, name)
 
 
 def names_of_option(name: str) -> tuple[str, ...]:
-    """An option's name and its former names."""
+    """Return an option's name and its former names."""
     return (name, *(row.former for row in OPTIONS if row.name == name))
 
 
 def former_metric(name: str) -> FormerMetric | None:
-    """The former name of a metric, if it has one."""
+    """Return the former name of a metric, if it has one."""
     return _METRICS.get(name)

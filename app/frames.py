@@ -21,15 +21,15 @@ _MOST_ROWS = 384
 _ROW_STEP = 48
 #: Rows per contact time 1/φ; a pulse passes a bead in about three contact times.
 _ROWS_PER_CONTACT_TIME = 1.5
-#: Most values of one quantity in a picture; beyond that, rows are dropped; the difference is not visible.
+#: Largest number of values of one quantity in a picture. Beyond it, rows are dropped; the difference is not visible.
 _MOST_VALUES = 60_000
 
-#: Drive periods in a live picture, and at least in a settled picture; a longer orbit is shown once.
+#: Drive periods in a live picture, and the fewest in a settled picture; a longer orbit is shown once.
 PERIODS = 4
 
 
 def round_up(value: float) -> float:
-    """Round up to one of ten steps per decade, so that a scale keeps still while a knob moves."""
+    """Round up to one of ten steps per decade, so that a scale stays still while a knob moves."""
     if not value > 0.0 or not np.isfinite(value):
         return 1.0
     power = 10.0 ** np.floor(np.log10(value))
@@ -64,7 +64,7 @@ class Frames:
 
     @cached_property
     def extremes(self) -> Extremes:
-        """The largest values; forces with the top of each jump, displacements with the driver's."""
+        """The largest values; forces include the top of each jump, displacements the driver's."""
         driver, wall = self.drive_displacement[:, None], np.zeros((self.rows, 1))
         displacement = np.concatenate([driver, self.displacement, wall], axis=1)
         return Extremes(
@@ -94,9 +94,9 @@ class Frames:
 
 @dataclass(frozen=True)
 class Extremes:
-    """The largest values of one picture or of many [N, N, J, m, m, N, N].
+    """The largest values of one or more pictures [N, N, J, m, m, N, N].
 
-    The overlap is the largest of two bodies that touch. A pull is the largest amount by which a force is below zero.
+    The overlap is the largest between two touching bodies. A pull is the largest amount by which a force falls below 0.
     """
 
     input_force: float = 0.0
@@ -108,22 +108,22 @@ class Extremes:
     output_pull: float = 0.0
 
     def widened(self, other: Extremes) -> Extremes:
-        """The larger of both values of each quantity."""
+        """Return the larger of the two values of each quantity."""
         return Extremes(**{name: max(value, getattr(other, name)) for name, value in self.items()})
 
     def items(self) -> Iterator[tuple[str, float]]:
-        """Names and values."""
+        """Iterate over names and values."""
         return ((field.name, getattr(self, field.name)) for field in fields(self))
 
 
 def chain_series(displacement: np.ndarray, force: np.ndarray, energy: np.ndarray,
                  drive: np.ndarray) -> list[np.ndarray]:
-    """The series of one chain, (T, N), (T, N + 1), (T, N) and (T,), in the order of `unpack` in chain_series.js."""
+    """Return a chain's series, (T, N), (T, N + 1), (T, N) and (T,), in the order of `unpack` in chain_series.js."""
     return [series.ravel() for series in (displacement, force, energy, drive)]
 
 
 def drawn_values(series: Sequence[np.ndarray]) -> np.ndarray:
-    """Series one after the other in one array, because every array is two messages on the websocket."""
+    """Return series joined into one array, because every array is two messages on the websocket."""
     return np.concatenate(series, dtype=np.float32)
 
 
@@ -132,7 +132,7 @@ _SERIES = tuple(field.name for field in fields(Frames)
 
 
 def with_jumps(time: np.ndarray, force: np.ndarray, jumps: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """A force train as a line with vertical jumps (J, 2): each adds two points, at 0 and at the force reached."""
+    """Return a force train as a line with vertical jumps (J, 2); each adds two points, at 0 and at its force."""
     if not len(jumps):
         return time, force
     rows = np.searchsorted(time, jumps[:, 0])
@@ -143,15 +143,15 @@ def with_jumps(time: np.ndarray, force: np.ndarray, jumps: np.ndarray) -> tuple[
 
 
 def jumps_of(run: Run, contact: int) -> np.ndarray:
-    """Times since the run's first row [s] and forces [N] of one contact's jumps (J, 2), in order."""
+    """Return times since the run's first row [s] and forces [N] of one contact's jumps (J, 2), in order."""
     time, force = run.jumps.of(contact)
     return np.stack([time - run.time[0], force], axis=1)
 
 
 def samples_for(scene: Scene) -> int:
-    """Rows per drive period: enough for the pulses, which are short compared with a long drive period.
+    """Return the rows per drive period: enough for the pulses, which are short compared with a long drive period.
 
-    Without a drive a picture is one time 1/f, and has the rows of the periods that it would show otherwise.
+    Without a drive, a picture covers one time 1/f and has as many rows as `PERIODS` periods would have with one.
     """
     shown = 1 if scene.is_driven else PERIODS
     needed = _ROW_STEP * round(shown * _ROWS_PER_CONTACT_TIME * scales_of(scene).phi / scene.f / _ROW_STEP)
@@ -159,7 +159,7 @@ def samples_for(scene: Scene) -> int:
 
 
 def settled_frames(run: Run) -> Frames:
-    """Whole periods from time 0; a periodic orbit is repeated so often that one sees its repetition.
+    """Return whole periods from time 0; a periodic orbit is shown often enough to see that it repeats.
 
     A motion that is not periodic is shown once, as recorded.
     """
@@ -184,7 +184,7 @@ _LOCK = threading.Lock()
 
 
 def prepared_frames(run: Run) -> Frames:
-    """The frames of a settled run with everything that a drawing needs, shared by all sessions that show the run.
+    """Return the frames of a settled run with everything drawing needs, shared by all sessions that show the run.
 
     The frames are cached as long as anything refers to them. A thread calls this before the event loop draws.
     """
@@ -210,7 +210,7 @@ class LiveWindow:
         self._jumps = {name: np.zeros((0, 2)) for name in ("input_jumps", "output_jumps")}
 
     def add(self, run: Run) -> Frames:
-        """The window after `run`; the first row of the run is the last row that is shown already."""
+        """Append `run` and return the window; the run's first row is the last row that is already shown."""
         for name in _SERIES:
             new = np.asarray(getattr(run, name))
             old = self._series.get(name)

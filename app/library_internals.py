@@ -1,4 +1,4 @@
-"""Undocumented parts of libraries that the dashboard uses, checked at the start.
+"""Undocumented parts of libraries that the dashboard uses, checked at startup.
 
 Each module that uses any of them has a table `INTERNALS`, made by `internals`. `python -m tools.update` writes the
 tables into docs/libraries.md.
@@ -25,11 +25,11 @@ _TABLES: dict[str, tuple[Internal, ...]] = {}
 
 
 class Internal(NamedTuple):
-    """Names that a library does not document, and what happens where a release lacks one of them.
+    """Names that a library does not document, and what is lost if a release lacks one of them.
 
     `owner` is the dotted name of the module, class or method that has them: attributes of the class or of its
-    instances, or keyword arguments of the method. The page works and the promises of docs/security.md are kept without
-    them; `without` says what is lost.
+    instances, or keyword arguments of the method. Without them the page still works and keeps the promises of
+    docs/security.md; `without` says what is lost.
     """
 
     owner: str
@@ -38,7 +38,7 @@ class Internal(NamedTuple):
 
 
 class MissingPart(RuntimeError):
-    """The installed release of a library lacks what the server does not start without; the text is a sentence."""
+    """The installed release of a library lacks something that the server needs to start; the text is a sentence."""
 
     def __init__(self, name: str, without: str = "") -> None:
         library = name.partition(".")[0].capitalize()
@@ -47,24 +47,24 @@ class MissingPart(RuntimeError):
 
 
 def internals(module: str, *rows: Internal) -> tuple[Internal, ...]:
-    """The table of a module; at the start the tables of all imported modules are checked."""
+    """Register and return the table of a module; at startup, the tables of all imported modules are checked."""
     _TABLES[module] = rows
     return rows
 
 
 def tables() -> dict[str, tuple[Internal, ...]]:
-    """The table of each imported module that has one, by the module's name."""
+    """Return the table of each imported module that has one, by module name."""
     return dict(sorted(_TABLES.items()))
 
 
 def check_releases() -> None:
-    """Log what the installed releases lack, a line a row."""
+    """Log what the installed releases lack, one line per row."""
     for row, name in (missed for table in tables().values() for missed in missing(table)):
         log.warning("a library has no %s: %s", name, row.without)
 
 
 def missing_in_import(problem: ImportError) -> MissingPart | None:
-    """The failure of an import as a sentence; None if the import was not from a library of the tables."""
+    """Return a failed import as an error with a sentence; None if the import was not from a library of the tables."""
     if (problem.name or "").partition(".")[0] not in LIBRARIES:
         return None
     name = re.search(r"cannot import name '(\w+)'", str(problem))
@@ -72,7 +72,7 @@ def missing_in_import(problem: ImportError) -> MissingPart | None:
 
 
 def missing(table: Iterable[Internal]) -> list[tuple[Internal, str]]:
-    """The rows for which the installed release lacks a name, with the first dotted name that it lacks."""
+    """Return the rows for which the installed release lacks a name, with the first dotted name that it lacks."""
     first_missing = ((row, next(_missing(row), None)) for row in table)
     return [(row, name) for row, name in first_missing if name is not None]
 
@@ -87,7 +87,7 @@ def _missing(row: Internal) -> Iterator[str]:
 
 
 def _find(path: str) -> Any:
-    """The module or the object in a module that a dotted name means; None if there is none."""
+    """Return the module, or object in a module, that a dotted name refers to; None if there is none."""
     parts = path.split(".")
     for length in range(len(parts), 0, -1):
         try:
@@ -102,7 +102,7 @@ def _find(path: str) -> Any:
 
 @cache
 def _attributes(owner: type) -> frozenset[str]:
-    """The attributes that instances of a class have besides class attributes, as far as its code shows them."""
+    """Return the instance attributes of a class that are not class attributes, as far as its code shows them."""
     names: set[str] = set()
     for base in owner.__mro__:
         names.update(vars(base).get("__annotations__", ()))
@@ -112,7 +112,7 @@ def _attributes(owner: type) -> frozenset[str]:
 
 
 def _set_by(code: CodeType | None) -> Iterator[str]:
-    """The attributes that a method sets, by a dot or by `setattr`."""
+    """Yield the attributes that a method sets, with a dot or with `setattr`."""
     if code is not None:
         yield from (step.argval for step in dis.get_instructions(code) if step.opname == "STORE_ATTR")
         if "setattr" in code.co_names:

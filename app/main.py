@@ -1,4 +1,4 @@
-"""The page for `panel serve app/main.py`: that of `granchain serve` without its guards (docs/security.md)."""
+"""The page for `panel serve app/main.py`: the page of `granchain serve`, without its guards (docs/security.md)."""
 
 from app.dashboard.entry import page
 

@@ -36,19 +36,19 @@ from .serve.monkeypatches.panel_resources import install_resources_cache
 from .serve.monkeypatches.request_handlers import install_guards
 from .session.session import Session
 
-#: The largest message of a page, an uploaded file in base64 [bytes].
+#: Largest message from a page: an uploaded file in base64 [bytes].
 LARGEST_MESSAGE = 4 * LARGEST_UPLOAD // 3 + 100_000
 #: Time for which a thread may keep the GIL from the event loop [s]. Answering one knob move acquires the GIL about ten
-#: times, so with Python's default, 5 ms, the answer could wait 50 ms for a busy thread. With 60 visitors the shorter
-#: time helps, with 24 it makes no difference (docs/reliability.md, "Many visitors").
+#: times, so with Python's default, 5 ms, the answer could wait 50 ms for a busy thread. The shorter time helps with 60
+#: visitors, and makes no difference with 24 (docs/reliability.md, "Many visitors").
 SWITCH_INTERVAL = 5e-4
-#: Time until a silent connection is closed [s]; the head of a request must come within it.
+#: Time until a silent connection is closed [s]; the head of a request must arrive within this time.
 IDLE_TIME = 60
-#: Time within which the body of a request must come [s].
+#: Time within which the body of a request must arrive [s].
 BODY_TIME = 30
-#: Largest body of a request [bytes]: only forms for signing in have one.
+#: Largest request body [bytes]: only sign-in forms have a body.
 LARGEST_BODY = 100_000
-#: Time between two pings of a websocket, and until the answer must come [s].
+#: Time between two websocket pings, and time within which each must be answered [s].
 PING_INTERVAL = 20
 #: Time within which a loaded page must open its websocket [ms].
 UNCONNECTED_MS = 30_000
@@ -62,7 +62,7 @@ class Access:
 
     `secret` signs sessions; without it a server makes a random one. `origins` are the names under which browsers reach
     the server (`HOST` or `HOST:PORT`), `sign_in` the keyword arguments of Panel's `serve` for basic authentication or
-    OAuth. Behind a `proxy` the visitor's address is in a header, which `proxy_header` names if it is not empty.
+    OAuth. Behind a `proxy`, the visitor's address is in a header, which is `proxy_header` if that is not empty.
     """
 
     origins: tuple[str, ...] = ()
@@ -75,7 +75,7 @@ class Access:
 
 
 def is_loopback(address: str) -> bool:
-    """Whether a server at this address can be reached only from this machine."""
+    """Return whether a server at this address can be reached only from this machine."""
     if address == "localhost":
         return True
     try:
@@ -88,7 +88,7 @@ def serve(port: int = 5006, address: str = "127.0.0.1", access: Access | None = 
           on_ready_to_listen: Callable[[], None] = lambda: None) -> None:
     """Serve the page until interrupted; `/liveness` answers health checks.
 
-    Raises `OSError` if the port is taken, and `MissingPart` if the release of a library lacks a necessary part.
+    Raises `OSError` if the port is taken, and `MissingPart` if an installed library lacks a part that is needed.
     `on_ready_to_listen` is called after all imports, just before the server takes the port.
     """
     logs.configure(log_level)
@@ -113,7 +113,7 @@ def serve(port: int = 5006, address: str = "127.0.0.1", access: Access | None = 
 
 
 def server_at(port: int, address: str, access: Access | None = None) -> Server:
-    """The server: it listens, but does not run yet."""
+    """Return a server that listens but does not run yet."""
     access = access or Access()
     names = [*map(_as_browsers_write, access.origins),
              *(f"{host}:{port}" for host in ("localhost", "127.0.0.1", _in_url(address)) if host)]
@@ -140,7 +140,7 @@ def server_at(port: int, address: str, access: Access | None = None) -> Server:
 def _guarded_page() -> None:
     """Make the page. Fail if its request had no guard, because then the promises of docs/security.md do not hold."""
     if not is_guarded():
-        raise RuntimeError("a request came to the page without a check")
+        raise RuntimeError("a request reached the page without a check")
     page()
 
 
@@ -160,8 +160,8 @@ def add_shared_metrics() -> None:
                                      f"{', '.join(pool.name for pool in COMPUTING)}.",
                lambda: TURNS.running + sum(pool.busy_threads for pool in COMPUTING)),
         Metric("turns_waiting", "gauge",
-               "Computations that wait for a turn; each also keeps a thread of its pool busy.", lambda: TURNS.waiting),
-        Metric("pool_queued", "gauge", "Work that waits for a thread of the worker pool or for its owner's share.",
+               "Computations waiting for a turn; each also keeps a thread of its pool busy.", lambda: TURNS.waiting),
+        Metric("pool_queued", "gauge", "Work waiting for a thread of the worker pool or for its owner's share.",
                queued, "pool"),
         Metric("pool_busy_threads", "gauge", "Threads of the worker pool that have work, even if it waits for a turn "
                                              "or another pool.", busy, "pool"),
@@ -178,7 +178,7 @@ def add_shared_metrics() -> None:
 
 
 def _in_url(address: str) -> str:
-    """The address as in a URL: IPv6 in brackets."""
+    """Return an address as a URL has it: IPv6 in brackets."""
     return f"[{address}]" if ":" in address else address
 
 
@@ -187,17 +187,17 @@ def _is_ipv6(origin: str) -> bool:
 
 
 def _as_browsers_write(origin: str) -> str:
-    """The origin in lower case, with an IPv6 address in its shortest form; others would match no browser's origin."""
+    """Return the origin in lower case, an IPv6 address in its shortest form; no browser's origin matches others."""
     origin = origin.lower()
     address, bracket, port = origin[1:].partition("]")
     if not _is_ipv6(origin) or not bracket:
         return origin
-    with contextlib.suppress(ValueError):  # a pattern is no address
+    with contextlib.suppress(ValueError):  # a pattern is not an address
         address = ipaddress.ip_address(address).compressed
     return f"[{address}]{port}"
 
 
 def _name_of(origin: str) -> str:
-    """The host in HOST, HOST:PORT or [IPv6]:PORT, without brackets."""
+    """Return the host in HOST, HOST:PORT or [IPv6]:PORT, without brackets."""
     name = origin.lower().rpartition("://")[2]
     return name[1:].partition("]")[0] if name.startswith("[") else name.partition(":")[0]

@@ -1,1 +1,1 @@
-"""The resonance curve and its sweeps, which are always on the screen and behind no tab."""
+"""The resonance curve and its sweeps, which are always on screen rather than behind a tab."""

@@ -28,12 +28,12 @@ from .reports import Reports
 from .sweep import Progress, Sweep
 from .view import CurveFigure
 
-#: Time for which the knobs must rest before a curve is begun [s]: nobody reads a curve while dragging.
+#: Time for which the knobs must rest before a curve starts [s]: nobody reads a curve while dragging.
 CURVE_QUIET = 0.35
 
 
 class CurveController:
-    """Computes the selected curves while they are on the screen, each once for the same knobs.
+    """Computes the selected curves while they are on screen, each only once for the same knobs.
 
     `placed` shows where on the curve from rest the present motion lies. It is called when such a curve is complete, and
     when an expected curve will not be computed.
@@ -50,31 +50,31 @@ class CurveController:
         self._quiet = Debounce(host, CURVE_QUIET)
         self._reports = Reports(host, self._draw)
         self._visible = True
-        #: By the start of a curve, and for the stated features: whether it is selected.
+        #: Whether each curve, by its start, and the stated features are selected.
         self._wanted = {name: name == "rest" for name, *_ in CHOICES}
-        #: Scenes of `without_frequency`, since a curve is the same at every f: of the present knobs, of the curve that
-        #: was begun last, and of the complete curve from each start.
+        #: Scenes from `without_frequency`, since a curve is the same at every f: for the present knobs, for the curve
+        #: that was started last, and for the complete curve from each start.
         self._wanted_for: Scene | None = None
         self._begun_for: Scene | None = None
         self._complete_for: dict[str, Scene] = {}
-        #: Starts whose curves were missing when the last curve was begun, and the part of these curves that is
+        #: Starts whose curves were missing when the last curve was started, and the fraction of these curves that is
         #: computed, from 0 to 1; -1 if nothing is under way.
         self._missing: list[str] = []
         self._done = -1.0
-        #: The reason why the kernels of the present knobs could not be compiled.
+        #: The error that kept the kernels of the present knobs from being compiled.
         self._uncompiled: Exception | None = None
         self._kernels = Requests(COMPILER)
         self._names = PeakNames(host, self._show_names)
 
     def selection(self, scene: Scene) -> str:
-        """The selected curves, as a link names them; "auto" for the scene's own selection."""
+        """Return the selected curves as links name them; "auto" for the scene's default selection."""
         chosen = {name for name, wanted in self._wanted.items() if wanted}
         return "auto" if chosen == _own(scene) else joined(chosen)
 
     def show_preset(self, scene: Scene, selected: str) -> str:
-        """Show an empty figure over the frequencies of another scene, with the curves of a link; return which.
+        """Show an empty figure over another scene's frequencies, and select the curves of a link; return the selection.
 
-        An empty text leaves the selected curves as they are, and shows the stated features of the paper's rig.
+        If `selected` is empty, the same curves stay selected, and the paper's rig shows its stated features.
         """
         self._complete_for.clear()
         self._names.forget()
@@ -89,7 +89,7 @@ class CurveController:
         return self.selection(scene)
 
     def knob_moved(self, scene: Scene) -> None:
-        """Follow a moved knob. For any knob except f, draw a draft at once, and the curve when the knobs rest."""
+        """React to a moved knob: for any knob except f, draw a draft at once, and the curve when the knobs rest."""
         if without_frequency(scene) == self._wanted_for:
             return
         self._names.forget()
@@ -133,14 +133,14 @@ class CurveController:
                                              f"({type(failure).__name__}).")
 
     def _give_up(self) -> None:
-        """Show no curve, because the chain has none or it would take too long; another chain's would mislead."""
+        """Show no curve, because the chain has none or it would take too long; another chain's curve would mislead."""
         self.stop()
         self._complete_for.clear()
         self._figure.clear()
         self._placed()
 
     def visibility_changed(self, visible: bool) -> None:
-        """The figure has come onto the screen or left it."""
+        """React to the figure coming onto the screen or leaving it."""
         if visible == self._visible:
             return
         self._visible = visible
@@ -150,7 +150,7 @@ class CurveController:
             self.stop()
 
     def select(self, scene: Scene, selected: str) -> str:
-        """Draw the curves that a link names, or for "auto" the scene's own; return the selection."""
+        """Draw the curves that a link names, or for "auto" the scene's default curves; return the selection."""
         chosen = _own(scene) if selected == "auto" else set(selected.split("."))
         self._wanted = {name: name in chosen for name in self._wanted}
         self._show_features(scene)
@@ -158,7 +158,7 @@ class CurveController:
         return self.selection(scene)
 
     def switch(self, name: str, wanted: bool, scene: Scene) -> None:
-        """Select or deselect the curve of a start, or the stated features."""
+        """Select or deselect the curve from a start, or the stated features."""
         if name not in self._wanted:
             return
         self._wanted[name] = wanted
@@ -184,7 +184,7 @@ class CurveController:
         return 0.0 <= self._done < 1.0
 
     def activities(self) -> list[Activity]:
-        """Name, state and detail of the curve of every start at this moment."""
+        """Return name, state and detail of the curve from every start at this moment."""
         rows = []
         for name in CURVE_STARTS:
             title = f"resonance curve, {SWEEPS[name].words}"
@@ -201,7 +201,7 @@ class CurveController:
             elif self._uncompiled is not None:
                 rows.append((title, OFF, "its kernels could not be compiled"))
             elif name in self._missing and self.computing:
-                rows.append((title, COMPUTING, f"{100 * self._done:.0f} % of what is asked for"))
+                rows.append((title, COMPUTING, f"{100 * self._done:.0f} % of the curves asked for"))
             else:
                 rows.append((title, OFF, "waits until the knobs rest, or was stopped"))
         return rows
@@ -212,7 +212,7 @@ class CurveController:
         return self._figure.difference
 
     def on_compared(self, action: Callable[[Difference | None], None]) -> None:
-        """Call `action` with each complete curve's difference from the data; with None when a curve is begun."""
+        """Call `action` with each complete curve's difference from the data; with None when a curve starts."""
         self._compared.append(action)
 
     def _notify_compared(self, difference: Difference | None) -> None:
@@ -220,13 +220,13 @@ class CurveController:
             action(difference)
 
     def complete(self, scene: Scene) -> dict[str, list[CurvePoint]]:
-        """The curves of a scene that are drawn and complete, by their starts."""
+        """Return the curves of a scene that are drawn and complete, by start."""
         key = without_frequency(scene)
         return {name: self._figure.points(name) for name in CURVE_STARTS
                 if self._wanted[name] and self._complete_for.get(name) == key}
 
     def _begin(self, scene: Scene) -> None:
-        """Compute the selected curves that are missing; a change of only f needs no new curve."""
+        """Compute the selected curves that are missing; a change of f alone needs no new curve."""
         key = without_frequency(scene)
         missing = [name for name in CURVE_STARTS
                    if self._visible and self._wanted[name] and self._complete_for.get(name) != key]
@@ -277,7 +277,7 @@ class CurveController:
         self._bar.update_state(done=self._done)
 
     def _overall(self, progress: Progress) -> float:
-        """Progress over all curves of this request."""
+        """Return the progress over all curves of this request."""
         if progress.start not in self._missing:
             return -1.0
         return (self._missing.index(progress.start) + progress.done) / len(self._missing)
@@ -293,5 +293,5 @@ class CurveController:
 
 
 def _own(scene: Scene) -> set[str]:
-    """The curves that a scene shows by default; the paper's rig also has stated features."""
+    """Return the curves that a scene shows by default; the paper's rig also has stated features."""
     return {"rest", "features"} if scene.pattern == rig_beads() else {"rest"}

@@ -1,4 +1,4 @@
-// Which curves are shown, how far they are, and a button to stop them.
+// The choice of curves, their progress, and a button to stop them.
 
 import { button, element, meter } from "../parts/toolkit/dom.js";
 import { PeakNames } from "./peak_names.js";
@@ -10,10 +10,10 @@ function choiceBox(model, name) {
 }
 
 const ratio = (strong) =>
-  `1:3, for instance: the driver pushes the first bead strongly once in three drive periods. A push is strong above ${Math.round(100 * strong)} % of the strongest. 2:3 would be two of them in three periods.`;
+  `1:3, for example: the driver pushes the first bead strongly once in three drive periods. A push counts as strong above ${Math.round(100 * strong)} % of the strongest. 2:3 would be two strong pushes in three periods.`;
 
 // Every mark with its name, whether the curve has it or not, so that the key keeps its size while a knob moves. The
-// periods have their word once.
+// word "periods" appears only once.
 function keyOf({ kinds, strong }) {
   const mark = ({ symbol, colour }, name) => {
     const drawn = element("b", { textContent: symbol });
@@ -40,11 +40,11 @@ function keyOf({ kinds, strong }) {
   ];
 }
 
-// Why there is no curve; empty where there is one.
+// Why there is no curve; empty if there is one.
 function reason({ driven, too_long: tooLong }) {
   if (!driven) return "This chain has no drive, so there is no resonance curve.";
   return tooLong
-    ? "The resonance curve of this chain takes too long for the page; on the command line granchain curve computes it."
+    ? "The resonance curve of this chain takes too long for the page; granchain curve computes it on the command line."
     : "";
 }
 
@@ -60,7 +60,7 @@ export function render({ model }) {
   const choosing = element("div", { className: "row" }, ...labels.values());
   const show = () => {
     for (const [name, box] of boxes) box.checked = Boolean(model.state[name]);
-    // Frequencies of another chain would say nothing.
+    // Another chain's frequencies would mean nothing here.
     labels.get("features").hidden = !(model.state.rig || model.state.features);
     document.getElementById("curves").classList.toggle("undriven", !model.state.driven);
     choosing.hidden = !model.state.driven;

@@ -16,7 +16,7 @@ from .view import CurveFigure
 
 
 class Drafts:
-    """The drafts of one session; a newer draft replaces one that waits or is being computed.
+    """The drafts of one session; a newer draft replaces one that is waiting or being computed.
 
     `drawn` is called when a draft has replaced the curve from rest in the figure.
     """

@@ -1,24 +1,25 @@
-// The names of the curve's peaks, valleys and stop band as buttons over its figure, and those of what the paper states
-// at their lines. A name that would lie on another one moves up, and is left out where there is no room: what the paper
-// states and strong peaks come first. A valley's name and a stated one keep off the points of the curve if they can.
+// The names of the curve's peaks, valleys and stop band as buttons over its figure, and the names of the features that
+// the paper states next to their lines. A name that would overlap another moves up, and is left out if there is no
+// room: stated features and strong peaks come first. The names of valleys and stated features avoid the points of the
+// curve if they can.
 
 import { frameOf, marksOf, modelsNamed, onLayout, viewOf } from "../parts/figures/bokeh.js";
 import { button, element } from "../parts/toolkit/dom.js";
 
 const FIGURE = "resonance curve"; // the name of its model
-const ABOVE = { peak: 11, band: 5, valley: 9 }; // px between a point and its name; on a peak there is the ring's place
-const BESIDE = 3; // px between the line of what the paper states and its name
+const ABOVE = { peak: 11, band: 5, valley: 9 }; // px between a point and its name; over a peak it clears the ring
+const BESIDE = 3; // px between the line of a stated feature and its name
 const MARK = 4; // px from the middle of a point to its edge
 const STEP = 3; // px by which a name moves up
-const ASIDE = { peak: [0, -8, 8, -16, 16], band: [0, -8, 8, -16, 16], valley: [0, -3, 3, -6, 6, -9, 9] }; // px to the side
-const SHORT = "anti-res."; // the name of a valley that has no room for the whole
+const ASIDE = { peak: [0, -8, 8, -16, 16], band: [0, -8, 8, -16, 16], valley: [0, -3, 3, -6, 6, -9, 9] }; // px sideways
+const SHORT = "anti-res."; // the name of a valley without room for the whole name
 const ORDER = { peak: 0, band: 1, valley: 2 };
 
 const apart = (a, b) => a.right <= b.left || b.right <= a.left || a.bottom <= b.top || b.bottom <= a.top;
 
 const around = (x, y) => ({ left: x - MARK, right: x + MARK, top: y - MARK, bottom: y + MARK });
 
-// The lowest box from `lowest` upwards in which `free` holds, straight over the point or a little beside it.
+// The lowest box from `lowest` upwards for which `free` is true, directly over the point or a little to the side.
 function freeBox({ left, right, top, x, lowest, sideways }, free, wide, tall) {
   for (let y = lowest; y >= top; y -= STEP)
     for (const aside of sideways) {
@@ -29,7 +30,7 @@ function freeBox({ left, right, top, x, lowest, sideways }, free, wide, tall) {
   return null;
 }
 
-// The box of a name beside its line at `x`, as far up as it can be.
+// The box of a name next to its line at `x`, as high as possible.
 function besideLine({ left, right, top, bottom }, x, free, wide, tall) {
   for (let y = top + 1; y + tall <= bottom; y += STEP)
     for (const at of [x - BESIDE - wide, x + BESIDE]) {
@@ -39,7 +40,7 @@ function besideLine({ left, right, top, bottom }, x, free, wide, tall) {
   return null;
 }
 
-// The room of a figure's frame for names, with what has its place already.
+// The room for names in a figure's frame, and the boxes that are already taken.
 class Room {
   constructor(frame, stated) {
     const { x_scale, y_scale, bbox } = frame;
@@ -50,15 +51,15 @@ class Room {
     this.offPoints = (box) => this.alone(box) && this.points.every(([x, y]) => apart(box, around(x, y)));
   }
 
-  // A peak's name that had to move up keeps a line down to its point.
+  // Ties a peak's name that had to move up to its point with a line.
   tie(label, x, y) {
     const { left, bottom } = this.kept.at(-1);
     label.style.setProperty("--tie", `${Math.max(0, y - bottom)}px`);
     label.style.setProperty("--tie-left", `${x - left}px`);
   }
 
-  // Puts a name where the first of these functions of its width and height has a box, or hides it; returns whether it
-  // has a place.
+  // Puts a name into the first box that one of these functions of its width and height finds, or hides it; returns
+  // whether it has a place.
   place(label, ways) {
     label.hidden = false;
     const { offsetWidth: wide, offsetHeight: tall } = label;
@@ -97,7 +98,7 @@ class Room {
     return placed;
   }
 
-  // Off the points of the curve, with a shorter name if the whole one finds no such place.
+  // Puts a valley's name off the points of the curve, a shorter one if the whole name finds no such place.
   putValley(label, valley) {
     return [valley.name, SHORT].some((words) => {
       label.textContent = words;
@@ -119,7 +120,7 @@ export class PeakNames {
     window.granchain.on("theme", () => this.later());
   }
 
-  // `stated` is what the paper says: kind, words and frequency, as in `names`.
+  // `stated` has the features that the paper states: kind, words and frequency, as in `names`.
   show(names, stated) {
     const both = JSON.stringify([names, stated]);
     if (both === this.both) return;
@@ -132,13 +133,13 @@ export class PeakNames {
     this.later();
   }
 
-  // After the figure has its new size: it is laid out in the frame after its element.
+  // Waits until the figure has its new size: it is laid out one animation frame after its element.
   later() {
     clearTimeout(this.timer);
     this.timer = setTimeout(() => requestAnimationFrame(() => this.place()), 60);
   }
 
-  // The frame of the curve's figure, whose changes place the names anew.
+  // The frame of the curve's figure; whenever it changes, the names are placed again.
   frame() {
     const [model] = modelsNamed(FIGURE);
     const view = model && viewOf(model);
@@ -153,11 +154,11 @@ export class PeakNames {
     if (!this.names.length && !this.stated.length) return;
     const frame = this.frame();
     if (!frame) return;
-    // A peak's name can move aside and a valley's hardly, so valleys come first; not where a peak has no place then.
+    // A peak's name can move aside more than a valley's, so valleys come first, unless a peak then has no place.
     if (!this.fill(frame, true)) this.fill(frame, false);
   }
 
-  // Puts all names; returns whether every peak has its own.
+  // Places all names; returns whether every peak has its name.
   fill(frame, valleysFirst) {
     const room = new Room(frame, this.stated);
     const [stated, named] = [this.labels.slice(0, this.stated.length), this.labels.slice(this.stated.length)];

@@ -1,9 +1,10 @@
 """The names of the peaks, the valleys and the stop band of the curve from rest, which the page shows as buttons.
 
 Each name follows from a computation at its place. The extrema are those that stand out from both neighbours by 20 %
-(`steady/curve/resonance.py`). At each the chain is settled once more and its driver's pushes are counted. A peak is
-named after them, 1:3 for one strong push in three periods; a valley is an anti-resonance if every period has one push.
-The stop band begins after the last peak, where less than 15 % of the input force arrives from there on.
+(`steady/curve/resonance.py`). At each of them, the chain is settled once more and its driver's pushes are counted. A
+peak is named after these: 1:3 for one strong push in three periods. A valley is an anti-resonance if every period has
+one push. The stop band begins after the last peak, at the frequency above which less than 15 % of the input force
+arrives.
 """
 
 from __future__ import annotations
@@ -36,18 +37,18 @@ from ..session.host import WorkHost
 from ..session.scene_facts import without_frequency
 from ..session.task import Job, Task, report_nothing
 
-#: Fewest points of a stop band.
+#: Smallest number of points in a stop band.
 _FEWEST_BAND_POINTS = 3
 
 
 def extreme_points(points: Sequence[CurvePoint]) -> list[tuple[str, CurvePoint]]:
-    """ "peak" or "valley", and the point, of every extremum of a curve in ascending frequency that stands out."""
+    """Return "peak" or "valley", and the point, for each extremum that stands out; frequencies ascend."""
     peaks, valleys = peaks_and_valleys(np.array([point.max_output_force for point in points]))
     return [("peak" if i in peaks else "valley", points[i]) for i in sorted([*peaks, *valleys])]
 
 
 def stop_band(points: Sequence[CurvePoint]) -> tuple[CurvePoint, CurvePoint] | None:
-    """The first and the last point of the stop band of a curve in ascending frequency."""
+    """Return the first and last points of the stop band of a curve in ascending frequency; None if there is none."""
     peaks = [point.frequency for kind, point in extreme_points(points) if kind == "peak"]
     if not peaks:
         return None
@@ -59,7 +60,7 @@ def stop_band(points: Sequence[CurvePoint]) -> tuple[CurvePoint, CurvePoint] | N
 
 
 def extremum_name(kind: str, point: CurvePoint, scene: Scene, stop: Stop | None = None) -> dict[str, Any] | None:
-    """The name of an extremum, from the motion there; None if the motion has none. Raises `Cancelled`."""
+    """Return the name of an extremum, found from the motion there; None if it gives none. Raises `Cancelled`."""
     at = scene.evolve(f=round(point.frequency, 1))
     pushed = pushes(settle(at, samples=samples_for(at), stop=stop).run)
     if pushed is None or (kind == "valley" and pushed != (1, 1)):
@@ -70,7 +71,7 @@ def extremum_name(kind: str, point: CurvePoint, scene: Scene, stop: Stop | None 
 
 
 def band_name(band: tuple[CurvePoint, CurvePoint]) -> dict[str, Any]:
-    """The name of the stop band; it stands in the middle."""
+    """Return the name of the stop band, placed at its middle."""
     first, last = band
     return {"kind": "band", "name": "stop band", "words": f"stop band from {first.frequency:.0f} Hz",
             "f": round(0.5 * (first.frequency + last.frequency), 1), "force": max(first.max_output_force,
@@ -78,7 +79,7 @@ def band_name(band: tuple[CurvePoint, CurvePoint]) -> dict[str, Any]:
 
 
 def stated_name(feature: Feature) -> dict[str, Any]:
-    """The name of a peak or valley that the paper states, at its frequency: "1:1", or "1:1 anti" for a valley."""
+    """Return the name of a peak or valley stated in the paper, at its frequency: "1:1", or "1:1 anti" for a valley."""
     ratio = feature.kind.split()[0]
     return {"kind": "stated", "name": ratio if feature.is_resonance else f"{ratio} anti", "f": feature.frequency,
             "words": f"stated in the paper: {feature.kind} at {feature.frequency:g} Hz, {feature.repeats} repeats"}
@@ -86,12 +87,13 @@ def stated_name(feature: Feature) -> dict[str, Any]:
 
 def _extremum_names(extremes: Sequence[tuple[str, CurvePoint]], scene: Scene,
                     stop: TurnFlag) -> Iterator[dict[str, Any] | None]:
-    """The names of the extrema, one after another. Raises `Cancelled`."""
+    """Yield the names of the extrema, one after another. Raises `Cancelled`."""
     for kind, point in extremes:
         yield extremum_name(kind, point, scene, stop)
 
 
-#: Names for all sessions: a class that looks at one curve settles its dozen extrema once, which takes a second.
+#: Names for all sessions: when a class of students looks at one curve, its dozen extrema are settled only once, which
+#: takes a second.
 NAMES_SHARED: Shared[dict[str, Any] | None] = Shared(SWEEPS, 2_000_000, lambda name: 1000, turns=False)
 
 

@@ -16,7 +16,7 @@ from ..plots.themed import themed
 
 
 class PinnedCurves:
-    """Dashed circles with names, and grey lines; each is made when it is first needed: most visitors pin nothing.
+    """Dashed circles with names, and grey lines; each is made only when needed, since most visitors pin nothing.
 
     `places` are the name, frequency [Hz] and largest output force [N] of each pinned motion.
     """

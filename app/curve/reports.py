@@ -15,9 +15,9 @@ CURVE_EVERY = 0.1
 
 
 class Reports:
-    """Collects reports and hands them to `draw` together, at most once in `CURVE_EVERY` seconds.
+    """Collects reports and hands them to `draw` together, at most once every `CURVE_EVERY` seconds.
 
-    Drawn one by one, the curves of a whole class would keep the event loop busy.
+    Drawn one by one, the curves of a whole class of students would keep the event loop busy.
     """
 
     def __init__(self, host: PageHost, draw: Callable[[list[Progress]], None]) -> None:
@@ -28,7 +28,7 @@ class Reports:
         self._drawn = -math.inf
 
     def add(self, report: Progress) -> None:
-        """Take a report; from the worker thread."""
+        """Add a report; called from the worker thread."""
         with self._lock:
             self._waiting.append(report)
             first = len(self._waiting) == 1
@@ -41,7 +41,7 @@ class Reports:
             self._waiting = []
 
     def _hand_over(self) -> None:
-        """Draw the waiting reports now, or once enough time has passed since the last drawing; document locked."""
+        """Draw the waiting reports, now or once enough time has passed since the last drawing; document locked."""
         left = self._drawn + CURVE_EVERY - time.monotonic()
         if left > 0.0:
             self._host.call_later(left, self._hand_over)

@@ -20,7 +20,7 @@ from ..session.task import Job
 
 #: Frequencies of the first pass over a curve from rest.
 COARSE = 75
-#: Frequencies of a sweep, which has one pass: each point begins where the last one ended.
+#: Frequencies of a sweep, which has only one pass: each point starts where the last one ended.
 _SWEEP = 150
 #: Further passes over a curve from rest, each between the points of the earlier ones.
 _FINER_PASSES = 2
@@ -28,9 +28,9 @@ _FINER_PASSES = 2
 
 @dataclass
 class Progress:
-    """The progress of the curve of one start, `done` from 0 to 1; `points` are new since the last report.
+    """The progress of the curve from one start, `done` from 0 to 1; `points` are new since the last report.
 
-    `covers` says that points lie over the whole range, `complete` that no more will come.
+    `covers` says that the points cover the whole range, `complete` that no more will come.
     """
 
     start: str
@@ -41,12 +41,12 @@ class Progress:
 
 
 def grid(scene: Scene, points: int) -> np.ndarray:
-    """Frequencies over the scene's range."""
+    """Return frequencies over the scene's range."""
     return np.linspace(*slider_range(scene, "f"), points)
 
 
 def midpoints(points: list[CurvePoint], low_step: float) -> np.ndarray:
-    """Frequencies of further points: where the curve bends, and where the regime changes."""
+    """Return frequencies of further points: where the curve bends, and where the regime changes."""
     points = sorted((p for p in points if np.isfinite(p.max_output_force)), key=lambda p: p.frequency)
     force = np.array([point.max_output_force for point in points])
     frequency = np.array([point.frequency for point in points])
@@ -75,7 +75,7 @@ class Sweep:
     cpu_time: CpuTime
 
     def __call__(self, job: Job) -> None:
-        """Report everything as it comes; reported points stay when the job is cancelled."""
+        """Report each point as it comes; reported points stay when the job is cancelled."""
         for start in self.starts:
             key = without_frequency(self.scene), start
             with closing(CURVES_SHARED.follow(key, partial(_computed, self.scene, start), job.stop,
@@ -87,7 +87,7 @@ class Sweep:
 
 
 def _computed(scene: Scene, start: str, stop: Stop) -> Iterator[Progress]:
-    """One curve, from coarse to fine. Raises `Cancelled`."""
+    """Compute one curve, from coarse to fine. Raises `Cancelled`."""
     if start != "rest":
         yield from _points(scene, grid(scene, _SWEEP), start, stop, 0.0, 1.0)
         yield Progress(start, [], 1.0, complete=True, covers=True)
@@ -106,7 +106,7 @@ def _computed(scene: Scene, start: str, stop: Stop) -> Iterator[Progress]:
 
 def _points(scene: Scene, frequencies: np.ndarray, start: str, stop: Stop, low: float,
             high: float) -> Iterator[Progress]:
-    """Compute a point for each frequency and report each; progress goes from `low` to `high` meanwhile."""
+    """Compute a point for each frequency and report each; progress rises from `low` to `high` meanwhile."""
     if not len(frequencies):
         return
     for number, point in enumerate(iter_curve(scene, frequencies, start=start, stop=stop), 1):
@@ -116,13 +116,13 @@ def _points(scene: Scene, frequencies: np.ndarray, start: str, stop: Stop, low: 
 
 
 def _whole(parts: list[Progress]) -> list[Progress]:
-    """A finished curve, as it is kept for the next session: all points at once."""
+    """Return a finished curve as it is cached for the next session: all points at once."""
     points = [point for progress in parts for point in progress.points]
     return [Progress(parts[-1].start, points, 1.0, complete=True, covers=True)]
 
 
 def _size(progress: Progress) -> int:
-    """Memory [bytes]: the states of the points, and some numbers and words."""
+    """Return the memory used [bytes]: the states of the points, and some numbers and words."""
     return sum(2000 + point.state.displacement.nbytes + point.state.velocity.nbytes for point in progress.points)
 
 

@@ -89,7 +89,7 @@ class CurveFigure:
         self.figure.renderers = [*others, self._stated]
 
     def _marks(self) -> None:
-        """Stated features and the current point, in front of the curves."""
+        """Make the marks of stated features and of the current point, in front of the curves."""
         plot = self.figure
         self._stated = plot.add_glyph(self._features, Segment(
             x0="frequency", y0=0, x1="frequency", y1="top", line_color=GREY, line_width=3, line_dash=[1, 5],
@@ -102,7 +102,7 @@ class CurveFigure:
         self._bars: list[GlyphRenderer] = []
 
     def _measurement_marks(self) -> list[GlyphRenderer]:
-        """The visitor's data: error bars and hollow squares."""
+        """Make the marks of the visitor's data: error bars and hollow squares."""
         bars = self.figure.add_glyph(self._measured, Segment(x0="frequency", y0="low", x1="frequency", y1="high",
                                                              line_width=1), level="overlay")
         dots = self.figure.add_glyph(self._measured, Scatter(x="frequency", y="force", marker="square", size=7,
@@ -111,7 +111,7 @@ class CurveFigure:
         return [themed(marks, self.figure, line_color="ink") for marks in (bars, dots)]
 
     def set_compact(self, compact: bool) -> None:
-        """Fewer numbers on the axis where there is little room."""
+        """Show fewer numbers on the axis if there is little room."""
         self.figure.xaxis[0].ticker.desired_num_ticks = 3 if compact else 5
 
     def range(self, low: float, high: float) -> None:
@@ -126,7 +126,7 @@ class CurveFigure:
                 renderer.visible = name in starts
 
     def begin(self, starts: list[str]) -> None:
-        """Turn the present curves of these starts grey, because new ones will come."""
+        """Turn the present curves of these starts grey, because new ones follow."""
         self._whole = self._whole and "rest" not in starts
         for name in SWEEPS:
             if name in starts:
@@ -136,7 +136,7 @@ class CurveFigure:
                 self._draw(name)
 
     def add(self, start: str, points: list[CurvePoint], covers: bool) -> None:
-        """Add points; once they cover the range the grey curve is removed."""
+        """Add points; once they cover the range, remove the grey curve."""
         self._ordered = None
         self._points[start] += [point for point in points if np.isfinite(point.max_output_force)]
         if covers:
@@ -158,7 +158,7 @@ class CurveFigure:
         self._pinned.draw(self._scale[0])
 
     def pinned_curves(self, curves: Sequence[list[CurvePoint]]) -> None:
-        """Draw the pins' curves in their order, dashed like their force trains; an empty curve is the present one."""
+        """Draw the pins' curves in order, dashed like their force trains; one equal to the present curve is empty."""
         if self._pinned.take(curves):
             self._rescale()
             self._pinned.draw(self._scale[0])
@@ -174,11 +174,11 @@ class CurveFigure:
         return self._scale[0]
 
     def points(self, start: str) -> list[CurvePoint]:
-        """The points of the curve of this start, in ascending frequency."""
+        """Return the points of the curve from this start, in ascending frequency."""
         return sorted(self._points[start], key=lambda point: point.frequency)
 
     def place(self, run: Run) -> Place | None:
-        """Where a run lies on the whole curve from rest; None while that curve is being computed."""
+        """Return where a run lies on the whole curve from rest; None while that curve is being computed."""
         if not self._whole:
             return None if self.expected else Place("")
         if self._ordered is None:
@@ -189,7 +189,7 @@ class CurveFigure:
         return place_of(*self._ordered, run.scene.f, run.max_output_force, transmission)
 
     def finished(self, start: str) -> None:
-        """Note that all points of the curve of this start have been computed."""
+        """Note that all points of the curve from this start have been computed."""
         self._whole = self._whole or start == "rest"
         if self._measurement is not None:
             self.measured(self._measurement)
@@ -263,7 +263,7 @@ class CurveFigure:
             self._pinned.draw(scale[0])
             if self._measurement is not None:
                 self.measured(self._measurement)
-        # Room for the names of the peaks, and above them for the names that the paper states.
+        # Leave room for the names of the peaks and, above them, for the names of the stated features.
         set_properties(self.figure.y_range, end=(1.3 if self._features.data["top"] else 1.15) * high / scale[0])
         set_properties(self.figure.yaxis[0], axis_label=f"largest output force ({scale[1]}N)")
         top = [self.figure.y_range.end] * len(self._features.data["top"])
@@ -277,7 +277,7 @@ class CurveFigure:
         self._fill(self._grey_sources, start, self._grey_points[start])
 
     def _fill(self, sources: dict[str, ColumnDataSource], start: str, points: list[CurvePoint]) -> None:
-        """Draw the points of the curve of this start, in ascending frequency."""
+        """Draw the points of the curve from this start, in ascending frequency."""
         if points and start not in sources:
             with models_collected_once(self.figure.document):
                 sources[start] = self._line(start, grey=sources is self._grey_sources)

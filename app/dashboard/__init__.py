@@ -1,1 +1,1 @@
-"""The dashboard of one session: controller, main picture, playback, layout, tabs, the table of pages."""
+"""The dashboard of one session: controller, main picture, playback, layout, tabs and the table of pages."""

@@ -1,4 +1,4 @@
-"""Setting a session from an address: when its page is opened, and at every step back or forward."""
+"""Sets a session from an address: when its page is opened, and at every step back or forward."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ from .table import overlay_names, tab_names
 
 T = TypeVar("T")
 
-#: Fields that do not determine the motion. A link with a story and no fields besides these, as people write it by hand,
-#: shows the motion of the story's step.
+#: Fields that do not determine the motion. A link with a story and no other fields than these, such as people write by
+#: hand, shows the motion of the story's step.
 _NOT_A_MOTION = {"v", "story", *BROWSER_FIELDS}
 
 
 def apply_address(session: Session, query: str) -> tuple[State | None, list[str]]:
     """Set a session from an address; fields that the address leaves out get their defaults.
 
-    Returns the state in which the motion begins (None is rest), and a sentence for every refused field.
+    Returns the state in which the motion begins (None for rest), and a sentence for every refused field.
     """
     names = (*tab_names(), *(row.former for row in TABS))
     places = {"tab": names, "page": names, "embed": ("1",)}
@@ -41,7 +41,7 @@ def apply_address(session: Session, query: str) -> tuple[State | None, list[str]
         fields = {**({"curves": step.curves} if step.curves else {}), **fields}
     session.apply_view(fields)
     session.place = {name: present_tab(fields[name]) for name in places if name in fields}
-    if session.place.get("page", "") not in ("", *overlay_names()):  # a page without an overlay has a tab alone
+    if session.place.get("page", "") not in ("", *overlay_names()):  # a page without an overlay has only a tab
         session.place["tab"] = session.place.pop("page")
     session.story = fields.get("story", "")
     session.pins = tuple(_pins([fields[name] for name in PINS if name in fields], sentences))
@@ -58,7 +58,7 @@ def _pins(texts: list[str], sentences: list[str]) -> list[Pin]:
 
 
 def _read(read: Callable[[], T], sentences: list[str]) -> T | None:
-    """The result of `read`; None if it raises `BadInput`, whose sentence is appended to `sentences`."""
+    """Return the result of `read`; None if it raises `BadInput`, whose sentence is appended to `sentences`."""
     try:
         return read()
     except BadInput as problem:

@@ -15,7 +15,7 @@ from ..serve.monitoring.faults import log_fault, new_fault_id
 
 
 class Calls:
-    """Calls actions with the document locked. The changes of an action leave as one message; `failed` takes errors."""
+    """Calls actions with the document locked. The changes of an action leave as one message; errors go to `failed`."""
 
     def __init__(self, document: Document, failed: Callable[[Exception], None]) -> None:
         self._document = document
@@ -26,16 +26,16 @@ class Calls:
         self._closed = False
 
     def when_unlocked(self, action: Callable[..., None], *args: object) -> None:
-        """Call `action` now if the document is not locked, else once it is unlocked; on the event loop."""
+        """Call `action` now if the document is not locked, otherwise once it is unlocked; called on the event loop."""
         with_document_lock(self._document, partial(self.call_and_report, action, *args))
 
     def next_tick(self, action: Callable[..., None], *args: object) -> None:
-        """Call `action` in the next iteration of the event loop; from any thread."""
+        """Call `action` in the next iteration of the event loop; called from any thread."""
         if not self._closed:
             self._callbacks.next_tick(partial(self.call_and_report, action, *args))
 
     def call_later(self, seconds: float, action: Callable[..., None], *args: object) -> None:
-        """Call `action` after `seconds`; on the event loop."""
+        """Call `action` after `seconds`; called on the event loop."""
         if not self._closed:
             self._callbacks.call_later(seconds, partial(self.call_and_report, action, *args))
 
@@ -43,7 +43,7 @@ class Calls:
         """Call `action` now, with the document locked by the caller, and pass its error to `failed`."""
         if self._closed:
             return
-        with batched_changes(self._document):  # does nothing inside `run_locked`, which gathers changes already
+        with batched_changes(self._document):  # does nothing inside `run_locked`, which already gathers changes
             try:
                 action(*args)
             except Exception as error:
@@ -54,7 +54,7 @@ class Calls:
         self._closing.append(action)
 
     def close(self) -> None:
-        """Call the actions of `on_close`, and no action after that, because the session has ended.
+        """Call the actions of `on_close` and none afterwards, because the session has ended.
 
         A failing action does not prevent the next from being called.
         """

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 
 
 class Controller:
-    """One session's dashboard, and the `PageHost` of its pages.
+    """The dashboard of one session, and the `PageHost` of its pages.
 
     Everything runs with the document locked, except `next_tick` and the flags `busy`, `awaiting_picture` and
     `curve_computing`, which any thread may read.
@@ -51,7 +51,7 @@ class Controller:
         """Make views, parts and pages, connect them, and collect their actions.
 
         The motion of the first picture begins in `initial_state` if one is given. `make_calls` makes the `Calls`; tests
-        pass another class.
+        pass another one.
         """
         self._document = document
         self._calls = make_calls(document, self.show_failure)
@@ -106,7 +106,7 @@ class Controller:
     def _ready(self, message: dict[str, Any]) -> None:
         disable_nagle(self._document)
         self.views.set_compact(bool(message.get("compact")))
-        # Here and not in `entry.page`: a plain GET must not start a compiler (docs/security.md).
+        # Here rather than in `entry.page`: a plain GET must not start a compiler (docs/security.md).
         COMPILER.prepare(self.session.scene)
         self.choices.set_theme(message.get("theme"))
         self.pinned.show()
@@ -120,12 +120,12 @@ class Controller:
         looked_at.visibility_changed(visible)
 
     def _send_gallery(self, _: dict[str, Any]) -> None:
-        """Send the cards only once: the page keeps them, and no other short message has so large an answer."""
+        """Send the cards only once: the page keeps them, and no other short message has such a large answer."""
         if not self._gallery_sent:
             self._gallery_sent = True
             self.views.header.send(type="gallery", cards=cards())
 
-    # What the pages ask for
+    # The methods of `PageHost`
 
     def next_tick(self, action: Callable[..., None], *args: Any) -> None:
         """See `PageHost`."""
@@ -156,7 +156,7 @@ class Controller:
         self.sentences.log_failed_computation(error, fault)
 
     def session_dropped(self, session_context: object) -> None:
-        """Bokeh has dropped the session: see `close`."""
+        """Close the dashboard, because Bokeh has dropped the session."""
         self.close()
 
     def close(self) -> None:
@@ -217,7 +217,7 @@ class Controller:
     # Events of the parts
 
     def picture_ready(self, settled: Settled) -> None:
-        """Notify header and pins of a settled picture now, and the pages once the picture is offered."""
+        """Notify header and pins of a settled picture now, and the pages once it has been offered to the browser."""
         self.views.header.show_picture_start(settled.start, self.session)
         self.pinned.picture_ready(settled)
         self._scenes.picture_ready(settled)

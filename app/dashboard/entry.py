@@ -20,15 +20,15 @@ from .controller import Controller
 
 def page() -> None:
     """Make a new page in the document of the present request; the address may be a share link."""
-    pn.extension("katex", browser_info=False)  # Panel would add a root for it with every part
+    pn.extension("katex", browser_info=False)  # otherwise Panel would add a root for it with every part
     document = pn.state.curdoc
     if document is None:
-        raise RuntimeError("the page is made inside a request; serve it, do not call it")
+        raise RuntimeError("the page can only be made inside a request; serve it instead of calling it")
     context = document.session_context
     session = Session(label="" if context is None else session_label(context.id))
     query = _query(document)
     initial_state, sentences = apply_address(session, query) if query.strip("?") else (None, [])
-    with validate(False):  # validation takes a sixth of an opening, and the tests find such errors
+    with validate(False):  # validation takes a sixth of the time to open a page, and the tests find such errors
         controller = Controller(document, session, initial_state)
         controller.views.put_into(document)
     pn.config.exception_handler = _handler(controller)
@@ -36,15 +36,15 @@ def page() -> None:
         controller.show_message(" ".join(sentences))
     when_left(document, controller.close)
     pn.state.on_session_destroyed(controller.session_dropped)
-    METRICS.session_opened()  # counted after `when_left`, so that its end is counted, too
+    METRICS.session_opened()  # counted after `when_left`, so that its end is counted too
     controller.on_close(METRICS.session_closed)
 
 
 def _handler(controller: Controller) -> Callable[[Exception], None]:
-    """A handler that reports a failure to the controller and does not keep the controller alive.
+    """Return a handler that reports a failure to the controller without keeping the controller alive.
 
-    Panel keeps the handler as long as the document lives, and the controller has the document. With a strong reference
-    no page would ever be freed.
+    Panel keeps the handler as long as the document lives, and the controller refers to the document. With a strong
+    reference, no page would ever be freed.
     """
     show_failure = weakref.WeakMethod(controller.show_failure)
 
@@ -57,10 +57,10 @@ def _handler(controller: Controller) -> Callable[[Exception], None]:
 
 
 def _query(document: Document) -> str:
-    """The query of the address, read from the request.
+    """Return the query of the address, read from the request.
 
-    Panel's `Location` would read numbers in the query with Python's `int`, and digits that `int` refuses would be an
-    error of the server. So the page is served without `Location`.
+    Panel's `Location` would read numbers in the query with Python's `int`, and digits that `int` refuses would cause a
+    server error, so the page is served without `Location`.
     """
     context = document.session_context
     return urlsplit(context.request.uri or "").query if context is not None and context.request is not None else ""

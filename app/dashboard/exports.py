@@ -28,7 +28,7 @@ _PASSES = ("Only a settled picture can be exported as a script; a live run depen
 
 
 class Exports:
-    """Sends the share link and files; files are written in the background."""
+    """Sends the share link and exported files; the files are written in the background."""
 
     def __init__(self, host: PageHost, views: Views, curves: CurveController, pictures: MainPicture) -> None:
         self._host = host
@@ -56,7 +56,7 @@ class Exports:
             screen = self._screen(run, what)
             self._write(end, lambda: text(screen).encode())
         else:
-            raise BadInput(f"There is no file {quoted(what)} to save; there are {', '.join(EXPORTS)}.")
+            raise BadInput(f"There is no file {quoted(what)} to save; choose from {', '.join(EXPORTS)}.")
 
     def _screen(self, run: Run, what: str) -> Screen:
         session = self._host.session

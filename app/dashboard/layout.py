@@ -63,7 +63,7 @@ class Views:
         self.status_line = StatusLine(received)
 
     def set_compact(self, compact: bool) -> None:
-        """Shorten titles and leave out numbers on the axes over time, if there is little room."""
+        """Shorten titles and leave out numbers on the time axes if there is little room."""
         self.trains.set_compact(compact)
         self.energy.set_compact(compact)
         self.curve.set_compact(compact)
@@ -93,7 +93,7 @@ class Views:
 
 @cache
 def _page() -> tuple[str, dict[str, Any]]:
-    """The template of the page and its variables, the same for every session."""
+    """Return the template of the page and its variables, the same for every session."""
     return (_HERE / "dashboard.html").read_text(encoding="utf-8"), {
         "dashboard_css": style_sheet() + text("dashboard.css") + text("skeleton.css"),
         "inline_scripts": "".join(map(text, INLINE_SCRIPTS)),

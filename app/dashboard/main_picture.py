@@ -1,4 +1,4 @@
-"""The main picture, which is computed for the present knobs and sent at the pace of the browser."""
+"""The main picture, computed for the present knobs and sent at the browser's pace."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class _PictureRequest(NamedTuple):
 
 
 class _Answer(NamedTuple):
-    """A picture from a worker, and the request that it answers; None for a live step that nobody waits for.
+    """A picture from a worker, and the request that it answers; None for a live step that no request awaits.
 
     The first picture of a request has its stages; another that takes its place before it is sent inherits them.
     """
@@ -47,7 +47,7 @@ _Work = Callable[[PictureStages, TurnFlag], Iterator[Settled | LiveStep]]
 
 
 class MainPicture:
-    """Settled pictures and the live run.
+    """Computes and sends settled pictures and the live run.
 
     `show_notice` shows a message that the next picture clears. `picture_ready` is called with every settled picture
     before the picture waits for the browser.
@@ -77,7 +77,7 @@ class MainPicture:
         #: The stages of pictures in flight, by their numbers.
         self._in_flight: dict[int, PictureStages] = {}
         self._numbers = itertools.count(1)
-        #: The number of the last request whose picture has come.
+        #: The number of the last request whose picture has arrived.
         self._answered = 0
         #: Frames of the last pictures. The cache of `prepared_frames` has only weak references, so without these the
         #: event loop would prepare the frames again.
@@ -108,7 +108,7 @@ class MainPicture:
         self._live = None
 
     def _close(self) -> None:
-        """The session has ended: end all computations."""
+        """End all computations, because the session has ended."""
         self._jobs.close()
         if self.live is not None:
             self.live.close()
@@ -116,7 +116,7 @@ class MainPicture:
     # Computing
 
     def compute(self, initial_state: State | None = None) -> None:
-        """Compute a picture for the present knobs, from `initial_state` or from the start that the visitor chose."""
+        """Compute a picture for the present knobs, from `initial_state` or from the visitor's chosen start."""
         self._begun = PictureStages()
         self._request = _PictureRequest(next(self._numbers), self._begun)
         session, scene = self._session, self._session.scene
@@ -145,13 +145,13 @@ class MainPicture:
         self._jobs.submit(partial(self._answers, work, self._request, stages))
 
     def shown_run(self) -> Run | None:
-        """The motion on the screen as a run, if there is one."""
+        """Return the motion on the screen as a run, if there is one."""
         if self.live is not None:
             return self.live.window_run()
         return None if self._session.settled is None else self._session.settled.run
 
     def _begun_from(self, initial_state: State | None) -> None:
-        """Note the state in which the motion begins, with the document locked, before the first picture arrives."""
+        """Note the state in which the motion begins, before the first picture arrives; document locked."""
         if initial_state is not self._session.initial_state:
             self._session.initial_state = initial_state
             self._host.address_changed()
@@ -161,7 +161,7 @@ class MainPicture:
     @staticmethod
     def _answers(work: _Work, request: _PictureRequest | None, stages: PictureStages | None,
                  stop: TurnFlag) -> Iterator[_Answer]:
-        """The pictures of `work`, each with the request that it answers, the first with its stages."""
+        """Yield the pictures of `work`, each with the request that it answers, the first with its stages."""
         if stages is not None:
             stages.end("turn")
         for picture in work(stages or PictureStages(), stop):
@@ -188,7 +188,7 @@ class MainPicture:
     # To the browser
 
     def _take_newest(self) -> None:
-        """Fetch and accept the newest picture of a worker."""
+        """Fetch and accept the newest picture from a worker."""
         with self._lock:
             newest, self._newest = self._newest, None
         if newest is not None:
@@ -212,10 +212,10 @@ class MainPicture:
         self._accepted = result
         self._pacer.offer(result)
         if live:
-            self.next_live_step()  # so that two are in flight from the first step on, before any knob is moved
+            self.next_live_step()  # so that two are in flight from the first step on, even before a knob is moved
 
     def _failed(self, error: Exception) -> None:
-        """Report a failure; later live steps answer no request."""
+        """Report a failure; after it, live steps answer no request."""
         self._request = self._begun = None
         self._host.show_failure(error)
 
@@ -242,12 +242,12 @@ class MainPicture:
             show_live(self._views, number, result, self._session.playing)
 
     def show_regime(self) -> None:
-        """Update the status line: the curve may now show on which peak or valley the motion lies."""
+        """Update the status line, since the curve may now show on which peak or valley the motion lies."""
         if self._sent is not None:
             show_regime(self._views, self._sent)
 
     def painted(self, number: object, browser_ms: object = None) -> None:
-        """Picture `number` is on the screen; the browser's script took `browser_ms` to draw it [ms]."""
+        """Note that picture `number` is on the screen; the browser's script took `browser_ms` [ms] to draw it."""
         if not isinstance(number, int):
             return
         if number in self._in_flight:
@@ -264,7 +264,7 @@ class MainPicture:
             self._pacer.offer(shown)
 
     def restart(self) -> None:
-        """The page is visible again: stop waiting for acknowledgements of pictures in flight."""
+        """Stop waiting for acknowledgements of pictures in flight, because the page is visible again."""
         self._in_flight.clear()
         self._pacer.restart()
 

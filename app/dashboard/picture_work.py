@@ -1,4 +1,4 @@
-"""The computation of the main picture in threads; `main_picture.py` requests it and shows the results."""
+"""The computation of the main picture in worker threads; `main_picture.py` requests it and shows the results."""
 
 from __future__ import annotations
 
@@ -28,18 +28,18 @@ from ..session.live import LiveRun, LiveStep
 
 
 def size_of(settled: Settled) -> int:
-    """Memory of a picture [bytes]: its arrays and a small overhead."""
+    """Return the memory of a picture [bytes]: its arrays and a small overhead."""
     arrays = [*vars(settled.run).values(), settled.state.displacement, settled.state.velocity]
     return 4096 + sum(array.nbytes for array in arrays if isinstance(array, np.ndarray))
 
 
-#: Pictures of all sessions. The last picture of each scene is kept for the next session that asks, in at most 100 MB.
+#: Pictures of all sessions. The last picture of each scene is cached for later sessions, in at most 100 MB.
 PICTURES_SHARED: Shared[Settled] = Shared(PICTURES, 100_000_000, size_of, lambda pictures: pictures[-1:])
 
 
 def _computed(scene: Scene, initial_state: State | None, most: float, stages: PictureStages,
               stop: TurnFlag) -> Iterator[Settled]:
-    """Successive pictures on the way to the steady state; `TooLong` after `most` seconds of computing."""
+    """Yield successive pictures on the way to the steady state; raise `TooLong` after `most` seconds of CPU time."""
     began = time.thread_time()
     pictures = settling(scene, start=initial_state, samples=samples_for(scene), stop=stop)
     first = next(pictures)
@@ -57,20 +57,20 @@ def _computed(scene: Scene, initial_state: State | None, most: float, stages: Pi
 
 @dataclass(frozen=True)
 class SettledRequest:
-    """The values of a request for a settled picture. Workers do not read the session, so they are kept here."""
+    """The values of a request for a settled picture. They are kept here because workers do not read the session."""
 
     scene: Scene
     #: The state in which the motion begins; None means rest.
     initial_state: State | None
     #: Whether the picture is computed no matter how long it takes.
     insisted: bool
-    #: Whether the energy residual is computed, too.
+    #: Whether the energy residual is computed as well.
     account: bool
 
 
 @contextmanager
 def _refusing(scene: Scene) -> Iterator[None]:
-    """Turn the failure of a picture that takes too long into a refusal of its scene."""
+    """Turn the failure of a picture that takes too long into a `RefusedPicture` of its scene."""
     try:
         yield
     except (OverBudget, TooLong) as problem:
@@ -80,8 +80,8 @@ def _refusing(scene: Scene) -> Iterator[None]:
 class PictureWork:
     """The work of threads for one session's pictures. It neither reads the session nor writes to the page.
 
-    `show_notice` and `begun_from` are called with the document locked: with a sentence, and with the state in which a
-    settled motion begins (None is rest).
+    `show_notice` is called with a sentence, `begun_from` with the state in which a settled motion begins (None for
+    rest); both are called with the document locked.
     """
 
     def __init__(self, caller: Caller, cpu_time: CpuTime, show_notice: Callable[[str], None],
@@ -92,12 +92,12 @@ class PictureWork:
         self._begun_from = begun_from
 
     def settled_pictures(self, request: SettledRequest, stages: PictureStages, stop: TurnFlag) -> Iterator[Settled]:
-        """The pictures of a request; one that takes too long is refused."""
+        """Yield the pictures of a request; one that takes too long is refused."""
         with _refusing(request.scene):
             yield from self._pictures_of(request, stages, stop)
 
     def _pictures_of(self, request: SettledRequest, stages: PictureStages, stop: TurnFlag) -> Iterator[Settled]:
-        """The pictures of a request, each better than the one before. The last may have an energy account.
+        """Yield the pictures of a request, each better than the last; the final one may have an energy account.
 
         Pictures from rest are shared with other sessions, unless the visitor has insisted on them.
         """
@@ -120,7 +120,7 @@ class PictureWork:
 
     def live_step(self, newest_run: Callable[[], LiveRun | None], samples: int | None, speed: float,
                   insisted: Scene | None, stages: PictureStages, stop: TurnFlag) -> Iterator[LiveStep]:
-        """The next step of the live run: by `samples`, or by the viewing time that has passed at `speed`."""
+        """Yield the next step of the live run: by `samples`, or by the viewing time that has passed at `speed`."""
         live = newest_run()  # another run may have begun while this step waited
         if live is None:
             return
@@ -140,10 +140,10 @@ class PictureWork:
 
         Another process compiles these kernels, and the other kernels of the picture and its curve.
         """
-        needed = MOTION_KERNELS if scene.cuts_tension else (FIXED_STEP_KERNELS,)  # dop853 settles it then
+        needed = MOTION_KERNELS if scene.cuts_tension else (FIXED_STEP_KERNELS,)  # dop853 settles tension cuts
         if not COMPILER.has(scene, *needed):
             words = compiling_words("the kernels for this set of effects", FIXED_STEP_KERNELS).capitalize()
-            self._caller.next_tick(self._show_notice, f"{words}; the picture then appears by itself.")
+            self._caller.next_tick(self._show_notice, f"{words}; the picture then appears automatically.")
             for piece in PICTURE_PIECES:
                 COMPILER.ask(scene, piece)
             if not all(COMPILER.await_piece(scene, piece, stop) for piece in needed):

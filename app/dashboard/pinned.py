@@ -26,9 +26,9 @@ from .layout import Views
 
 
 class Pinned:
-    """Actions of the tab “numbers”.
+    """The pins of one session, and their actions in the tab “numbers”.
 
-    A pin is a scene and an initial state, so it fits into a link; its motion is computed.
+    A pin is a scene and an initial state, so it fits into a link; its motion is computed again from these.
     """
 
     def __init__(self, host: PageHost, views: Views) -> None:
@@ -68,7 +68,7 @@ class Pinned:
         if self._session.pins and settled.final:
             self._show()
 
-    # What the visitor does
+    # Actions of the visitor
 
     def _add(self) -> None:
         session = self._session
@@ -113,7 +113,7 @@ class Pinned:
             job.next_tick(self._settled, pin, settled.run)
 
     def _sweep(self, missing: Sequence[Scene], cpu_time: CpuTime, job: Job) -> None:
-        """Compute the curves of pins after the present curve."""
+        """Compute the curves of pins, once the present curve is done."""
         for key in missing:
             job.compile(key, *PICTURE_PIECES)
             job.give_way(lambda: self._host.busy or self._host.curve_computing)
@@ -132,7 +132,7 @@ class Pinned:
         self.scene_changed()
 
     def _other_curves(self) -> list[Scene | None]:
-        """The scene of each pin's curve; None if it is the present curve."""
+        """Return the scene of each pin's curve; None if it is the present curve."""
         self._curves = {key: points for key, points in self._curves.items()
                         if key in [without_frequency(pin.scene) for pin in self._session.pins]}
         now = without_frequency(self._session.scene)
@@ -162,6 +162,6 @@ class Pinned:
 
 
 def _key(pin: Pin) -> str:
-    """The key of a pin: its link, and the identity of an initial state that is too long for a link."""
+    """Return the key of a pin: its link, plus the identity of an initial state that is too long for a link."""
     short = pin.initial_state is None or len(pin.initial_state.displacement) <= MOST_BEADS
     return pin.text if short else f"{pin.text} {id(pin.initial_state)}"

@@ -13,7 +13,7 @@ from .main_picture import MainPicture
 
 
 class Playback:
-    """Actions of the bar on top that deal with time; `compute` requests a picture."""
+    """Actions of the header that concern time; `compute` requests a picture."""
 
     def __init__(self, session: Session, header: Header, pictures: MainPicture, compute: Callable[[], None],
                  show_message: Callable[[str], None]) -> None:
@@ -54,15 +54,15 @@ class Playback:
         self._pictures.next_live_step()
 
     def _reconnected(self, message: dict[str, Any]) -> None:
-        """The browser has lost its server and opened its share link again; the link does not contain the pause."""
+        """Restore the pause, which no link contains, after a lost connection, and say what could not be restored."""
         if not message.get("playing"):
             self._playing({"value": False})
             self._header.show_session(self._session)
         scene, different = self._session.scene, []
         if self._session.mode == "live":
-            different.append("the live run has begun anew")
+            different.append("the live run has started again")
         elif scene.is_driven and scene.N > MOST_BEADS:  # the link has no room for its initial state
-            different.append("the motion begins at rest")
+            different.append("the motion starts from rest")
         if message.get("uploaded"):
             different.append("your uploaded data are gone")
         but = f", but {' and '.join(different)}" if different else ""

@@ -60,7 +60,7 @@ class SceneChanges:
     def show_preset(self, initial_state: State | None, curves: str) -> None:
         """Show the session's scene, another preset, in the whole dashboard; its motion begins in `initial_state`.
 
-        `curves` is the field of a link; an empty text leaves the selected curves as they are.
+        `curves` is the field of a link; if it is empty, the same curves stay selected.
         """
         scene = self._session.scene
         self._views.scales.forget()
@@ -74,7 +74,7 @@ class SceneChanges:
         self.request_picture(initial_state)
 
     def choose_frequency(self, frequency: object) -> None:
-        """Set the knob f to a frequency that was clicked on the curve."""
+        """Set the knob f to a frequency clicked on the curve."""
         self._session.change("f", clicked_frequency(self._session.scene, frequency))
         self._send_knob_values()
         self._follow_knobs()
@@ -87,7 +87,7 @@ class SceneChanges:
         self._pictures.compute(initial_state)
 
     def picture_ready(self, settled: Settled) -> None:
-        """Notify the pages after a picture is offered to the browser, unless another was requested by then."""
+        """Notify the pages once a picture is offered to the browser, unless another has been requested by then."""
         self._picture_for_pages = settled
         self._next_tick(self._notify_of_picture)
 
@@ -97,7 +97,7 @@ class SceneChanges:
             for page in self._pages:
                 page.picture_ready(settled)
 
-    # What the visitor does
+    # Actions of the visitor
 
     def _set(self, message: dict[str, Any]) -> None:
         try:
@@ -117,10 +117,10 @@ class SceneChanges:
         self.show_preset(None, "")
 
     def _go(self, message: dict[str, Any]) -> None:
-        """Set the session, and its picture to the last digit, from the address of a step back or forward.
+        """Restore the session, with exactly the same picture, from the address of a step back or forward.
 
-        The browser is notified in any case. Until then it takes every change for a part of the step (`Steps.returning`
-        of address.js), and the visitor could undo no further change.
+        The browser is always notified. Until then, it counts every change as a part of the step (`Steps.returning` in
+        address.js), and the visitor could undo no further change.
         """
         try:
             self._apply(str(message.get("query", "")))
@@ -143,10 +143,10 @@ class SceneChanges:
             self._show_turned_knobs(initial_state)
         self._show_message(" ".join(refused))
 
-    # What follows
+    # Consequences
 
     def _follow_mode(self, state: State | None = None) -> None:
-        """Begin a live run in live mode, if there is none or if it has to begin in `state`; end it in settled mode."""
+        """Begin a live run in live mode if there is none or it must begin in `state`; end it in settled mode."""
         if self._session.mode == "settled":
             self._pictures.end_live()
         elif state is not None or self._pictures.live is None:

@@ -22,14 +22,14 @@ from ..session.budget import RefusedPicture
 from ..session.page import Actions
 from ..session.session import Session
 
-#: Most errors of scripts that are logged for one session: a script that fails may fail at every frame.
+#: Largest number of script errors logged for one session: a script that fails may fail at every frame.
 MOST_SCRIPT_ERRORS = 5
-#: Longest text of such an error that is logged [characters].
+#: Length to which the text of such an error is cut [characters].
 LONGEST_SCRIPT_ERROR = 400
 
 
 class Sentences:
-    """The sentence over the status line. `compute` requests a picture of the present knobs."""
+    """The message above the status line. `compute` requests a picture of the present knobs."""
 
     def __init__(self, session: Session, line: StatusLine, compute: Callable[[], None]) -> None:
         self._session = session
@@ -43,7 +43,7 @@ class Sentences:
     def show_message(self, sentence: str, refused: Scene | None = None) -> None:
         """Show a message until the next valid action; an empty text removes it.
 
-        A button beside the message computes the scene that was `refused` because it takes long.
+        A button next to the message computes the scene that was `refused` because it takes too long.
         """
         self._session.sentence = sentence
         self._refused = refused
@@ -58,7 +58,7 @@ class Sentences:
         """Show a failure as a message; the last good picture stays."""
         if isinstance(error, RefusedPicture):
             METRICS.count("refused_pictures")
-            if error.scene == self._session.scene:  # otherwise a knob has moved since
+            if error.scene == self._session.scene:  # otherwise a knob has moved since then
                 self.show_message(str(error), error.scene)
         elif isinstance(error, BadInput):
             self.show_message(str(error))
@@ -71,9 +71,9 @@ class Sentences:
                                      "picture stays. Move the knob back or reset, and please report it.")
 
     def report_fault(self, error: Exception, sentence: str, fault: str = "") -> None:
-        """Log and count an error of granchain itself, and show `sentence` with an id unless the sentence is empty.
+        """Log and count an error of granchain itself, and show `sentence` with an id unless it is empty.
 
-        `fault` is the id if the visitor sees it elsewhere; otherwise it is made here.
+        `fault` is the id, if the visitor sees it elsewhere; otherwise a new one is made.
         """
         fault = fault or new_fault_id()
         log_fault(error, fault, where=self._where())
@@ -81,21 +81,21 @@ class Sentences:
             self.show_message(with_fault_id(sentence, fault))
 
     def log_failed_computation(self, error: Exception, fault: str) -> None:
-        """Log a computation that could not be finished, under the id that its sentence has."""
+        """Log a computation that could not be finished, under the id shown with its message."""
         log_failed_computation(error, fault, self._where())
 
     def _where(self) -> dict[str, str]:
-        """Fields of a line of the log: the session's label, and the link by which the state can be restored.
+        """Return fields for a log line: the session's label, and a link that restores the state.
 
-        The link has scene, knobs and view, and nothing of an uploaded file.
+        The link contains scene, knobs and view, but nothing of an uploaded file.
         """
         where = {"session": self._session.label} if self._session.label else {}
-        with contextlib.suppress(Exception):  # the state may be what has failed; the fault must be logged all the same
+        with contextlib.suppress(Exception):  # even if the state itself is at fault, the fault must be logged
             where["link"] = self._session.link
         return where
 
     def _script_error(self, message: dict[str, Any]) -> None:
-        """Log an error of a script in the browser as one line, because anybody may send any text as its words."""
+        """Log an error of a script in the browser as one line of JSON, because anyone could send any text."""
         words = message.get("what")
         if not isinstance(words, str) or self._script_errors >= MOST_SCRIPT_ERRORS:
             return
@@ -107,7 +107,7 @@ class Sentences:
                                 insist=self._refused is not None)
 
     def _insist(self, _: dict[str, Any]) -> None:
-        """Compute the refused scene although it takes long; other sessions still get their turns."""
+        """Compute the refused scene although it takes too long; other sessions still get their turns."""
         if self._refused is not None and self._refused == self._session.scene:
             self._session.insisted = self._refused
             self.show_message("")

@@ -1,4 +1,4 @@
-"""Showing a picture: one batch of changes to data sources, and one message to the chain."""
+"""Shows a picture with one batch of changes to data sources and one message to the chain."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def show_settled(views: Views, number: int, settled: Settled) -> None:
 
 
 def show_regime(views: Views, settled: Settled) -> None:
-    """Update the status line; a complete curve shows on which peak or valley the motion lies."""
+    """Update the status line; with a complete curve, it says on which peak or valley the motion lies."""
     run = settled.run
     force = views.trains.output_words(run.max_output_force, run.force_errors.output)
     views.status_line.update_state(**settled_entries(settled, views.curve.place(run), force))
@@ -54,7 +54,7 @@ def show_live(views: Views, number: int, step: LiveStep, running: bool) -> None:
 
 
 def _periods_shown(frames: Frames, scene: Scene) -> str:
-    """The length of the time axis in drive periods, with an orbit's repetitions; empty without a drive."""
+    """Return the length of the time axis in drive periods, with an orbit's repetitions; empty without a drive."""
     count = round(float(frames.time[-1]) * scene.f)
     return f", {count} drive period{'s' * (count != 1)}" if scene.is_driven else ""
 

@@ -53,9 +53,9 @@ class PageSpec:
     `page` is made with the host and the view. `view` is an overlay; tabs.js draws a page without an overlay in its tab.
     `placeholder` is the text of the tab until the page has results. A tab with the `height` "taller" gets more room
     than usual, and a "tallest" tab also takes the place of the curve, except on a phone. `group` is one of `GROUPS`. A
-    page with `works_hidden` goes on while its window is hidden or its tab is scrolled off the screen; any other page is
-    then hidden (`Page.visibility_changed`). While an overlay with `needs_curve` is open, the resonance curve is
-    computed as if it were on the screen. `label` is the text on the tab, where its row has no room for the name.
+    page with `works_hidden` keeps working while its window is hidden or its tab is scrolled off the screen; any other
+    page then counts as hidden (`Page.visibility_changed`). While an overlay with `needs_curve` is open, the resonance
+    curve is computed as if it were on the screen. `label` is the text on the tab, if its row has no room for the name.
     """
 
     name: str
@@ -69,7 +69,7 @@ class PageSpec:
     label: str = ""
 
 
-#: The groups of tabs; a tab without a group stands apart at the end.
+#: The groups of tabs; a tab without a group is at the end, separate from the others.
 GROUPS = ("learn", "try", "check")
 
 #: The pages, and the tabs without a page, in the order of the tabs; the first tab is open by default.
@@ -98,7 +98,7 @@ TABS: tuple[PageSpec | TabSpec, ...] = (
 PAGES = tuple(row for row in TABS if isinstance(row, PageSpec))
 
 def check_names(rows: Sequence[PageSpec | TabSpec]) -> None:
-    """Raise `ValueError` if two tabs have one name, or a tab has the name of the curve."""
+    """Raise `ValueError` if two tabs have the same name, or a tab has the name of the curve."""
     names = [CURVE_NAME, *(row.name for row in rows)]
     for name in names:
         if names.count(name) > 1:
@@ -109,7 +109,7 @@ check_names(TABS)
 
 
 def described_tabs() -> list[dict[str, Any]]:
-    """The tabs for the browser, in the order of the groups."""
+    """Return the tabs as the browser gets them, in the order of the groups."""
     order = (*GROUPS, "")
     return [{"name": row.name, "placeholder": row.placeholder, "height": row.height, "group": row.group,
              "label": getattr(row, "label", "") or row.name}
@@ -117,16 +117,16 @@ def described_tabs() -> list[dict[str, Any]]:
 
 
 def watched_pages() -> dict[str, dict[str, bool]]:
-    """The pages for the browser, which determines which of them are visible."""
+    """Return the pages as the browser gets them; it determines which of them are visible."""
     return {row.name: {"overlay": row.view is not None, "works_hidden": row.works_hidden,
                        "needs_curve": row.needs_curve} for row in PAGES}
 
 
 def tab_names() -> tuple[str, ...]:
-    """The names of the tabs in a link."""
+    """Return the names of the tabs in links."""
     return tuple(row.name for row in TABS)
 
 
 def overlay_names() -> tuple[str, ...]:
-    """The names of the overlays."""
+    """Return the names of the overlays."""
     return tuple(row.name for row in PAGES if row.view)

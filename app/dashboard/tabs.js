@@ -17,9 +17,9 @@ import { lookAtTab, regimesTab } from "./scene_tabs.js";
 import { explainTerms } from "./terms.js";
 import { watchVisibility } from "./visibility.js";
 
-// Functions that make the tabs. If a function returns `show`, it draws the tab again when its page publishes something.
-// A tab that `updatesItself` is not rebuilt when the state changes, so the element under the pointer stays. A tab without
-// an overlay needs its function here (tests/dashboard/test_table.py).
+// Functions that make the tabs. If a function returns `show`, this redraws the tab when its page publishes something.
+// A tab that `updatesItself` is not rebuilt when the state changes, so the element under the pointer stays. A tab
+// without an overlay needs a function here (tests/dashboard/test_table.py).
 const TABS = {
   stories: storiesTab,
   "look at": lookAtTab,
@@ -35,8 +35,7 @@ const TABS = {
   data: dataTab,
 };
 
-// The tab without a function in TABS: the sentence of its page or its placeholder, and a button that opens the page if
-// it is an overlay.
+// A tab without a function in TABS: its page's sentence or placeholder and, for an overlay, a button that opens it.
 function plainTab({ state: { pages } }, { name, placeholder }) {
   const line = paragraph();
   const show = () => {
@@ -49,7 +48,7 @@ function plainTab({ state: { pages } }, { name, placeholder }) {
 
 const READABLE = 250; // ms between two changes of the numbers
 
-// The button that lets the tabs take the place of the curve, or return it.
+// The button that lets the tabs take the place of the curve, or give it back.
 class LargerButton {
   constructor() {
     this.wanted = false; // whether the visitor asked for it
@@ -64,7 +63,7 @@ class LargerButton {
   set(tall) {
     this.tall = tall;
     document.getElementById("curves").classList.toggle("tall", tall);
-    this.el.title = tall ? "Smaller, the curve comes back" : "Larger, over the curve";
+    this.el.title = tall ? "Smaller: show the curve again" : "Larger: cover the curve";
     this.el.ariaPressed = String(tall);
   }
 }
@@ -79,8 +78,8 @@ class Tabs {
     this.redraw = () => {};
     const groups = [...model.state.groups, ""].map((group) => this.group(group, rows));
     this.tabs = groups.flatMap((group) => [...group.querySelectorAll("[role=tab]")]);
-    this.list = element("div", { role: "tablist", ariaLabel: "what stands below" }, ...groups);
-    // The larger button comes first because it floats; so a second line of tabs has the whole width.
+    this.list = element("div", { role: "tablist", ariaLabel: "content of the panel below" }, ...groups);
+    // The larger button comes first because it floats, so that a second line of tabs has the whole width.
     this.larger = new LargerButton();
     const top = element("div", { className: "tabs" }, this.larger.el, this.list);
     this.list.addEventListener("keydown", (event) => this.moveByKey(event));
@@ -105,7 +104,7 @@ class Tabs {
     new MutationObserver(look).observe(body, { childList: true, subtree: true, attributes: true, characterData: true });
   }
 
-  // The tabs of a group, after its name.
+  // The name of a group, followed by its tabs.
   group(name, rows) {
     const tabs = rows.filter((row) => row.group === name).map((row) => this.tab(row));
     const label = name ? [element("small", { textContent: name })] : [];
@@ -184,7 +183,7 @@ export function render({ model }) {
     window.granchain.closePage();
     tabs.choose("numbers");
   });
-  // While a knob moves, numbers come faster than anybody can read, and drawing tables takes time from the pictures.
+  // While a knob moves, numbers arrive faster than anyone can read, and drawing tables takes time from the pictures.
   let waiting = 0;
   window.granchain.on("numbers-received", () => {
     if (waiting) return;

@@ -19,8 +19,8 @@ def put_into(document: Document, parts: Mapping[str, Component], plots: Iterable
              variables: Mapping[str, Any]) -> None:
     """Make each part and each plot a root, for `embed(roots.NAME)` in the template.
 
-    The name of a part is its key in `parts`; a plot has its own name. A part is added by Panel's `server_doc`; a plot
-    needs no Panel. `pn.Template` would add parts that this page does not use: a second layout around all roots, a
+    The name of a part is its key in `parts`; a plot has its own name. Panel's `server_doc` adds a part; plots are added
+    without Panel. `pn.Template` would add things that this page does not use: a second layout around all roots, a
     design, and a configuration that is set and restored for each part.
     """
     with models_collected_once(document):
@@ -36,5 +36,5 @@ def put_into(document: Document, parts: Mapping[str, Component], plots: Iterable
 
 @cache
 def _compiled(text: str) -> Template:
-    """The compiled template; it extends the template that Panel passes as the variable `base`."""
+    """Return the compiled template, which extends the one that Panel passes as the variable `base`."""
     return Environment(trim_blocks=True, lstrip_blocks=True).from_string(text)

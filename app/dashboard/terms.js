@@ -1,5 +1,5 @@
-// Definitions of terms: hover, focus or touch shows the definition from docs/glossary.md. In each text only the first
-// use of a term has its definition.
+// Definitions of terms: hovering over a term, focusing or touching it shows its definition from docs/glossary.md. In
+// each text, only the first use of a term has its definition.
 
 import { explainSuccessor, hideMeaning, nowExplained, showMeaning } from "../parts/toolkit/bubble.js";
 import { element } from "../parts/toolkit/dom.js";
@@ -11,7 +11,7 @@ function termOf(words, name, meaning) {
   term.dataset.meaning = `${name}: ${meaning}`;
   const show = () => showMeaning(term, term.dataset.meaning);
   for (const begin of ["focus", "click"]) term.addEventListener(begin, show);
-  // A resting pointer under which the page moves shows nothing.
+  // Nothing is shown if the page moves under a resting pointer.
   term.addEventListener("pointermove", ({ movementX, movementY }) => {
     if (movementX || movementY) show();
   });

@@ -1,24 +1,24 @@
-// Which pages are visible to the visitor: most of them compute and move only then.
+// Which pages the visitor can see: most of them compute and move only while they are visible.
 
 import { onScreen, PHONE } from "../parts/toolkit/dom.js";
 
 const { curveName: CURVE_NAME } = window.pageConstants; // app/session/page_constants.py
 
-// Calls `tell(name, value)` when a visitor begins or ceases to look at a page or at the curve. A page is looked at in
-// its tab, or as an overlay, which hides tabs and curve. A page that works hidden counts as looked at while it is
-// open, even if its window is hidden or its tab is scrolled off the screen. The curve counts as looked at on a phone and
-// in a story, because the status line takes names from it. Scripts find the same names in `granchain.visible`; the event
-// "visible" announces a change.
+// Calls `report(name, value)` when a page or the curve becomes visible to the visitor or stops being visible. A page is
+// visible in its tab, or as an overlay, which hides tabs and curve. A page that works while hidden counts as visible
+// while it is open, even if its window is hidden or its tab is scrolled off the screen. The curve always counts as
+// visible on a phone and in a story, because the status line takes names from it. Scripts find the same names in
+// `granchain.visible`; the event "visible" announces a change.
 export function watchVisibility(pages, report) {
   const { granchain } = window;
   const shown = { tabs: true, curve: true }; // which of these elements are on the screen
   let tab = "";
   let inStory = false; // whether a story is shown
-  granchain.visible = new Set([CURVE_NAME]); // the state with which the server starts
+  granchain.visible = new Set([CURVE_NAME]); // the state that the server starts with
 
   const isOpen = (name) => (granchain.overlay ?? tab) === name;
   const isSeen = (name) => !document.hidden && (granchain.overlay === name || shown.tabs);
-  // A page that has published nothing is not built yet; it would miss messages sent to it.
+  // A page that has not published anything is not built yet, and would miss messages sent to it.
   const isBuilt = (name) => !pages[name].overlay || granchain.pages.has(name);
   const isVisible = (name) => isOpen(name) && isBuilt(name) && (pages[name].works_hidden || isSeen(name));
 

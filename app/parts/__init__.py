@@ -1,1 +1,1 @@
-"""The parts that are always on the page, a folder each, and the elements of which parts and pages are made."""
+"""The parts that are always on the page, one folder each, and the elements that parts and pages are built from."""

@@ -1,1 +1,1 @@
-"""The server's machinery, a folder for each task."""
+"""The server's machinery, one folder for each task."""

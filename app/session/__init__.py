@@ -1,1 +1,1 @@
-"""One session and what its pages share: hooks, host, tasks, share links, checks of messages."""
+"""One session and everything its pages share: hooks, host, tasks, share links and message checks."""

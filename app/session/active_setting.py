@@ -1,4 +1,4 @@
-"""The method and setting that the main page uses now, and its place among the measured rows."""
+"""The method and setting in use on the main page, and its place among the measured rows."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class PlacedSetting:
 
 
 def shown_setting(scene: Scene, settled: Settled | None, live: bool) -> MethodSetting:
-    """The setting of the last computation of the picture, by the rule of steady/settling/refine_orbit.py."""
+    """Return the setting of the last computation of the picture, by the rule of steady/settling/refine_orbit.py."""
     if live:
         return LIVE_SETTING
     if settled is None:
@@ -37,7 +37,7 @@ def shown_setting(scene: Scene, settled: Settled | None, live: bool) -> MethodSe
 
 
 def locate(setting: MethodSetting, rows: Sequence[Row]) -> PlacedSetting | None:
-    """The place of `setting` on the measured line of its method; None until the line has two points."""
+    """Return the place of `setting` on the measured line of its method; None until the line has two points."""
     value = setting.tolerance if METHODS[setting.method].error_control else float(setting.refine)
     known = sorted((row.value, row.error, row.wall_s) for row in rows
                    if row.method == setting.method and not row.failure and 0.0 < row.error < np.inf)

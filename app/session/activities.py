@@ -13,13 +13,13 @@ Activity = tuple[str, str, str]
 
 
 def picture_activities(session: Session, busy: bool) -> list[Activity]:
-    """The chain and its pictures, the live run, the steady state and its Lyapunov exponent."""
+    """Return the activities of the chain and its pictures, the live run, the steady state and its Lyapunov exponent."""
     settled, live = session.settled, session.mode == "live"
     running = COMPUTING if busy else READY
     return [
         ("chain, map, forces", running, f"from one {'live' if live else 'settled'} run"),
         ("live run", (COMPUTING if session.playing else READY) if live else OFF,
-         ("goes on" if session.playing else "paused") if live else "the page shows the steady state"),
+         ("running" if session.playing else "paused") if live else "the page shows the steady state"),
         ("steady state", OFF if live else running,
          "not computed in live mode" if live else "not found yet" if settled is None else settled.regime.sentence),
         ("Lyapunov exponent", *_lyapunov(None if live else settled)),
@@ -27,12 +27,12 @@ def picture_activities(session: Session, busy: bool) -> list[Activity]:
 
 
 def account_activity(session: Session, busy: bool) -> Activity:
-    """The energy account, which is computed after the picture if the account is switched on."""
+    """Return the activity of the energy account, which is computed after the picture if it is switched on."""
     return ("energy account", *_account(session, busy))
 
 
 def _lyapunov(settled: Settled | None) -> tuple[str, str]:
-    """State and detail of the exponent, which is computed for motions that do not become periodic."""
+    """Return state and detail of the exponent, which is computed for motions that do not become periodic."""
     if settled is None or settled.regime.lyapunov is None:
         return OFF, "only for motions that do not become periodic"
     return READY, f"{exponent_words(*settled.regime.lyapunov)} per period"

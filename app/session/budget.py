@@ -12,24 +12,24 @@ from .scene_facts import slider_range
 
 #: Longest time of a first picture, unless the visitor asks for it anyway [s].
 FIRST_PICTURE = 5.0
-#: Processor time after which the search for the steady state of one picture is given up [s].
+#: Processor time after which the search for a picture's steady state is given up [s].
 WHOLE_PICTURE = 120.0
 #: Longest time of a resonance curve that the page computes unasked [s].
 UNASKED_CURVE = 120.0
 
-#: Drive periods before the first picture, and in it.
+#: Drive periods before and in the first picture.
 _FIRST_PICTURE_PERIODS = 2 + PERIODS
-#: Drive periods of all points of a curve: some 75 to 150 points of a hundred periods.
+#: Drive periods of all points of a curve: about 75 to 150 points of a hundred periods.
 _CURVE_PERIODS = 10_000
 
 
 def check_first_picture(scene: Scene) -> None:
-    """Raise `OverBudget` if the first picture would take too long; its message says what would fit."""
+    """Raise `OverBudget` if the first picture would take too long; the message says what would fit."""
     refuse_long_picture(scene, _FIRST_PICTURE_PERIODS, samples_for(scene), FIRST_PICTURE)
 
 
 class RefusedPicture(BadInput):
-    """The picture of a scene would take too long, or took too long; the visitor may ask for it anyway."""
+    """The picture of a scene would take or took too long; the visitor may ask for it anyway."""
 
     def __init__(self, scene: Scene, sentence: str) -> None:
         super().__init__(sentence)
@@ -40,13 +40,13 @@ class TooLong(BadInput):
     """The steady state was not found within the time of one picture."""
 
     def __init__(self) -> None:
-        super().__init__(f"After {WHOLE_PICTURE:g} s of computing this chain has not settled; the picture shows the "
+        super().__init__(f"After {WHOLE_PICTURE:g} s of computing, this chain has not settled; the picture shows the "
                          "motion so far.")
 
 
 @functools.lru_cache(maxsize=64)
 def curve_affordable(scene: Scene) -> bool:
-    """Whether the scene has a curve that is short enough to be computed unasked.
+    """Return whether the scene has a curve that is short enough to be computed unasked.
 
     The time is estimated at the frequency in the middle of the range.
     """

@@ -1,4 +1,4 @@
-"""Debouncing: an action is called when nothing has moved for a while."""
+"""Debouncing: an action is called once nothing has moved for a while."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ class Debounce:
         self.pending = False
 
     def start(self, action: Callable[..., None], *args: Any) -> None:
-        """Call `action` after the quiet time, in place of an action that was started before."""
+        """Call `action` after the quiet time, instead of any action that was started before."""
         self._last += 1
         self.pending = True
         self._host.call_later(self._seconds, self._run, self._last, action, args)
 
     def cancel(self) -> None:
-        """Forget the action that waits."""
+        """Forget the waiting action."""
         self._last += 1
         self.pending = False
 

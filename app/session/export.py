@@ -1,4 +1,4 @@
-"""Exports: the picture's data as tables, and a program that computes the data again."""
+"""Exports: the picture's data as tables, and as a program that computes them again."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from granchain_core.results.regime_columns import evidence_columns
 from ..frames import jumps_of
 from .scene_facts import without_frequency
 
-#: The fields of a run by the names that the forces have in a program.
+#: The fields of a run, by the names of the forces in an exported program.
 _FORCES = {"largest output force [N]": "max_output_force", "its elastic part [N]": "max_output_force_elastic",
            "largest input force [N]": "max_input_force"}
-#: Relative difference above which a program reports another result than the page: half of the last of six digits.
+#: Relative difference above which a program reports that its result differs from the page: half of the sixth digit.
 _SAME_DIFFERENCE = 5e-6
 
 
 @dataclass(frozen=True, eq=False)
 class Screen:
-    """A settled picture with its initial state (None is rest), its complete curves by their start, and its address."""
+    """A settled picture with its initial state (None for rest), its complete curves by start, and its address."""
 
     run: Run
     initial_state: State | None
@@ -41,7 +41,7 @@ class Screen:
 
 
 def trains_csv(run: Run) -> str:
-    """The force trains and the drive, one row a sample. Comments above list the jumps between samples, from 0."""
+    """Return force trains and drive, one row per sample, below comments that list the jumps from 0 between samples."""
     comments = [f"# {name} force jumps from 0 to {float(force)!r} N at {float(time)!r} s"
                 for name, contact in (("input", 0), ("output", run.scene.N))
                 for time, force in jumps_of(run, contact)]
@@ -53,9 +53,9 @@ def trains_csv(run: Run) -> str:
 
 
 def curve_csv(curves: Mapping[str, Sequence[CurvePoint]]) -> str:
-    """The resonance curves, one row a point: largest forces, and the regime with its evidence.
+    """Return the resonance curves, one row per point: largest forces, and the regime with its evidence.
 
-    `claim` is the stated relative error of the output force. The cell of an unknown number is empty.
+    `claim` is the stated relative error of the output force. The cells of unknown numbers are empty.
     """
     all_points = [(start, point) for start, points in curves.items() for point in points]
     evidence = evidence_columns([point.regime for _, point in all_points], "frequency")
@@ -76,12 +76,12 @@ def curve_csv(curves: Mapping[str, Sequence[CurvePoint]]) -> str:
 
 
 def script(screen: Screen) -> str:
-    """A Python program that computes the picture and its curves again, and says whether its results agree."""
+    """Return a Python program that computes the picture and its curves again and says whether the results agree."""
     return "\n\n".join(source for _, source in _pieces(screen)) + "\n"
 
 
 def notebook(screen: Screen) -> str:
-    """A Jupyter notebook that computes the picture and its curves again, compares the results and draws them."""
+    """Return a Jupyter notebook that computes the picture and its curves again, compares and draws the results."""
     cells: list[dict[str, Any]] = []
     for words, source in [*_pieces(screen), *_drawings(screen)]:
         if words:
@@ -100,13 +100,13 @@ def _cell(kind: str, source: str) -> dict[str, Any]:
 
 
 def _pieces(screen: Screen) -> list[tuple[str, str]]:
-    """Words and source of each part of the program."""
+    """Return the words and source of each part of the program."""
     shown = screen.scene
     arguments = ", ".join(f"{name}={value!r}" for name, value in shown.differences().items())
     chain = f'scene("{shown.name}")' + (f".evolve({arguments})" if arguments else "")
     head = f'''"""What granchain {__version__} showed: {shown.title}, {shown.f:g} Hz.
 
-Install granchain, then run this with Python. It computes the picture again and compares.
+Install granchain, then run this with Python. It computes the picture again and compares the results.
 Address on the page: ?{screen.query}
 """
 
@@ -118,7 +118,7 @@ chain = {chain}'''
     picture = f"""{_start(screen.initial_state)}
 run = settle(chain, start=start, samples={screen.run.samples}).run"""
     forces = {title: float(getattr(screen.run, field)) for title, field in _FORCES.items()}
-    numbers = f"""# What the page showed, and what was computed now.
+    numbers = f"""# The values on the page, and the same values computed now.
 page = {pprint.pformat(forces, sort_dicts=False, width=100)}
 fields = {pprint.pformat(_FORCES, sort_dicts=False, width=100)}
 here = {{name: float(getattr(run, field)) for name, field in fields.items()}}
@@ -135,7 +135,7 @@ for name, value in here.items():
 def _start(start: State | None) -> str:
     if start is None:
         return "start = None  # at rest"
-    return (f"# The state in which the motion on the page began: another start may settle to another motion.\n"
+    return (f"# The state in which the motion on the page began; another start may lead to another motion.\n"
             f"start = State(displacement={_array(start.displacement)},\n"
             f"              velocity={_array(start.velocity)}, phase={start.phase!r})")
 

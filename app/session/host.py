@@ -1,4 +1,4 @@
-"""The interface of the dashboard that pages use; `Controller` implements it, and so do hosts of tests."""
+"""The dashboard's interface for its pages; `Controller` implements it, and so do the hosts of tests."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class Caller(Protocol):
     """Calls with the document locked, until the session ends."""
 
     def next_tick(self, action: Callable[..., None], *args: object) -> None:
-        """Call `action` with the document locked, as soon as that is possible; from any thread."""
+        """Call `action` with the document locked, as soon as that is possible; called from any thread."""
 
     def call_later(self, seconds: float, action: Callable[..., None], *args: object) -> None:
         """Call `action` with the document locked, after `seconds`."""
@@ -31,8 +31,8 @@ class Caller(Protocol):
 class WorkHost(Caller, Protocol):
     """The host of background work: it calls back, says whether work must wait for the picture, and reports errors.
 
-    A `Task` waits while `awaiting_picture`. Peak names, pins and sweeps compute much, and also wait for a live step
-    (`busy`).
+    A `Task` waits while `awaiting_picture` is True. Peak names, pins and sweeps compute a lot, so they also wait for
+    live steps (`busy`).
     """
 
     @property
@@ -41,10 +41,10 @@ class WorkHost(Caller, Protocol):
 
     @property
     def awaiting_picture(self) -> bool:
-        """Whether a knob has moved and its settled picture has not come; false for a live run, which never ends."""
+        """Whether a knob has moved and its settled picture is not ready; False for a live run, which never ends."""
 
     def show_failure(self, error: Exception) -> None:
-        """Show the visitor a failure for which a page has no place."""
+        """Show the visitor a failure that a page has no place for."""
 
     def report_fault(self, error: Exception, sentence: str, fault: str = "") -> None:
         """Log an error of granchain itself, and show `sentence` with an id.
@@ -53,7 +53,7 @@ class WorkHost(Caller, Protocol):
         """
 
     def log_failed_computation(self, error: Exception, fault: str) -> None:
-        """Log a computation that could not be finished; a page shows its sentence, which has the id `fault`."""
+        """Log a computation that could not be finished; a page shows its message with the id `fault`."""
 
 
 class PageHost(WorkHost, Protocol):
@@ -74,7 +74,7 @@ class PageHost(WorkHost, Protocol):
         """Whether a resonance curve is being computed."""
 
     def complete_curve(self) -> list[CurvePoint]:
-        """The complete resonance curve from rest of the present knobs, in order of frequency; otherwise empty."""
+        """Return the resonance curve from rest of the present knobs, by frequency; empty unless it is complete."""
 
     def show_measured_curve(self, measured: Measured | None) -> Difference | None:
         """Draw a measured curve over the resonance curve, or remove it; return its difference from a complete curve."""
@@ -83,20 +83,20 @@ class PageHost(WorkHost, Protocol):
         """Draw a measured series over the force trains, or remove it."""
 
     def activities(self) -> list[Activity]:
-        """All computations of this session, including those that are switched off."""
+        """Return all computations of this session, including those that are switched off."""
 
     def show(self, scene: Scene, state: State | None = None, mode: str = "settled") -> None:
-        """Set the knobs to `scene` and show its motion, from `state` or from the start that the visitor chose.
+        """Set the knobs to `scene` and show its motion, from `state` or from the visitor's chosen start.
 
-        In live mode the run goes on with the new knobs, unless a state is given. `mode` is "settled" or "live"; raises
-        `BadInput` for any other.
+        In live mode, the run continues with the new knobs unless a state is given. `mode` is "settled" or "live"; any
+        other raises `BadInput`.
         """
 
     def address_changed(self) -> None:
-        """Send the page its new address: a field of the link other than a knob has changed."""
+        """Send the page its new address, because a field of the link other than a knob has changed."""
 
     def open(self, scene: Scene, state: State | None, curves: str) -> None:
         """Open a scene, possibly another preset, settled from `state` or from rest.
 
-        `curves` is the field of a link; an empty text leaves the curves as they are.
+        `curves` is the field of a link; if it is empty, the same curves stay selected.
         """

@@ -1,4 +1,4 @@
-"""The live run, which continues while knobs move: one step for each painted picture."""
+"""The live run, which continues while knobs move, with one step for each painted picture."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from ..frames import PERIODS, Frames, LiveWindow, samples_for
 from ..serve.computing.cpu_time import CpuTime
 from ..serve.computing.turns import TurnFlag
 
-#: Viewing time that the first step of a run, or the first step after a pause, makes up for [s]: two frames of a screen.
+#: Viewing time covered by the first step of a run or after a pause [s]: two frames of a screen.
 _FIRST_STEP = 0.03
-#: Longest viewing time that one step makes up for [s]: the run must not jump after its tab was hidden.
+#: Longest viewing time covered by one step [s]: the run must not jump after its tab was hidden.
 _LONGEST_STEP = 0.1
 #: Longest computing time that one step aims at [s].
 _LONGEST_COMPUTING = 0.1
@@ -25,7 +25,7 @@ _LONGEST_COMPUTING = 0.1
 
 @dataclass(frozen=True)
 class LiveStep:
-    """One step of the live run: the last few periods, the run of the newest samples, drive periods since the start."""
+    """One step of the live run: the last few periods, the newest samples as a run, drive periods since the start."""
 
     frames: Frames
     run: Run
@@ -35,8 +35,8 @@ class LiveStep:
 class LiveRun:
     """One chain that keeps running, from rest or from `start`.
 
-    The first step makes the chain: this may compile or load kernels, for which the event loop has no time. A worker
-    thread calls `step` and `advance`, and reads `scene`, which has the knobs of the next sample. The page uses
+    The first step makes the chain, because this may compile or load kernels, for which the event loop has no time. A
+    worker thread calls `step` and `advance`, and reads `scene`, which has the knobs of the next sample. The page uses
     everything else. The run holds its `flag` while it computes.
     """
 
@@ -50,18 +50,18 @@ class LiveRun:
         self._lock = threading.Lock()
         self._new_scene: Scene | None = None
         self._reset = False
-        #: When the last step began to compute, on the clock of `time.perf_counter` [s]; None after a pause.
+        #: When the last step started to compute, on the clock of `time.perf_counter` [s]; None after a pause.
         self._last: float | None = None
-        #: Samples that the viewing time has asked for and that are not computed yet; the fraction is kept.
+        #: Samples that are due by the viewing time but not computed yet; the fraction is kept.
         self._samples_due = 0.0
-        #: Most samples of the next step, so that it computes for about `_LONGEST_COMPUTING`.
+        #: Largest number of samples of the next step, so that it computes for about `_LONGEST_COMPUTING`.
         self._most_samples = self.samples
         #: Samples computed since the start or the last reset.
         self._samples_shown = 0
         self._runs: deque[Run] = deque()
 
     def change(self, scene: Scene) -> None:
-        """Take over new knobs before the next sample."""
+        """Apply new knobs before the next sample."""
         with self._lock:
             self.scene = self._new_scene = scene
 
@@ -71,17 +71,17 @@ class LiveRun:
             self._reset = True
 
     def hold(self) -> None:
-        """Stop the clock until the next step: no viewing time passes."""
+        """Stop the clock until the next step, so that no viewing time passes."""
         self._last = None
 
     def close(self) -> None:
-        """The session has ended: end the computation under way."""
+        """End the computation under way, because the session has ended."""
         self.flag.set()
 
     def step(self, periods_per_second: float) -> LiveStep:
         """Advance by the viewing time since the last step; in slow motion, wait for the next sample.
 
-        Viewing time that a step cannot make up for is dropped: what exceeds `_LONGEST_STEP`, and what would take longer
+        Viewing time that a step cannot cover is dropped: time beyond `_LONGEST_STEP`, and time that would take longer
         to compute than `_LONGEST_COMPUTING`. The run is then slower than the chosen speed, but never lags behind its
         knobs.
         """
@@ -97,11 +97,11 @@ class LiveRun:
         return self.advance(min(int(self._samples_due), self._most_samples))
 
     def window_run(self) -> Run | None:
-        """The periods on the screen as one run, to be saved."""
+        """Return the periods on the screen as one run, to be saved."""
         return joined(list(self._runs)) if self._runs else None
 
     def advance(self, samples: int) -> LiveStep:
-        """The window after `samples` more samples."""
+        """Advance by `samples`, and return the step with the new window."""
         chain = self._chain = self._chain or self._made()
         with self._lock:
             scene, self._new_scene = self._new_scene, None

@@ -11,17 +11,17 @@ Item = TypeVar("Item")
 
 
 def is_number(value: object) -> TypeGuard[int | float]:
-    """Whether the value is a number; `True` and `False` are not."""
+    """Return whether the value is a number; `True` and `False` are not."""
     return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
 def quoted(value: object) -> str:
-    """The beginning of a value from a message in quotes, to be named in a sentence."""
+    """Return the beginning of a value from a message, in quotes, for use in a sentence."""
     return repr(str(value)[:40])
 
 
 def check_integer(what: str, value: object, low: int, high: int) -> int:
-    """Return `value` if it is a whole number in the range; raise `BadInput` otherwise, also for `True` and `False`."""
+    """Return `value` if it is a whole number in the range; otherwise, and for `True` and `False`, raise `BadInput`."""
     if not is_number(value) or not low <= value <= high or value != int(value):
         raise BadInput(f"The {what} {quoted(value)} is not a whole number from {low} to {high}.")
     return int(value)

@@ -17,50 +17,50 @@ Actions = Mapping[str, Callable[[dict[str, Any]], None]]
 class Page:
     """One page of one session. Hooks are called with the document locked; by default they do nothing.
 
-    Hooks and actions run in the event loop, which all sessions share. So each may take about ten milliseconds at most;
-    longer work is a `Task`.
+    Hooks and actions run in the event loop, which all sessions share. Each may therefore take at most about ten
+    milliseconds; longer work is a `Task`.
 
-    `actions` maps the "do" of a browser message to its handler. A name may be used only once in the dashboard. Actions
-    whose names end with `-stop` end all work of the page together, and the page then says "stopped".
+    `actions` maps the "do" of a browser message to its handler. A name may be used only once in the dashboard. The
+    actions whose names end with `-stop` together end all work of the page, and the page then says "stopped".
     """
 
     actions: Actions
 
     @property
     def activity(self) -> Activity | None:
-        """Name, state and detail for the list of running computations; None if the page has no line in the list."""
+        """Name, state and detail for the list of running computations; None if the page is not in the list."""
         return None
 
     def picture_requested(self) -> None:
-        """A new picture was requested: results of the old picture are out of date."""
+        """Called when a new picture is requested, so that results of the old picture are out of date."""
 
     def scene_changed(self) -> None:
-        """The knobs have changed, or another scene was opened."""
+        """Called when the knobs have changed or another scene was opened."""
 
     def address_applied(self) -> None:
-        """The session was set from an address, after a step back or forward."""
+        """Called when the session was set from an address, after a step back or forward."""
 
     def picture_ready(self, settled: Settled) -> None:
-        """A settled picture was offered to the browser, and may still wait for the browser's pace.
+        """Called when a settled picture was offered to the browser; it may still wait until the browser is ready.
 
-        A better picture for these knobs may follow unless `settled.final`.
+        Unless `settled.final`, a better picture for these knobs may follow.
         """
 
     def curve_ready(self) -> None:
-        """The resonance curve from rest is complete: `PageHost.complete_curve` has it."""
+        """Called when the resonance curve from rest is complete: `PageHost.complete_curve` returns it."""
 
     def curve_compared(self, difference: Difference | None) -> None:
-        """A measured curve was compared with the complete curve from rest; with None, a new curve was begun."""
+        """Called when a measured curve was compared with the complete curve from rest; None when a new curve starts."""
 
     def theme_changed(self, theme: Theme) -> None:
-        """The page has another theme; the figures of a view follow by themselves."""
+        """Called when the page has another theme; the figures of a view follow automatically."""
 
     def visibility_changed(self, visible: bool) -> None:
         """Called when the page or its tab becomes visible or hidden; it is hidden at first."""
 
 
 def all_actions(owners: Mapping[str, Actions]) -> Actions:
-    """The actions of all owners in one table. Raises `TypeError` if two of them use one name."""
+    """Return the actions of all owners in one table. Raises `TypeError` if two owners use the same name."""
     owner_of: dict[str, str] = {}
     for owner, actions in owners.items():
         for name in actions:

@@ -1,6 +1,6 @@
 """Constants that all scripts can read: the template writes `window.pageConstants` before the inline scripts.
 
-docs/dashboard.md (Shared facts) says which facts reach the scripts in which way.
+docs/dashboard.md (Shared facts) lists the facts that the scripts need, and how each reaches them.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ CURVE_NAME = "curve"
 
 @cache
 def page_constants() -> str:
-    """The constants as a JavaScript expression that may stand in a script element."""
+    """Return the constants as a JavaScript expression that is safe in a script element."""
     constants = {"themes": list(THEMES), "browserFields": BROWSER_FIELDS, "terms": definitions(),
                  "curveName": CURVE_NAME}
     return json.dumps(constants).replace("<", "\\u003c")

@@ -1,4 +1,4 @@
-"""Pinned motions as links, and their numbers compared with those of the present motion."""
+"""Pinned motions as links, and the comparison of their numbers with those of the present motion."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _NOTHING = ["", "", ""]
 
 @dataclass(frozen=True, eq=False)
 class Pin:
-    """A settled motion: its scene, and the state in which it began; None means rest."""
+    """A settled motion: its scene, and the state in which it began (None for rest)."""
 
     scene: Scene
     initial_state: State | None = None
@@ -31,24 +31,24 @@ class Pin:
 
 
 def pin_texts(pins: Sequence[Pin]) -> dict[str, str]:
-    """The fields of a link that has these pins."""
+    """Return the link fields of these pins."""
     return {name: pin.text for name, pin in zip(PINS, pins, strict=False)}
 
 
 def read_pin(text: str) -> Pin:
-    """Read the pin of a link's field. Raises `BadInput` for any bad value: a pin is read whole or not at all."""
+    """Read the pin of a link's field. Raises `BadInput` for any bad value: a pin is read completely or not at all."""
     try:
         shown, fields, refused = decode(text)
         start = read_start(fields[START], shown) if START in fields else None
     except BadInput:
         refused = [text]
     if refused:
-        raise BadInput("A pin of the link is damaged and was left out.")
+        raise BadInput("A pin in the link is damaged and was left out.")
     return Pin(shown, start)
 
 
 def setting_words(pin: Scene, now: Scene) -> str:
-    """The scene and the knobs by which a pinned scene differs from the present one."""
+    """Return, in words, the scene and knobs by which a pinned scene differs from the present one."""
     parts = [pin.name] if pin.name != now.name else []
     for name, value in pin.knobs.items():
         if value != now.knobs[name] and name != "kappa":
@@ -65,9 +65,9 @@ def _knob(name: str, value: object) -> str:
 
 
 def compared_rows(now: Run, pinned: Sequence[Run | None]) -> list[dict[str, object]]:
-    """Rows of numbers: the present motion, and for each pinned motion its number, the difference and the ratio.
+    """Return rows of numbers: the present motion's, and for each pinned motion its own, the difference and the ratio.
 
-    A pin that is still being computed is None here, and has empty cells.
+    A pin that is still being computed is None here and has empty cells.
     """
     rows: list[dict[str, object]] = []
     for title, attribute, error in (("output force", "max_output_force", "output"),
@@ -84,7 +84,7 @@ def compared_rows(now: Run, pinned: Sequence[Run | None]) -> list[dict[str, obje
 
 
 def _stated(run: Run, attribute: str, error: str) -> str:
-    """A force with the figures that its error leaves, at most six."""
+    """Return a force to the figures that its error leaves, at most six."""
     value = float(getattr(run, attribute))
     relative = getattr(run.force_errors, error)
     return in_words(value, "N", figures_of(relative, 6))

@@ -10,7 +10,7 @@ from granchain_core.precompile.pieces import FIXED_STEP_KERNELS
 
 from ..serve.compiling.compiler import compiling_words
 
-#: State of an entry in the list of computations: nobody has asked for it.
+#: State of an entry in the list of computations: it has not been requested.
 OFF = "off"
 #: Nothing is left to do.
 READY = "ready"
@@ -21,7 +21,7 @@ COMPUTING = "computing"
 Status = Literal["none", "waiting", "compiling", "settling", "computing", "measuring", "following", "searching",
                  "drawing", "done", "stopped", "failed"]
 
-#: The words of a page for a computation that is under way or waits for its turn.
+#: The words of a page for a computation that is under way or waiting for its turn.
 UNDER_WAY: dict[Status, str] = {
     "waiting": "waiting for its turn …", "compiling": "compiling …", "settling": "looking for the first orbit …",
     "computing": "computing …", "measuring": "measuring …", "following": "following …", "searching": "searching …",
@@ -35,7 +35,7 @@ class StatusWords:
 
     compiles, piece : words for its kernels, and the piece that takes longest to compile.
     kept : words for the results that stay when the visitor stops it; empty if none stay.
-    instead : words in place of `UNDER_WAY`.
+    instead : words that replace those of `UNDER_WAY`.
     """
 
     compiles: str = "the kernels"
@@ -44,10 +44,10 @@ class StatusWords:
     instead: Mapping[Status, str] = field(default_factory=dict)
 
     def of(self, status: Status, failure: str = "") -> dict[str, Any]:
-        """The entries of `state`, or of a message, that the page shows in the browser.
+        """Return the entries of `state`, or of a message, that the page shows in the browser.
 
-        `status` itself, `progress` in words (may be empty), whether the computation is `running`, and `failure`, the
-        sentence that says why the computation failed.
+        These are `status` itself, `progress` in words (may be empty), whether the computation is `running`, and
+        `failure`, the sentence that says why it failed.
         """
         return {"status": status, "progress": self._words(status), "running": status in UNDER_WAY, "failure": failure}
 

@@ -1,4 +1,4 @@
-"""Facts about a scene for the page: ranges of sliders, the chain of a curve over f, the beads of the paper's rig."""
+"""Facts about a scene for the page: slider ranges, the chain of a curve over f, and the beads of the paper's rig."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from .message_checks import is_number
 
 
 def slider_range(current: Scene, name: str) -> tuple[float, float]:
-    """The scene's range of a slider, or all values that granchain accepts if the scene has none."""
+    """Return a slider's range in the scene, or all values that granchain accepts if the scene gives none."""
     for knob, low, high in current.ranges:
         if knob == name:
             return low, high
@@ -18,7 +18,7 @@ def slider_range(current: Scene, name: str) -> tuple[float, float]:
 
 
 def clicked_frequency(current: Scene, frequency: object) -> object:
-    """The frequency of a click on the curve, inside the slider's range; any other value is left to the knob's check."""
+    """Return the frequency of a click on the curve, limited to the slider's range; the knob checks any other value."""
     if not is_number(frequency):
         return frequency
     low, high = slider_range(current, "f")
@@ -26,15 +26,15 @@ def clicked_frequency(current: Scene, frequency: object) -> object:
 
 
 def without_frequency(current: Scene) -> Scene:
-    """The scene with f at a fixed value: the key of a curve or branch over f, whatever the value of the knob f."""
+    """Return the scene with f at a fixed value: the key of a curve or branch over f, whatever the knob f is set to."""
     return current.evolve(f=slider_range(current, "f")[0])
 
 
 def rig_beads() -> tuple[Bead, ...]:
-    """The beads of the paper's rig; the features that the paper states are drawn for scenes with these beads."""
+    """Return the beads of the paper's rig; the features that the paper states are drawn for scenes with these beads."""
     return scene("rig").pattern
 
 
 def presets() -> list[dict[str, str]]:
-    """Name and title of every scene."""
+    """Return the name and title of every scene."""
     return [{"name": name, "title": scene(name).title} for name in scene_names()]

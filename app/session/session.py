@@ -1,7 +1,7 @@
-"""The state of one session: scene, mode, start, the last good picture, and a sentence if something failed.
+"""The state of one session: scene, mode, start, the last good picture, and a message if something failed.
 
 This module uses neither Panel nor Bokeh, so that every rule of the page can be tested without a browser. The state is
-changed by the controller and its parts (`app/dashboard`), and by the pages *analysis*, *data*, *effects*, *map* and
+changed by the controller and its parts (`app/dashboard`) and by the pages *analysis*, *data*, *effects*, *map* and
 *stories*, always with the document locked.
 """
 
@@ -29,35 +29,35 @@ STARTS = VIEW_VALUES["start"]
 class Session:
     """The state of one open page. A method changes the state, or raises `BadInput` and leaves the state unchanged.
 
-    share.py lists the values of the fields that a link has (`VIEW`).
+    share.py lists the values of those fields that are part of a link (`VIEW`).
     """
 
     #: The chain with the present knobs.
     scene: Scene = field(default_factory=lambda: scene(DEFAULT_SCENE))
-    #: "settled" to show the steady motion, "live" for a run that goes on while knobs move.
+    #: "settled" to show the steady motion, "live" for a run that continues while knobs move.
     mode: str = "settled"
-    #: The start of a settled picture: "rest", or "previous" for the state of the picture before.
+    #: The start of a settled picture: "rest", or "previous" for the state of the previous picture.
     start: str = "rest"
-    #: The theme that a link asks for; "auto" leaves it to the browser.
+    #: The theme requested by a link; "auto" leaves it to the browser.
     theme: str = "auto"
     #: "same" if all pictures of the scene are drawn to one scale, "fit" if each is drawn to its largest values.
     scale: str = "same"
-    #: The curves of the resonance curve's figure: "auto" for those that suit the scene, or names joined by dots,
-    #: "rest.up".
+    #: The curves in the figure of the resonance curve: "auto" for the scene's default, or names joined by dots, for
+    #: example "rest.up".
     curves: str = "auto"
-    #: The "tab" and the "page" (an overlay) that the address opens, if it names them.
+    #: The "tab" and "page" (an overlay) that the address opens, if it names them.
     place: dict[str, str] = field(default_factory=dict)
-    #: Drive periods shown in a second.
+    #: Drive periods shown per second.
     speed: float = 1.0
-    #: Whether the motion is played; a live run that is paused computes nothing.
+    #: Whether the motion is played; a paused live run computes nothing.
     playing: bool = True
     #: The last settled picture; the knobs may have moved since. None until this preset has one.
     settled: Settled | None = None
     #: The state in which the motion on the screen began; None for rest.
     initial_state: State | None = None
-    #: A message to the visitor until the next valid action, such as the reason why a value was refused.
+    #: A message to the visitor until the next valid action, for example why a value was refused.
     sentence: str = ""
-    #: A message to the visitor until the next picture, such as that kernels are being compiled.
+    #: A message to the visitor until the next picture, for example that kernels are being compiled.
     notice: str = ""
     #: Whether the energy account is computed after each settled picture.
     energy_account: bool = False
@@ -65,7 +65,7 @@ class Session:
     remembered: dict[str, Any] = field(default_factory=dict)
     #: The processor time used by the session's pictures; it decides whose turn is next.
     cpu_time: CpuTime = field(default_factory=CpuTime)
-    #: The scene whose picture the visitor has asked for no matter how long it takes.
+    #: The scene whose picture the visitor has requested no matter how long it takes.
     insisted: Scene | None = None
     #: The visitor's measurement, which is drawn over the figures and saved with a run.
     measured: Measured | Series | None = None
@@ -75,7 +75,7 @@ class Session:
     story: str = ""
     #: Whether the frequencies of `StoryStep.via` must still be settled before the motion of that step is known.
     story_to_settle: bool = False
-    #: The question of the Analysis page with its values, as a link has it.
+    #: The question of the Analysis page with its values, as it is written in a link.
     question: str = ""
     #: The name of this session in the log; empty outside a server.
     label: str = ""
@@ -101,8 +101,8 @@ class Session:
         left = len(self.pins) - kept
         if not left:
             return ""
-        return (f"The link has room for {kept} of {len(self.pins)} pins, because the states in which long chains begin "
-                f"take much of it: {'the last is' if left == 1 else 'the others are'} not in the link.")
+        return (f"The link has room for {kept} of {len(self.pins)} pins, because the initial states of long chains "
+                f"take up much of it: {'the last is' if left == 1 else 'the others are'} not in the link.")
 
     def change(self, name: str, value: object) -> None:
         """Set knob `name` to `value`."""
@@ -123,7 +123,7 @@ class Session:
         """Restore knob `name` to its value in the preset."""
         preset = scene(self.scene.name).knobs
         if name not in preset:
-            raise BadInput(f"There is no knob {quoted(name)} to put back.")
+            raise BadInput(f"There is no knob {quoted(name)} to restore.")
         self.change(name, preset[name])
 
     def choose(self, name: object) -> None:
@@ -152,14 +152,14 @@ class Session:
         self.scale = _one_of("scale", scale, VIEW_VALUES["scale"])
 
     def set_speed(self, speed: object) -> None:
-        """Set the drive periods shown in a second to one of `SPEEDS`."""
+        """Set the drive periods shown per second to one of `SPEEDS`."""
         if not is_number(speed) or speed not in SPEEDS:
             known = ", ".join(f"{speed:g}" for speed in sorted(SPEEDS))
-            raise BadInput(f"speed {quoted(speed)} is not one of {known} drive periods a second.")
+            raise BadInput(f"speed {quoted(speed)} is not one of {known} drive periods per second.")
         self.speed = float(speed)
 
     def previous_state(self, scene: Scene) -> State | None:
-        """The state from which the next settled picture of `scene` starts; None means rest."""
+        """Return the state from which the next settled picture of `scene` starts (None for rest)."""
         if self.start == "rest" or self.settled is None:
             return None
         state = self.settled.state

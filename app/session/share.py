@@ -1,7 +1,7 @@
 """Share links: scene, knobs that differ from it, and view settings in one versioned query string.
 
 A link stores differences only, so a changed preset changes the meaning of old links (tests/session/test_share.py).
-Each field is checked by itself: a bad field is refused with a sentence, and the other fields are used.
+Each field is checked separately: a bad field is refused with a sentence, and the other fields are used.
 """
 
 from __future__ import annotations
@@ -22,25 +22,25 @@ from ..plots.theme import THEMES
 VERSION = "1"
 #: The scene of a page that is opened without a link.
 DEFAULT_SCENE = "sec2"
-#: Items of the curve's figure: curves from rest and by sweeps, and the features that the paper states.
+#: Items in the curve's figure: curves from rest and by sweeps, and the features that the paper states.
 CURVES = (*CURVE_STARTS, "features")
 
 
 def joined(names: Iterable[str]) -> str:
-    """A choice of curves as text of a link."""
+    """Return a choice of curves as text for a link."""
     chosen = set(names)
     return ".".join(name for name in CURVES if name in chosen) or "none"
 
 
-#: Drive periods that the page can show in a second; the first is the default.
+#: Drive periods that the page can show per second; the first is the default.
 SPEEDS = (1.0, 0.1, 0.25, 0.5, 2.0, 5.0, 20.0, 100.0)
 
 
 @dataclass(frozen=True)
 class ViewField:
-    """A view setting of a link: its values, the default first, and the attribute of `Session` that keeps it.
+    """A view setting of a link: its values, with the default first, and the attribute of `Session` that stores it.
 
-    `read` converts the link's text to the attribute, `text` converts the attribute to text.
+    `read` converts the link's text to the attribute, and `text` the attribute to text.
     """
 
     attribute: str
@@ -50,8 +50,8 @@ class ViewField:
 
 
 #: The view settings by their names in a link; a new setting needs a row here and an attribute of `Session`. Links call
-#: the theme "look"; with "auto" the browser chooses. "curves" has every combination; by default a scene shows its own
-#: curves.
+#: the theme "look"; with "auto", the browser chooses it. "curves" has every combination; with "auto", a scene shows its
+#: own curves.
 VIEW: dict[str, ViewField] = {
     "mode": ViewField("mode", ("settled", "live")),
     "start": ViewField("start", ("rest", "previous")),
@@ -62,26 +62,26 @@ VIEW: dict[str, ViewField] = {
     "speed": ViewField("speed", tuple(f"{speed:g}" for speed in SPEEDS), float, lambda speed: f"{speed:g}"),
     "account": ViewField("energy_account", ("off", "on"), lambda text: text == "on", lambda on: "on" if on else "off"),
 }
-#: Fields that the browser adds to a link, because the browser alone knows them (`parts/inline_scripts/address.js`): the
-#: open tab, the overlay, the theme that the visitor has chosen, and whether another page embeds this page.
+#: Fields that the browser adds to a link, because only the browser knows them (`parts/inline_scripts/address.js`): the
+#: open tab, the overlay, the theme that the visitor has chosen, and whether another page embeds this one.
 BROWSER_FIELDS = ("tab", "page", "look", "embed")
 #: The values of the view settings; the first is the default.
 VIEW_VALUES: dict[str, tuple[str, ...]] = {name: field.values for name, field in VIEW.items()}
-#: Field of the state in which the motion began, a text that `starts.py` reads.
+#: Field for the state in which the motion began, a text that `starts.py` reads.
 START = "from"
-#: Fields of the pinned pictures, texts that `pins.py` reads.
+#: Fields for the pinned pictures, texts that `pins.py` reads.
 PINS = ("pin", "pin2", "pin3")
-#: Field of the question of the Analysis page, a text that `pages/analysis/questions.py` reads.
+#: Field for the question of the Analysis page, a text that `pages/analysis/questions.py` reads.
 QUESTION = "question"
-#: Most characters of a link.
+#: Largest number of characters in a link.
 LONGEST = 4500
-#: Characters of a link that are reserved for `BROWSER_FIELDS`; tests/dashboard/test_table.py compares this number with
-#: the longest values.
+#: Number of characters reserved in a link for `BROWSER_FIELDS`; tests/dashboard/test_table.py compares it with the
+#: longest values.
 _ADDED_BY_BROWSER = 100
 
 
 def encode(shown: Scene, view: Mapping[str, str], texts: Mapping[str, str] | None = None) -> str:
-    """The query string (without "?") that restores this scene and view.
+    """Return the query string (without "?") that restores this scene and view.
 
     `texts` has `START`, `PINS`, `QUESTION` and "story". If there is no room for all pins, the last pins are left out
     (`pins_in`).
@@ -103,14 +103,14 @@ def encode(shown: Scene, view: Mapping[str, str], texts: Mapping[str, str] | Non
 
 
 def pins_in(query: str) -> int:
-    """The number of pins in a link."""
+    """Return the number of pins in a link."""
     return sum(name in PINS for name, _ in parse_qsl(query))
 
 
 def decode(query: str, more: Mapping[str, Sequence[str]] | None = None) -> tuple[Scene, dict[str, str], list[str]]:
-    """Scene, fields of the view, and one sentence for every refused field. Texts are not read here.
+    """Return scene, view fields, and one sentence for every refused field. Texts are not read here.
 
-    `more` has further view settings with their values, which the page alone knows.
+    `more` has further view settings with their values, which only the page knows.
     """
     known = {**VIEW_VALUES, **(more or {})}
     if len(query) > LONGEST:
@@ -147,7 +147,7 @@ def decode(query: str, more: Mapping[str, Sequence[str]] | None = None) -> tuple
 
 
 def _fields(query: str, refused: list[str]) -> dict[str, str]:
-    """The fields of a query string; if a field comes twice, the first counts."""
+    """Return the fields of a query string; if a field occurs twice, the first counts."""
     fields: dict[str, str] = {}
     for name, text in parse_qsl(query.lstrip("?"), keep_blank_values=True):
         if name in fields:

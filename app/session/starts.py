@@ -1,7 +1,7 @@
 """The state in which a motion began, as text in a link.
 
-If several motions are possible, the start decides which one is reached. A picture cannot be repeated without its
-start. The text has little-endian doubles in base64 for addresses: drive phase, N displacements [m], N velocities [m/s].
+If several motions are possible, the start decides which one is reached, so a picture cannot be reproduced without its
+start. The text is URL-safe base64 of little-endian doubles: drive phase, N displacements [m], N velocities [m/s].
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ MOST_BEADS = 40
 
 
 def start_text(start: State | None) -> str:
-    """The state as text; empty for rest, and for a chain that is too long for a link."""
+    """Return the state as text; empty for rest, and for a chain that is too long for a link."""
     if start is None or len(start.displacement) > MOST_BEADS:
         return ""
     values = np.concatenate([[start.phase], start.displacement, start.velocity]).astype("<f8")
@@ -32,15 +32,15 @@ def read_start(text: str, scene: Scene) -> State:
         content = base64.b64decode(text + "=" * (-len(text) % 4), altchars=b"-_", validate=True)
         values = np.frombuffer(content, dtype="<f8").astype(float)
     except (binascii.Error, ValueError):
-        raise BadInput("The initial state in the link is damaged; the motion begins at rest.") from None
+        raise BadInput("The initial state in the link is damaged; the motion starts from rest.") from None
     if len(values) % 2 == 0:  # a phase, and two numbers for each bead
-        raise BadInput("The initial state in the link is damaged; the motion begins at rest.")
+        raise BadInput("The initial state in the link is damaged; the motion starts from rest.")
     if len(values) != 2 * scene.N + 1:
-        raise BadInput(f"The link begins the motion in a state of {(len(values) - 1) // 2} beads, but the chain has "
-                       f"{scene.N}; it begins at rest.")
+        raise BadInput(f"The initial state in the link has {(len(values) - 1) // 2} beads, but the chain has "
+                       f"{scene.N}; the motion starts from rest.")
     phase, displacement, velocity = values[0], values[1:scene.N + 1], values[scene.N + 1:]
-    # No contact law holds for displacements beyond a bead's size or speeds beyond the speed of sound in steel.
+    # No contact law is valid for displacements beyond a bead's size or speeds beyond the speed of sound in steel.
     sane = np.isfinite(values).all() and 0.0 <= phase < 1.0 and np.abs(displacement).max() < 1.0
     if not sane or not nearest_fraction(float(phase))[1] or np.abs(velocity).max() > 6000.0:
-        raise BadInput("The initial state in the link is impossible for a chain; the motion begins at rest.")
+        raise BadInput("The initial state in the link is impossible for a chain; the motion starts from rest.")
     return State(displacement, velocity, float(phase))

@@ -1,7 +1,7 @@
 """Guided stories, read from assets/stories/*.toml: scenes to look at, a question, and an answer.
 
-The numbers of a story stand in its file; tests/session/test_story_files.py computes them again. docs/stories.md
-has the format. Nothing in a file is trusted: a mistake becomes a sentence that says where it is.
+The numbers of a story are in its file; tests/session/test_story_files.py computes them again. docs/stories.md describes
+the format. Nothing in a file is trusted: a mistake becomes a sentence that says where it is.
 """
 
 from __future__ import annotations
@@ -27,14 +27,14 @@ FOLDER = ASSETS / "stories"
 LOOKS = ("chain", "left", "map", "right", "curve")
 #: Allowed relative difference between a computed force and the force in a story, if the motion repeats.
 TOLERANCE = 5e-3
-#: The same for a motion that does not repeat: its largest force depends on the periods that are recorded.
+#: The same for a motion that does not repeat, whose largest force depends on the periods that are recorded.
 IRREGULAR_TOLERANCE = 0.1
 _STORY_FIELDS = ("title", "about", "order", "steps")
 _STEP_FIELDS = ("say", "ask", "answer", "scene", "set", "via", "look", "curves", "page", "expect")
 _EXPECT_FIELDS = ("regime", "period", "output", "input", "pulse", "speed")
 #: The regime of a motion that nothing drives, as a story calls it.
 UNDRIVEN = "undriven"
-#: Samples in the time 1/f in which a pulse is followed.
+#: Samples in the time 1/f for which a pulse is followed.
 _PULSE_SAMPLES = 4000
 _NUMBER = re.compile(r"\{(?:(\d+)\.)?(\w+)\}")
 
@@ -43,7 +43,7 @@ _NUMBER = re.compile(r"\{(?:(\d+)\.)?(\w+)\}")
 class Expect:
     """The expected motion of a step: regime and period, largest output and input force [N].
 
-    Without a drive: the largest force [N] and the speed [m/s] of the first pulse in the middle of the chain.
+    Without a drive, also the largest force [N] and speed [m/s] of the first pulse in the middle of the chain.
     """
 
     regime: str
@@ -56,9 +56,9 @@ class Expect:
 
 @dataclass(frozen=True)
 class StoryStep:
-    """One step. `via` has the frequencies [Hz] at which the chain settles first, one after another, from rest.
+    """One step. `via` has the frequencies [Hz] at which the chain first settles, one after another, from rest.
 
-    `look` is the part of the main page that the step points to, `page` the overlay that the step offers to open.
+    `look` is the part of the main page that the step points to, and `page` the overlay that it offers to open.
     """
 
     say: str
@@ -84,7 +84,7 @@ class Story:
 
 
 def stories(pages: Sequence[str], folder: Path = FOLDER) -> tuple[tuple[Story, ...], tuple[str, ...]]:
-    """All stories in their order, and one sentence for every file that cannot be used.
+    """Return all stories in order, and one sentence for every file that cannot be used.
 
     `pages` are the names of the pages that a step may offer to open.
     """
@@ -122,7 +122,7 @@ def read_story(path: Path, pages: Sequence[str]) -> Story:
 
 
 def told_words(story: Story, number: int, words: str) -> str:
-    """`say`, `ask` or `answer` of step `number`, from 1, with its numbers: {output}, {input}, {2.output} of step 2."""
+    """Return `say`, `ask` or `answer` of step `number` (from 1) with its numbers: {output}, {2.output} of step 2, …"""
 
     def value(match: re.Match[str]) -> str:
         other = int(match[1] or number)
@@ -143,7 +143,7 @@ def told_words(story: Story, number: int, words: str) -> str:
 
 
 def state_before(step: StoryStep, stop: Stop | None = None) -> State | None:
-    """The state in which the motion of a step begins, reached at the last frequency of `via`; None means rest."""
+    """Return the state in which a step's motion begins, reached at the last frequency of `via` (None for rest)."""
     state: State | None = None
     for frequency in step.via:
         state = settle(step.scene.evolve(f=frequency), start=state, stop=stop).state
@@ -151,7 +151,7 @@ def state_before(step: StoryStep, stop: Stop | None = None) -> State | None:
 
 
 def differences(step: StoryStep, shown: Run) -> list[str]:
-    """Sentences about the differences of a run from the step."""
+    """Return sentences on how a run differs from what a step expects."""
     sentences, expected = [], step.expect
     regime = shown.regime.name if shown.regime.driven else UNDRIVEN
     if (regime, shown.regime.period) != (expected.regime, expected.period):
@@ -169,7 +169,7 @@ def differences(step: StoryStep, shown: Run) -> list[str]:
 
 
 def _force(newtons: float, repeats: bool) -> str:
-    """A force in newtons, so that steps can be compared; with two figures if the motion does not repeat."""
+    """Return a force in newtons, so that steps can be compared; to two figures if the motion does not repeat."""
     return f"{newtons:.{3 if repeats else 2}g} N"
 
 
@@ -197,11 +197,11 @@ def _expect(data: dict[str, Any]) -> Expect:
     regime = _one_of(data, "regime", ("periodic", *NEVER_REPEATING, UNDRIVEN))
     period = data.get("period")
     if (period is None) == (regime == "periodic") or not isinstance(period, (int, type(None))):
-        raise BadInput("a periodic motion, and no other, has a period, a whole number of drive periods.")
+        raise BadInput("only a periodic motion has a period, and it needs one: a whole number of drive periods.")
     _positive(data, "output", "the largest output force in N")
     _positive(data, "input", "the largest input force in N")
     if ("pulse" in data or "speed" in data) != (regime == UNDRIVEN):
-        raise BadInput("a motion without a drive, and no other, has a pulse and its speed.")
+        raise BadInput("only a motion without a drive has a pulse and its speed, and it needs both.")
     if regime == UNDRIVEN:
         _positive(data, "pulse", "the largest force of the pulse in the middle of the chain in N")
         _positive(data, "speed", "its speed there in m/s")
@@ -210,7 +210,7 @@ def _expect(data: dict[str, Any]) -> Expect:
 
 def _positive(data: Mapping[str, Any], name: str, what: str) -> None:
     if not isinstance(data.get(name), float) or not data[name] > 0.0:
-        raise BadInput(f"expect needs {name}, {what}, as a number with a point.")
+        raise BadInput(f"expect needs {name}, {what}, as a number with a decimal point.")
 
 
 def _known(data: Mapping[str, Any], names: Sequence[str], what: str) -> None:

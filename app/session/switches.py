@@ -20,19 +20,19 @@ SWITCHES: dict[str, Effect] = {effect.name: effect for effect in (*table.EFFECTS
 
 
 def present(name: str, shown: Scene, account: bool) -> bool:
-    """Whether the effect is in the kernels of this scene."""
+    """Return whether the effect is in the kernels of this scene."""
     return account if name == ACCOUNT_SWITCH else SWITCHES[name].present(shown)
 
 
 def refusal(name: str, shown: Scene) -> str:
-    """A sentence if the effect cannot be switched for this scene; otherwise empty."""
+    """Return a sentence if the effect cannot be switched for this scene; otherwise an empty text."""
     return "" if SWITCHES[name].possible(shown) else SWITCHES[name].refusal
 
 
 def changes(name: str, on: bool, shown: Scene, remembered: Mapping[str, Any]) -> dict[str, Any]:
-    """Knob values that a switch sets.
+    """Return the knob values that a switch sets.
 
-    An effect that is switched on gets the values of the visitor, of the preset, or usual ones, in this order.
+    An effect that is switched on gets the visitor's earlier values, those of the preset, or usual ones, in this order.
     """
     if name not in SWITCHES or name == ACCOUNT_SWITCH:
         raise BadInput(f"There is no switchable effect {quoted(name)}.")
@@ -44,7 +44,7 @@ def changes(name: str, on: bool, shown: Scene, remembered: Mapping[str, Any]) ->
     before = {**scene(shown.name).knobs, **remembered}
     knobs: dict[str, Any] = {}
     for knob in effect.knobs:
-        # switching off changed the knobs in `off` alone; other knobs still have their values
+        # switching off changed only the knobs in `off`; other knobs still have their values
         values = [before[knob]] if knob in effect.off else [shown.knobs[knob], before[knob]]
         knobs.update([(knob, value) for value in values if value != effect.off.get(knob, 0.0)][:1])
     missing = set(effect.knobs) - set(knobs)
@@ -52,7 +52,7 @@ def changes(name: str, on: bool, shown: Scene, remembered: Mapping[str, Any]) ->
 
 
 def variants(name: str, shown: Scene) -> tuple[Variant, Variant] | None:
-    """The scene with the effect and without it; None if the effect cannot be switched."""
+    """Return the scene with and without the effect; None if the effect cannot be switched."""
     if name == ACCOUNT_SWITCH:
         return Variant(shown, account=True), Variant(shown)
     if refusal(name, shown):

@@ -17,8 +17,8 @@ from ..serve.monitoring.faults import new_fault_id, with_fault_id
 from .host import WorkHost
 from .progress import Status
 
-#: Time between the first two checks whether the main picture is done [s]. Long work waits for the picture, and so never
-#: competes with a knob.
+#: Time between the first two checks of whether the main picture is done [s]. Long work waits for the picture, so it
+#: never competes with a knob.
 _PICTURE_CHECK_INTERVAL = 0.01
 #: Longest time between two such checks [s].
 _LONGEST_CHECK_INTERVAL = 0.2
@@ -28,7 +28,7 @@ Report = Callable[[Status, str], None]
 
 
 def report_nothing(status: Status, sentence: str) -> None:
-    """Show no status: for a task that shows only its result and whose failures the host reports."""
+    """Show no status, for a task that shows only its result and whose failures the host reports."""
 
 
 class Job:
@@ -64,8 +64,8 @@ class Job:
     def give_way(self, waits: Callable[[], bool] | None = None) -> None:
         """Wait while `waits` returns True; without it, while the picture for a moved knob is being computed.
 
-        The longer the wait, the rarer the checks, since each check takes the GIL from all other threads. The thread has
-        to poll, because `waits` may depend on anything in the page.
+        The longer the wait, the rarer the checks, since each check takes the GIL from all other threads. The thread
+        must poll, because `waits` may depend on anything in the page.
         """
         must_wait, pause = waits or (lambda: self._host.awaiting_picture), _PICTURE_CHECK_INTERVAL
         while must_wait() and not self.stop:
@@ -73,9 +73,9 @@ class Job:
             pause = min(2.0 * pause, _LONGEST_CHECK_INTERVAL)
 
     def progress(self, report: Callable[[float], None], steps: int = 50) -> Callable[[float], None]:
-        """A function that work calls with the part that is done, from 0 to 1; each call gives way to the picture.
+        """Return a function that work calls with the fraction done, from 0 to 1; each call gives way to the picture.
 
-        `report` is called with this number and the document locked, at most `steps` times.
+        `report` is called with this fraction and the document locked, at most `steps` times.
         """
         reported = 0
 
@@ -94,8 +94,8 @@ class Task:
     """One kind of background work of a page; a new start replaces the last. The work ends when the session ends.
 
     `report` is called with the document locked: with "done", with "failed" and a sentence, or with a status that the
-    work reports. `title` begins the sentence about a fault. With `report_to_host` the dashboard shows errors, because
-    the page has no place for them. A page cancels its task when a knob moves, or calls the result out of date;
+    work reports. `title` begins the sentence about a fault. With `report_to_host`, the dashboard shows errors, because
+    the page has no place for them. When a knob moves, a page cancels its task or marks the result as out of date;
     `outlives_knobs` says why this task needs neither.
     """
 
@@ -113,11 +113,11 @@ class Task:
 
     @property
     def running(self) -> bool:
-        """Whether the work is under way or waits for its turn."""
+        """Whether the work is under way or waiting for its turn."""
         return self._job is not None
 
     def start(self, work: Callable[[Job], None]) -> None:
-        """Queue `work` in place of work that was started before."""
+        """Queue `work`, replacing any work that was started before."""
         self.cancel()
         self._job = job = Job(self._host, self._report)
         try:

@@ -7,9 +7,9 @@ from functools import cache
 
 from granchain_core.scene.presets import ASSETS
 
-#: The glossary; an installed wheel has it among its assets.
+#: The glossary, which is among the assets in an installed wheel.
 FILE = next(path for path in (ASSETS / "glossary.md", ASSETS.parent / "docs" / "glossary.md") if path.is_file())
-#: Terms of the glossary that the texts of the page use, longest first so that "anti-resonance" is not "resonance".
+#: Glossary terms that the page's texts use, longest first, so that "anti-resonance" is not taken for "resonance".
 SHOWN = ("quasi-periodic", "anti-resonance", "Floquet multiplier", "Lyapunov exponent", "sonic vacuum", "stop band",
          "stated error", "output force", "energy residual", "error control", "fixed-step method", "special point",
          "time step", "tangent flow", "attractor", "resonance",
@@ -20,7 +20,7 @@ _ROW = re.compile(r"^\| [^|]+ \| ([^|]+) \| ((?:[^|\\]|\\.)+) \|", re.MULTILINE)
 
 @cache
 def definitions() -> dict[str, str]:
-    """The definition of every shown term, as plain text."""
+    """Return the definition of every shown term, as plain text."""
     rows: dict[str, str] = {}
     for terms, meaning in _ROW.findall(FILE.read_text(encoding="utf-8")):
         for name in _names(terms):
@@ -29,9 +29,9 @@ def definitions() -> dict[str, str]:
 
 
 def _names(terms: str) -> list[str]:
-    """The terms of a row: "resonance, anti-resonance of a curve" are two, "Floquet multiplier" is also a multiplier.
+    """Return the terms of a row: "resonance, anti-resonance of a curve" are two.
 
-    Another name of a term stands in parentheses after it.
+    Another name of a term is in parentheses after it; a "Floquet multiplier" is also a "multiplier".
     """
     names = [re.sub(r" of an? .*", "", word.strip()) for word in re.split("[(),]", terms) if word.strip()]
     if len(names) > 1 and names[-1].endswith(" force"):  # "input, output force"

@@ -133,7 +133,7 @@ def curve_redraws(page: Page, seconds: float) -> dict[str, Any]:
 
 def live_figures(page: Page, seconds: float) -> dict[str, Any]:
     """Frames a second and lag from computed on the server to painted, while nothing is touched."""
-    page.get_by_role("button", name="The run goes on").click()
+    page.get_by_role("button", name="The run continues").click()
     page.wait_for_timeout(1500)
     frames = page.evaluate(FIXED_STEP, seconds)
     lags = [frame["lag"] for frame in frames]

@@ -14,7 +14,7 @@ from playwright.sync_api import Locator, Page, expect
 def panel(page: Page) -> Locator:
     """The effects tab, enlarged."""
     page.get_by_role("tab", name="effects").click()
-    page.get_by_title("Larger, over the curve").click()
+    page.get_by_title("Larger: cover the curve").click()
     return page.locator("#tabs")
 
 
@@ -109,11 +109,11 @@ def test_what_is_computed_is_what_is_asked_for(visit: Visit) -> None:
     expect(activity(tab, "live run")).to_contain_text("off")
     page.get_by_label("sweep up").check()
     expect(activity(tab, "resonance curve, sweep up")).to_contain_text("all points are computed", timeout=COMPILED)
-    page.get_by_role("button", name="The run goes on").click()
+    page.get_by_role("button", name="The run continues").click()
     expect(activity(tab, "live run")).to_contain_text("paused")
     play_button(page).click()
     expect(activity(tab, "live run")).to_contain_text("computing")
     play_button(page).click()
-    page.get_by_title("Larger, over the curve").click()
+    page.get_by_title("Larger: cover the curve").click()
     page.locator('[data-knob="D"] input[type="range"]').press("ArrowRight")
     expect(activity(tab, "resonance curve, from rest")).to_contain_text("not on the screen")

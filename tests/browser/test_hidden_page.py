@@ -95,7 +95,7 @@ def test_a_hidden_page_sends_no_pings_and_goes_on_when_it_is_shown(server: Serve
 
 def test_a_running_chain_waits_for_a_hidden_page(server: Server, page: SleepingBrowser) -> None:
     page.evaluate("""[...document.querySelectorAll("*")].flatMap((node) => [...(node.shadowRoot?.querySelectorAll("button") ?? [])])
-      .find((button) => button.title.startsWith("The run goes on")).click()""")
+      .find((button) => button.title.startsWith("The run continues")).click()""")
     page.until("granchain.shown.live")
     page.hide()
     time.sleep(1)

@@ -101,7 +101,7 @@ def test_the_page_follows_the_knobs_and_the_window(visit: Visit) -> None:
     type_into(page, "f", "1130")
     section_follows_bead_and_phase(page, sheet)
     # a live run has no multipliers
-    page.get_by_role("button", name="The run goes on").click()
+    page.get_by_role("button", name="The run continues").click()
     expect(sheet.locator(".say")).to_contain_text("a live run is under way")
     assert marks(page, "within") == marks(page, "outside") == 0
 

@@ -18,8 +18,8 @@ def test_a_link_says_how_the_page_looks(visit: Visit, theme: str, ink: str) -> N
     # the pictures too, which the server draws
     page.wait_for_function(INK, arg=ink)
     page.get_by_role("button", name="Theme: ").click()
-    page.get_by_role("button", name="The run goes on").click()
-    expect(page.get_by_role("button", name="The run goes on")).to_have_attribute("aria-pressed", "true")
+    page.get_by_role("button", name="The run continues").click()
+    expect(page.get_by_role("button", name="The run continues")).to_have_attribute("aria-pressed", "true")
     assert page.evaluate("document.documentElement.dataset.theme") != theme
 
 

@@ -53,7 +53,7 @@ def test_for_visitors_who_want_less_motion_the_chain_waits(visit: Visit) -> None
     at_rest(page, "asked")  # a page that stands still asks for no animation frames
     play = play_button(page)
     expect(play).to_contain_text("play")
-    page.get_by_role("button", name="The run goes on").click()
+    page.get_by_role("button", name="The run continues").click()
     expect(page.locator("#foot #regime")).to_contain_text("live")
     page.get_by_role("button", name="The steady state").click()
     expect(page.locator("#foot #regime")).to_contain_text("period 1")
@@ -103,7 +103,7 @@ COLOURS = """(gap) => {
 
 def test_live_frames_advance_stop_when_paused_and_step_by_one_period(visit: Visit) -> None:
     page = visit(**MOVING)
-    page.get_by_role("button", name="The run goes on").click()
+    page.get_by_role("button", name="The run continues").click()
     page.wait_for_function("painted.filter((event) => event.live).length > 10")
     count = page.evaluate("painted.length")
     page.wait_for_function(f"painted.length > {count} + 16")  # how many a second: tests/benchmarks/browser_latency.py

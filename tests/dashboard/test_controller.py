@@ -106,8 +106,8 @@ def test_a_reconnected_page_has_its_pause_back_and_the_rest_from_its_link(dashbo
 
 @pytest.mark.parametrize(("query", "different"), [
     ("", ""), (f"&N={MOST_BEADS}&start=previous", ""),
-    (f"&N={MOST_BEADS + 1}&start=previous", ", but the motion begins at rest"),
-    (f"&N={MOST_BEADS + 1}&drive=rest&strike=1", ""), ("&mode=live", ", but the live run has begun anew")])
+    (f"&N={MOST_BEADS + 1}&start=previous", ", but the motion starts from rest"),
+    (f"&N={MOST_BEADS + 1}&drive=rest&strike=1", ""), ("&mode=live", ", but the live run has started again")])
 def test_a_reconnected_page_says_what_its_link_does_not_bring_back(dashboard: Dashboard, query: str,
                                                                    different: str) -> None:
     """A settled motion begins where it began before, unless its chain is too long for a link."""

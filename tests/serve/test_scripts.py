@@ -57,7 +57,7 @@ def test_a_name_that_is_used_twice_is_refused(tmp_path: Path) -> None:
     for folder in ("one", "other"):
         (tmp_path / folder).mkdir()
         (tmp_path / folder / "plot.js").touch()
-    with pytest.raises(ValueError, match=r"other.plot\.js and .+one.plot\.js have one name"):
+    with pytest.raises(ValueError, match=r"other.plot\.js and .+one.plot\.js have the same name"):
         files_by_name("*.js", tmp_path)
 
 

@@ -32,7 +32,7 @@ def test_a_chain_that_is_too_long_begins_at_rest() -> None:
 
 
 @pytest.mark.parametrize(("text", "told"), [
-    ("!!", "damaged"), ("AAAA", "damaged"), ("", "damaged"), ("ä", "damaged"), (start_text(State(np.zeros(3), np.zeros(3))), "of 3 beads"),
+    ("!!", "damaged"), ("AAAA", "damaged"), ("", "damaged"), ("ä", "damaged"), (start_text(State(np.zeros(3), np.zeros(3))), "has 3 beads"),
     (start_text(replace(START, displacement=np.full(11, np.nan))), "impossible for a chain"),
     (start_text(replace(START, velocity=np.full(11, 1e6))), "impossible for a chain"),
     (start_text(replace(START, phase=1.0)), "impossible for a chain")])
@@ -59,7 +59,7 @@ def test_a_damaged_pin_is_left_out_and_told() -> None:
     session = Session()
     _, refused = apply_address(session, "v=1&pin=scene%3Dsec2%26f%3Dlots&pin2=scene%3Drig&from=AAAA&story=none.1")
     assert [pin.scene.name for pin in session.pins] == ["rig"]
-    assert len(refused) == 3 and "A pin of the link is damaged and was left out." in refused
+    assert len(refused) == 3 and "A pin in the link is damaged and was left out." in refused
 
 
 def test_every_pin_has_a_name_a_field_and_dashes() -> None:

@@ -1,5 +1,5 @@
-// A line joins the bead under the pointer, or else the chosen bead, to its column of the map, which has a frame. The
-// chain is wider than the map, so a bead is not above its column.
+// Joins the bead under the pointer, or otherwise the chosen bead, by a line to its framed column of the map. The chain
+// is wider than the map, so a bead is not above its column.
 
 import { draw } from "../toolkit/svg.js";
 
@@ -21,7 +21,7 @@ export class BeadLink {
     return this.drawing.canvas.getBoundingClientRect();
   }
 
-  // The pointer has come to a bead or its column; 0 for neither.
+  // Sets the bead under the pointer, or whose column is under it; 0 for none.
   point(bead) {
     const known = bead >= 1 && bead <= this.drawing.beads ? bead : 0;
     if (known === this.drawing.pointed) return;

@@ -1,4 +1,4 @@
-// The chain of the main page, above the map whose columns are its beads. Its clock is that of the whole page.
+// The chain of the main page, above the map whose columns are its beads. Its clock drives the whole page.
 
 import { BeadLink } from "./bead_link.js";
 import { ChainDrawing } from "./chain_drawing.js";
@@ -12,9 +12,9 @@ import { Sound } from "./sound.js";
 import { colourOf, Steel } from "./steel.js";
 
 const PEAK =
-  "The largest force in this picture, and the smallest where the contact pulls or is always pressed: below zero the dashpot of an opening contact pulls. How far the axis goes is said below the map: “same scale” or “fit”.";
+  "The largest force in this picture, and the smallest if the contact pulls or is always pressed: below zero, the dashpot of an opening contact pulls. The choice below the map, “same scale” or “fit”, sets how far the axis goes.";
 
-// Calls `act` after the present animation frame, by a message: those posted during a frame are delivered after it.
+// Calls `act` after the present animation frame, by means of a message: messages posted in a frame arrive after it.
 function afterFrame(act) {
   const channel = new MessageChannel();
   channel.port1.onmessage = act;
@@ -23,7 +23,7 @@ function afterFrame(act) {
 
 const FINE = 3; // pixels of a bead in a file for each pixel on the screen
 
-// Room for the driver and for the wall beside the beads, in pixels.
+// Room for the driver and the wall at the ends of the chain, in pixels.
 const DRIVER = 62,
   WALL = 26;
 
@@ -43,7 +43,7 @@ class Chain {
     this.compact = null; // the value last sent to the server; null before the first
   }
 
-  // Draws the chain anew in the next animation frame.
+  // Redraws the chain in the next animation frame.
   mark() {
     this.dirty = true;
     this.wake();
@@ -104,7 +104,7 @@ class Chain {
       label.textContent = energy_labels[i];
     });
     for (const choice of this.scales) choice.ariaPressed = String((choice.value === "fit") === fit);
-    // Longer words where there is room, only for the chosen scale.
+    // A longer text if there is room, only for the chosen scale.
     const more = (words, rest) => [words, element("span", { className: "roomy", textContent: rest })];
     this.leftTitle.textContent = driven ? "driver" : "left end";
     this.scales[0].replaceChildren(...more("same scale", fit || !driven ? "" : " for all f"));
@@ -119,7 +119,7 @@ class Chain {
   }
 
   receive(message) {
-    window.granchain.connection.answerReceived(); // any message answers a ping; “pong” says nothing more
+    window.granchain.connection.answerReceived(); // any message answers a ping; “pong” has no other meaning
     if (message.type === "frames") this.load(message);
   }
 
@@ -140,7 +140,7 @@ class Chain {
     });
   }
 
-  // The frame around the chosen bead's column of the map, and the line from the bead to it.
+  // Places the frame around the chosen bead's column of the map, and the line from the bead to it.
   placeColumn() {
     this.link.place();
     const { chosen, beads } = this.drawing;
@@ -175,7 +175,7 @@ class Chain {
     requestAnimationFrame(() => afterFrame(() => this.painted(frames, performance.now() - arrived)));
   }
 
-  // `took` is the time since this picture arrived [ms]. The server cannot measure it, and clocks of two machines differ.
+  // `took` is the time since this picture arrived [ms]. The server cannot measure it, as the two clocks differ.
   painted({ number, live, sent }, took) {
     this.model.send_msg({ do: "painted", number, took });
     window.granchain.emit("painted", { number, live, lag: Date.now() - 1000 * sent });

@@ -15,18 +15,18 @@ from ...scripts import module
 from ...session.share import VIEW_VALUES, encode
 from ..toolkit.component import Component, text
 
-#: The scales of the pictures: the word on a button, and its meaning.
+#: The scales of the pictures: the text of each button, and its meaning.
 _SCALES = {
     "same": ("same scale", "One scale for all pictures of this scene: its axes and colours end at the largest values "
              "at any drive frequency, so that strong and weak motions can be compared. A larger motion widens it; "
-             "a click takes the scene's own scale again"),
+             "a click restores the scene's own scale"),
     "fit": ("fit", "Every picture fills its frame: weak motions are visible, but cannot be compared"),
 }
 SCALES = [(scale, *_SCALES[scale]) for scale in VIEW_VALUES["scale"]]
 
 
 class ChainPart(Component):
-    """Beads, contacts, driver and wall; the frames come as single-precision arrays."""
+    """Beads, contacts, driver and wall; the frames arrive as single-precision arrays."""
 
     _esm = module("chain.js")
     _stylesheets = [text("chain.css")]  # noqa: RUF012  (Panel's own class attribute)
@@ -34,11 +34,11 @@ class ChainPart(Component):
 
 def frames_message(number: int, frames: Frames, scene: Scene, scale: Extremes, fit: bool,
                    peaks: list[list[str]], live: bool, running: bool, final: bool) -> dict[str, Any]:
-    """The data with which the browser draws the chain at every instant; of a live run, only at the present one.
+    """Return the data from which the browser draws the chain at every instant; for a live run, only at the present.
 
     `scale` has the largest values that the chain and its colours are drawn to; a fitted chain finds its own. `peaks`
-    are the largest and the smallest input and output force in words. No better picture of these knobs follows a
-    `final` one.
+    are the largest and the smallest input and output force in words. A `final` picture is the last and best one of
+    these knobs.
     """
     return {
         "type": "frames",
@@ -64,20 +64,20 @@ def frames_message(number: int, frames: Frames, scene: Scene, scale: Extremes, f
 
 
 def _present(frames: Frames) -> np.ndarray:
-    """The last row only."""
+    """Return the values of the last row only."""
     return drawn_values(chain_series(frames.displacement[-1:], frames.force[-1:], frames.kinetic_energy[-1:],
                                      frames.drive_displacement[-1:]))
 
 
 def energy_labels(high: float) -> list[str]:
-    """The labels at the beginning, in the middle and at the end of a colour bar up to `high` [J].
+    """Return the labels at the start, in the middle and at the end of a colour bar up to `high` [J].
 
-    The bar is even in the square root of the energy, so a quarter of it is in the middle.
+    The bar is linear in the square root of the energy, so its middle stands for a quarter of `high`.
     """
     factor, letter = prefixed(high)
     return ["0", f"{high / 4 / factor:.3g}", f"{high / factor:.3g} {letter}J"]
 
 
 def drawn_chain(scene: Scene) -> dict[str, Any]:
-    """The properties of a chain, besides its motion, that chain_drawing.js draws."""
+    """Return the properties of a chain, in addition to its motion, that chain_drawing.js draws."""
     return {"beads": scene.N, "radii": [bead.radius for bead in scene.beads], "foundation": scene.k > 0.0}

@@ -7,7 +7,7 @@ import { Steel } from "./steel.js";
 
 const NUMBERED = 13; // px; smaller beads have no number
 
-// The largest overlap and the largest displacement as drawn, in distances of two beads.
+// The largest overlap and the largest displacement as drawn, in distances between two beads.
 const OVERLAP = 0.3,
   TRAVEL = 0.8;
 
@@ -18,7 +18,7 @@ export class ChainDrawing {
     this.steel = new Steel(palette);
     this.chosen = 0; // the bead that is marked, 0 for none
     this.pointed = 0; // the bead under the pointer, or whose column is under it; 0 for none
-    this.hasLeftBody = true; // whether there is a driver or plate, which cuts the first bead where they meet
+    this.hasLeftBody = true; // whether there is a driver or plate, which cuts off the first bead where they meet
   }
 
   readTheme() {
@@ -42,7 +42,7 @@ export class ChainDrawing {
     this.steel.forget();
   }
 
-  // The room for the chain, from the driver's face to the wall.
+  // Measures the room for the chain, from the driver's face to the wall.
   measure(box, gap) {
     this.readTheme();
     const own = this.canvas.getBoundingClientRect();
@@ -57,7 +57,7 @@ export class ChainDrawing {
     this.arrange();
   }
 
-  // The places of rest from the driver's face, in distances of two of the largest beads. Beads at rest touch.
+  // Sets the rest positions, measured from the driver's face in diameters of the largest bead. Beads at rest touch.
   rest(radii) {
     this.largest = Math.max(...radii);
     this.homes = [-0.5];
@@ -71,7 +71,7 @@ export class ChainDrawing {
     this.arrange();
   }
 
-  // The distance of two beads on the screen, as large as the room allows.
+  // Sets the distance between two beads on the screen, as large as the room allows.
   arrange() {
     if (!this.long || !this.room) return;
     this.span = Math.min(this.room, this.long * this.widest());
@@ -87,7 +87,7 @@ export class ChainDrawing {
     return this.left + this.homes[i] * this.pitch;
   }
 
-  // The bead whose place of rest is nearest to x.
+  // The bead whose rest position is nearest to x.
   nearest(x) {
     const far = (i) => Math.abs(this.home(i) - x);
     let best = 1;
@@ -95,8 +95,8 @@ export class ChainDrawing {
     return best;
   }
 
-  // The scale of displacements: as large as possible without drawing pressed beads over one another, of the scene's
-  // largest motion where that is known, else of this picture's. One pitch on the screen stands for one diameter.
+  // Sets the scale of displacements, as large as possible without drawing pressed beads over one another: for the
+  // scene's largest motion if that is known, otherwise for this picture's. One pitch on the screen is one diameter.
   load(frames) {
     this.rest(frames.radii);
     const { largest, overlap, force } = frames.scale ?? extremes(frames);
@@ -162,7 +162,7 @@ export class ChainDrawing {
     g.lineCap = "butt";
   }
 
-  // The light behind a bead with much energy. All are drawn before the beads, so that no neighbour cuts it.
+  // The light behind a bead with a lot of energy. All halos are drawn before the beads, so that no halo covers a bead.
   halo(x, y, radius, share) {
     const made = this.steel.halo(radius, share, this.ratio);
     if (!made) return;
@@ -170,7 +170,7 @@ export class ChainDrawing {
     this.context.drawImage(made.image, x - half, y - half, 2 * half, 2 * half);
   }
 
-  // A bead. Where it presses on a neighbour, each of the two is cut by half of the overlap.
+  // A bead. Where it presses on a neighbour, each of the two is cut off by half of the overlap.
   bead(i, xOf, y, sizes, share) {
     const { context: g, ink } = this;
     const x = xOf(i),
@@ -217,7 +217,7 @@ export class ChainDrawing {
 
   bodies(xOf, pitch, radius, y, beads) {
     const { context: g, ink } = this;
-    const under = y - 5 - 1.25 * parseFloat(ink.small); // the words over the chain stay free
+    const under = y - 5 - 1.25 * parseFloat(ink.small); // the words over the chain stay uncovered
     const tall = Math.max(radius, Math.min(1.5 * radius, under)),
       deep = Math.min(26, 0.8 * pitch + 6);
     const driver = xOf(0) + radius;
@@ -261,7 +261,7 @@ export class ChainDrawing {
     g.stroke();
   }
 
-  // How many times larger displacements are drawn.
+  // By how much displacements are magnified, as text.
   get magnification() {
     return `× ${this.factor.toLocaleString("en").replaceAll(",", "\u202f")}`;
   }

@@ -1,6 +1,6 @@
-// The numbers of a chain's motion: read from a message, at an instant, and the largest.
+// The values of a chain's motion: read from a message, interpolated at an instant, and the largest of them.
 
-// The four series of a chain, which lie in a message's one array from index `start` on, and the index after them.
+// The four series of a chain, taken from the single array of a message from index `start` on, and the index after them.
 export function unpack({ rows, beads, values }, start = 0) {
   const series = {};
   let end = start;

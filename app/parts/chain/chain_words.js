@@ -17,7 +17,7 @@ export function writeWords(chain) {
   const [metres, name] = tape((0.22 * chain.width) / (chain.pitch * chain.exaggeration));
   const long = metres * chain.pitch * chain.exaggeration;
   const { magnification } = chain;
-  // The bar is magnified as the displacements of the beads are. With little room it has fewer words.
+  // The bar is magnified like the displacements of the beads. If there is little room, it has fewer words.
   const forms = [
     [`displacements drawn ${magnification}`, `${name} of displacement`],
     [`drawn ${magnification}`, `${name} of displacement`],
@@ -42,7 +42,7 @@ export function writeWords(chain) {
   g.fillText(length, x + long + 6, 5);
 }
 
-// The largest length that is 1, 2 or 5 times a power of ten [m] and not above `most`, with its name.
+// The largest length up to `most` that is 1, 2 or 5 times a power of ten [m], with its name.
 function tape(most) {
   const metres = stepBelow(most);
   const [unit, letter] = prefixed(metres);

@@ -1,7 +1,7 @@
-// The force at the wall as sound, off until it is asked for: the whole periods on the screen at their own speed,
-// repeated. Loud is strong on the scale of the pictures, so an anti-resonance is quiet.
+// The force at the wall as sound, off until the visitor switches it on: the whole periods on the screen at their own
+// speed, repeated. The volume follows the scale of the pictures, so an anti-resonance is quiet.
 
-// s of sound that is repeated. As this is more than one period, the pitch is exact to a few hundredths of a percent.
+// Length of the repeated sound [s]. As it is more than one period, the pitch is exact to a few hundredths of a percent.
 const LASTS = 0.5;
 const LOUDEST = 0.25; // largest amplitude, over full scale
 const FADE = 0.02; // s
@@ -18,7 +18,7 @@ export class Sound {
     this.play(frames);
   }
 
-  // Makes the sound of another picture. A live run has none, since it has no periods to repeat.
+  // Plays the sound of another picture. A live run is silent, since it has no periods to repeat.
   play(frames) {
     this.stop();
     if (!this.on || !frames || frames.live || frames.rows < 2) return;

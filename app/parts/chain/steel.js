@@ -1,9 +1,9 @@
-// Beads of steel that glow with their energy: drawn once for every size and step of energy, then copied.
+// Steel beads that glow with their energy: drawn once for every size and step of energy, then copied.
 
-const STEPS = 48; // steps of energy, enough that one cannot see them
+const STEPS = 48; // steps of energy, too small to be seen
 const GLOWS = 0.3; // √(energy over the top of the scale) above which a bead has a halo
 
-// The colour of an energy, given over the top of the scale; app/plots/energies.py makes the list.
+// The colour of an energy, given as a fraction of the top of the scale; app/plots/energies.py makes the palette.
 export const colourOf = (palette, share) => palette[Math.round((palette.length - 1) * Math.max(0, Math.min(1, share)))];
 
 const channels = (colour) => [1, 3, 5].map((at) => Number.parseInt(colour.slice(at, at + 2), 16));
@@ -18,24 +18,24 @@ export class Steel {
     this.forget();
   }
 
-  // Another theme, or another size of the pictures.
+  // Drops all images, because the theme or the size of the pictures has changed.
   forget() {
     this.made = new Map();
   }
 
-  // A square image of a bead, and half its side in radii of the bead.
+  // A square image of a bead, and half of its side in bead radii.
   bead(radius, share, ratio, ink) {
     return this.madeOnce("bead", 1.05, radius, share, ratio, (...of) => this.body(...of, ink));
   }
 
-  // The same of the halo behind it; null for a bead that does not glow, as most do.
+  // The same for the halo behind it; null for a bead that does not glow, as most do not.
   halo(radius, share, ratio) {
     if (!this.palette || Math.sqrt(share) <= GLOWS) return null;
     return this.madeOnce("halo", 3, radius, share, ratio, (...of) => this.light(...of));
   }
 
   madeOnce(name, reach, room, share, ratio, draw) {
-    const radius = Math.max(room, 0.5); // a page that is being resized may have no room for a moment
+    const radius = Math.max(room, 0.5); // a page that is being resized may briefly have no room
     const step = Math.round(STEPS * Math.sqrt(Math.max(0, Math.min(1, share))));
     const key = `${name} ${radius.toFixed(1)} ${step}`;
     if (!this.made.has(key)) {

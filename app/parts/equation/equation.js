@@ -2,7 +2,7 @@
 
 import { element, onWidth } from "../toolkit/dom.js";
 
-// A line that is too long for the column is made smaller, down to this part of the usual size.
+// A line that is too long for the column is made smaller, down to this fraction of the usual size.
 const SMALLEST = 0.55;
 
 export function render({ model }) {
@@ -21,7 +21,7 @@ export function render({ model }) {
     root.replaceChildren();
     for (const text of latex ? latex.split(/,?\\qquad/) : []) {
       const line = element("div");
-      // Two short equations share a line where there is room.
+      // Two short equations share a line if there is room.
       for (const equation of text.split(/,\s*\\quad/)) {
         const span = element("span");
         window.katex.render(equation.trim(), span, { output: "mathml", throwOnError: false });
@@ -33,7 +33,7 @@ export function render({ model }) {
   };
   model.on("state", show);
   onWidth(root, shrinkToWidth);
-  window.granchain.on("theme", shrinkToWidth); // the projector's words are larger
+  window.granchain.on("theme", shrinkToWidth); // the projector theme has larger text
   show();
   return root;
 }

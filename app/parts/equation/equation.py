@@ -7,7 +7,7 @@ from ..toolkit.component import Component, text
 
 
 class EquationPart(Component):
-    """LaTeX from the scene, rendered as MathML by the KaTeX that Panel brings along."""
+    """LaTeX from the scene, rendered as MathML by the KaTeX that comes with Panel."""
 
     _esm = module("equation.js")
     _stylesheets = [text("equation.css")]  # noqa: RUF012

@@ -1,1 +1,1 @@
-"""Bokeh figures in components: base classes, styles, and what the page uses of BokehJS."""
+"""Bokeh figures in components: base classes, styles, and the parts of BokehJS that the page uses."""

@@ -9,7 +9,7 @@ export class BokehFigure {
     this.ready = Promise.resolve();
   }
 
-  // Puts another figure in place of the present one, as for another theme; `filled` gives it the data.
+  // Replaces the present figure by another one, for example in another theme; `filled` gives it the data.
   load(item, words) {
     if (!item || item === this.item) return;
     this.item = item;
@@ -17,7 +17,7 @@ export class BokehFigure {
     this.host.setAttribute("aria-label", words);
     this.enqueue(async () => {
       this.clear();
-      // The data come before it is drawn: an axis without data has no range.
+      // It gets its data before it is drawn: an axis without data has no range.
       this.document = documentOf(item);
       this.filled(this);
       this.views = await drawDocument(this.document, this.host);
@@ -29,7 +29,7 @@ export class BokehFigure {
     this.enqueue(() => this.clear());
   }
 
-  // Figures are drawn one after the other. A failure is reported; the next figure is drawn all the same.
+  // Figures are drawn one after the other. A failure is reported, and the next figure is still drawn.
   enqueue(change) {
     this.ready = this.ready.then(change).catch((problem) => console.error(problem));
   }
@@ -50,12 +50,12 @@ export class BokehFigure {
     this.model(name)?.setv(properties);
   }
 
-  // Append rows to a source.
+  // Appends rows to a source.
   stream(name, columns) {
     this.model(name)?.stream(columns);
   }
 
-  // Append points to lines of a multi-line source, or new lines; each entry is [line number, xs, ys].
+  // Appends points to lines of a multi-line source, or new lines; each entry is [line number, xs, ys].
   extend(name, lines) {
     const source = this.model(name);
     if (!source) return;
@@ -83,7 +83,7 @@ export class BokehFigure {
   }
 }
 
-// The row, of those given, that is nearest to a place on the screen.
+// The row among `rows` that is nearest to a place on the screen.
 function nearest(rows, { x, y }, { sx, sy }, { x_scale, y_scale }) {
   const far = (row) => Math.hypot(x_scale.compute(x[row]) - sx, y_scale.compute(y[row]) - sy);
   return rows.reduce((best, row) => (far(row) < far(best) ? row : best));
@@ -102,7 +102,7 @@ function join({ x, y }, lines) {
   }
 }
 
-// The data of a figure that grows. They are kept, since a figure in another theme must get all of them again.
+// The data of a growing figure. They are kept, since a figure in another theme must get all of them again.
 export class StreamedData {
   constructor() {
     this.clear();
@@ -131,13 +131,13 @@ export class StreamedData {
     for (const figure of figures) {
       fillModels(figure, models);
       for (const [name, columns] of Object.entries(rows)) figure.stream(name, columns);
-      // Streaming does not recolour earlier rows, so after a change of scale all rows are set anew.
+      // Streaming does not recolour earlier rows, so after a change of scale all rows are redrawn.
       if (Object.keys(models).length) for (const name of Object.keys(rows)) figure.model(name)?.change.emit();
       for (const [name, added] of Object.entries(lines)) figure.extend(name, added);
     }
   }
 
-  // Sets everything at once, in a figure that is new or shows something else.
+  // Sets everything at once, in a figure that is new or showed something else.
   fill(figure) {
     fillModels(figure, this.models);
     for (const [name, data] of Object.entries({ ...this.rows, ...this.lines }))
@@ -145,7 +145,7 @@ export class StreamedData {
   }
 }
 
-// Properties of models by their names.
+// Sets properties of models, which are given by name.
 export function fillModels(figure, models) {
   for (const [name, properties] of Object.entries(models ?? {})) figure.set(name, properties);
 }

@@ -1,4 +1,4 @@
-"""The style of the plots over time and of the curve: plain Bokeh plots with exact borders."""
+"""The style of the figures over time and of the curve: plain Bokeh plots with exact borders."""
 
 from __future__ import annotations
 
@@ -15,11 +15,12 @@ GAP = 6
 
 def bare_plot(borders: tuple[int, int], ticks: tuple[int, int], axes: tuple[str, str | None],
                grids: tuple[int, ...] = (0, 1), **options: Any) -> Plot:
-    """A plot without toolbar that fills its cell; its colours come from the page's CSS.
+    """Return a plot without a toolbar that fills its cell; its colours come from the page's CSS.
 
-    `borders` are its least left and right ones [px], `ticks` about how many there are along x and y, `axes` the places
-    of the axes, and `grids` the dimensions across which there are grid lines. It is no `figure`, because
-    `bokeh.plotting` makes ranges, scales, axes and glyphs that are replaced or never shown: a fifth of an opening.
+    `borders` are its smallest left and right borders [px], `ticks` the approximate numbers of ticks along x and y,
+    `axes` the sides of the axes, and `grids` the dimensions that have grid lines. It is not a `figure`, because
+    `bokeh.plotting` makes ranges, scales, axes and glyphs that are replaced or never shown, which takes a fifth of the
+    time to open a page.
     """
     plot = Plot(
         sizing_mode="stretch_both", toolbar_location=None, background_fill_color=None, border_fill_color=None,
@@ -38,8 +39,7 @@ def bare_plot(borders: tuple[int, int], ticks: tuple[int, int], axes: tuple[str,
 
 
 def bare_axis(axis: Any, role: str | None = None) -> None:
-    """No tick marks, no lines, large upright labels; one that names a quantity has the theme's text colour of its role.
-    """
+    """Style an axis: no tick marks or lines, large upright labels; the theme's text colour of `role` for its label."""
     axis.axis_line_color = None
     axis.major_tick_line_color = None
     axis.minor_tick_line_color = None

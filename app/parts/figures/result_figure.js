@@ -1,4 +1,4 @@
-// The figure of a finished result. The server sends it whole (result_figure.py), and again for another theme.
+// The figure of a finished result. The server sends it as a whole (result_figure.py), and again for another theme.
 
 import { element } from "../toolkit/dom.js";
 import { BokehFigure } from "./bokeh_figure.js";
@@ -26,7 +26,7 @@ export class ResultFigure {
     }
   }
 
-  // Drawn only when it is visible: a hidden element has no size.
+  // Draws the figure only when it is visible: a hidden element has no size.
   draw() {
     if (window.granchain.overlay !== this.page || !this.item) return;
     const { figure, words, shape } = this.item;

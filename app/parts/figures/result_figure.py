@@ -1,4 +1,4 @@
-"""Base class of components whose figure is sent whole, as one message with all its points."""
+"""Base class of components whose figure is sent as a whole, in one message with all its points."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ..toolkit.component import Component
 
 @dataclass(frozen=True)
 class _Drawn:
-    """A figure: how it is drawn, its text for a screen reader, width over height (0 for the ratio of its place)."""
+    """A figure: how it is drawn, its text for screen readers, and width over height (0 for the ratio of its place)."""
 
     draw: Callable[[Theme], LayoutDOM]
     words: str
@@ -23,10 +23,10 @@ class _Drawn:
 
 
 class ResultFigure(Component):
-    """A component whose figures are sent whole, with all their points, once there is a result and for each theme.
+    """A component whose figures are sent as a whole, with all points, when there is a result and for each new theme.
 
-    Each has a place on the page, whose name its `ResultFigure` of result_figure.js has, too. A figure that grows, or is
-    filled in the browser, is a `StreamedFigure` instead.
+    Each figure has a place on the page, with the same name as in its `ResultFigure` of result_figure.js. A figure that
+    grows, or is filled in the browser, is a `StreamedFigure` instead.
     """
 
     __abstract = True
@@ -37,7 +37,7 @@ class ResultFigure(Component):
         self._drawn: dict[str, _Drawn] = {}
 
     def show_figure(self, draw: Callable[[Theme], LayoutDOM], words: str, shape: float = 0.0, place: str = "") -> None:
-        """Show a figure, which replaces an earlier one in its place."""
+        """Show a figure, replacing any earlier one in its place."""
         self._drawn[place] = _Drawn(draw, words, shape)
         self._send_figure(place)
 

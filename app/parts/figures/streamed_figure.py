@@ -1,4 +1,4 @@
-"""Base class of components that contain figures of app/plots."""
+"""Base class of components with figures of app/plots that are filled in the browser."""
 
 from __future__ import annotations
 
@@ -14,22 +14,22 @@ from ..toolkit.component import Component
 
 
 def page_and_small(draw: Callable[[bool], LayoutDOM]) -> dict[str, Any]:
-    """Bokeh's JSON of a figure for a page and, compact, for its tab; `draw` gets whether it is compact."""
+    """Return Bokeh's JSON of a figure for a page and, compact, for its tab; `draw` is told whether it is compact."""
     return {"page": figure_item(draw(False)), "small": figure_item(draw(True))}
 
 
 class StreamedFigure(Component):
     """A component with figures. They are sent without data when first needed, and again when the theme changes.
 
-    `figures` are Bokeh's JSON by name, kept out of `state` because each change sends all of that. Data come as
-    messages, and the browser puts them into the figures: each is a `BokehFigure` (bokeh_figure.js), loaded when
-    `figures` arrives or changes and while its page is open, and so also when the page is opened.
+    `figures` is Bokeh's JSON by name, kept out of `state` because each change of `state` sends all of it. Data arrive
+    as messages, and the browser puts them into the figures: each is a `BokehFigure` (bokeh_figure.js), loaded when its
+    page is opened, and when `figures` arrives or changes while the page is open.
     """
 
     figures = param.Dict(default={})
 
     empty_figures: ClassVar[staticmethod[[Theme], dict[str, Any]]]
-    """Makes the figures without points; every subclass has its own."""
+    """Makes the figures without points; every subclass defines its own."""
 
     __abstract = True
 
@@ -45,6 +45,6 @@ class StreamedFigure(Component):
                 self.figures = self.empty_figures(theme)
 
     def need_figures(self) -> None:
-        """Send the figures unless they have been sent; called before the first data."""
+        """Send the figures if they have not been sent yet; called before the first data."""
         if not self.figures:
             self.figures = self.empty_figures(self.theme)

@@ -1,1 +1,1 @@
-"""The bar on top, and what it opens: gallery, exports, help, tour."""
+"""The bar at the top, and what it opens: gallery, exports, help and tour."""

@@ -1,4 +1,4 @@
-// After another scene is chosen, the old pictures are grey until the new ones come: kernels may have to be compiled.
+// When another scene is chosen, the old pictures are grey until the new ones arrive, as kernels may need compiling.
 export function markAnotherScene(model) {
   const mark = () => {
     const { shown } = window.granchain;

@@ -5,7 +5,7 @@ import { button, download, element } from "../toolkit/dom.js";
 import { draw, SVG } from "../toolkit/svg.js";
 
 const MARGIN = 12, // px around a picture
-  SHARP = 2; // pixels of a PNG for one of the picture
+  SHARP = 2; // pixels of a PNG for each pixel of the picture
 // The figures of the main page: name in a file, element, and model of the figure.
 const FIGURES = {
   driver: ["at the driver", "left", "input force"],
@@ -21,7 +21,7 @@ const views = (name) => modelsNamed(name).map(viewOf).filter(Boolean);
 // One piece of a picture: its box on the screen and its drawing.
 const figurePiece = (view) => ({ box: view.el.getBoundingClientRect(), svg: () => svgOf(view) });
 
-// The chain is drawn once more, by the same code, on a context that writes SVG.
+// The chain is drawn again, by the same code, in a context that writes SVG.
 const chainPiece = () => {
   const { canvas, redraw } = window.granchain.chain;
   return {
@@ -35,7 +35,7 @@ const chainPiece = () => {
   };
 };
 
-// The words over the figures, at their places on the screen.
+// The texts over the figures, at their places on the screen.
 const wordsOf = (selector) =>
   [...document.querySelectorAll(selector)]
     .filter((element) => element.checkVisibility() && element.textContent.trim())
@@ -82,7 +82,7 @@ const bounds = (boxes) => {
   };
 };
 
-// Words in lines of at most `most` letters.
+// Breaks words into lines of at most `most` letters.
 function broken(words, most) {
   const lines = [""];
   for (const word of words.split(" ")) {
@@ -93,7 +93,7 @@ function broken(words, most) {
   return lines;
 }
 
-// A whole picture: a title that says what it shows, and below it every piece at its place on the screen.
+// The layout of a whole picture: a title that says what it shows, and below it every piece in its place on the screen.
 function sheet(title, { parts, words, bars }) {
   const all = bounds([...parts, ...words, ...bars].map(({ box }) => box));
   const line = parseFloat(style("--small-text-size")) || 14;
@@ -179,7 +179,7 @@ async function savePicture(what, kind) {
   download(`${name}.${kind}`, kind === "svg" ? new Blob([drawn.text], { type: "image/svg+xml" }) : await png(drawn));
 }
 
-// The list of what can be exported. `send` asks the server for one of its files.
+// The menu of exports. `send` asks the server for one of its files.
 export function exportMenu(send, files) {
   const picture = element("select", { ariaLabel: "which picture" });
   const options = [

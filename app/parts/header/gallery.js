@@ -1,5 +1,5 @@
-// The gallery of scenes: a card for each with a small picture, its title, a sentence and a question. The cards are
-// requested when the gallery is first opened.
+// The gallery of scenes: a card for each scene with a small picture, its title, a sentence and a question. The cards
+// are requested when the gallery is first opened.
 
 import { button, element } from "../toolkit/dom.js";
 
@@ -13,7 +13,7 @@ export class Gallery {
     const head = element("div", { className: "gallery-head" }, element("h2", { textContent: "Scenes" }), close);
     this.cards = element("div", { className: "cards" });
     this.root = element("dialog", { className: "gallery", ariaLabel: "scenes with pictures" }, head, this.cards);
-    // A click beside the dialog closes it.
+    // A click outside the dialog closes it.
     this.root.addEventListener("click", ({ target }) => target === this.root && this.root.close());
   }
 
@@ -44,7 +44,7 @@ export class Gallery {
     return card;
   }
 
-  // The card of the open scene is marked and has the focus.
+  // Marks the card of the open scene and gives it the focus.
   mark() {
     for (const card of this.cards.children) {
       card.ariaCurrent = String(card.value === this.scene);

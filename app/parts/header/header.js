@@ -1,4 +1,4 @@
-// The bar on top. Controls of the replay act in the browser alone; all others send one message.
+// The bar at the top. The controls of the replay act only in the browser; each of the others sends one message.
 
 import { markAnotherScene } from "./another_scene.js";
 import { repaintFigures } from "../figures/bokeh.js";
@@ -16,8 +16,8 @@ class Header {
   constructor(model) {
     this.model = model;
     this.playing = true;
-    this.themed = false; // whether the theme of the link has been taken over
-    this.begun = false; // whether the first state has come
+    this.themed = false; // whether the theme of the link has been applied
+    this.begun = false; // whether the first state has arrived
     this.popovers = new Popovers((what) => this.send("export", { what }), model.state.files);
     this.makeTimeControls();
     this.makeSceneChooser();
@@ -52,7 +52,7 @@ class Header {
     ];
     this.root = element("div", { className: "part bar" }, ...(window.granchain.embedded ? small : all));
     this.order = [...this.root.children];
-    this.root.append(this.scenes.gallery.root); // outside what layoutControls() moves: a moved dialog closes
+    this.root.append(this.scenes.gallery.root); // layoutControls() does not move it: a moved dialog closes
   }
 
   makeButtons() {
@@ -87,7 +87,7 @@ class Header {
     );
   }
 
-  // Moves controls into the menu “⋯”, the least needed first, until the others fit on the bar.
+  // Moves controls into the menu “⋯”, the least needed first, until the rest fit on the bar.
   layoutControls() {
     const { root, popovers } = this;
     const focused = root.getRootNode().activeElement;
@@ -202,7 +202,7 @@ class Header {
     else if (matchMedia("(prefers-reduced-motion: reduce)").matches) this.setPlaying(false);
   }
 
-  // Only the first state sets the theme, to the one of the link; later only the button changes it.
+  // Only the first state sets the theme, to that of the link; later, only the button changes it.
   takeTheme(theme) {
     if (this.themed || !theme) return;
     this.themed = true;
@@ -269,7 +269,7 @@ export function render({ model }) {
   window.granchain.on("theme", (value) => {
     header.send("theme", { value });
     repaintFigures();
-    header.layoutControls(); // the projector's words are larger
+    header.layoutControls(); // the projector theme has larger text
   });
   onWidth(header.root, () => header.layoutControls());
   document.addEventListener("keydown", (event) => keyPressed(event, header));

@@ -1,4 +1,4 @@
-"""The bar on top: scene, controls of time, mode, share, export, help and theme."""
+"""The bar at the top: scene, time controls, mode, share, export, help and theme."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from ..toolkit.component import Component, text
 
 _MODES = {
     "settled": "The steady state for these knobs, replayed",
-    "live": "The run goes on while you move the knobs",
+    "live": "The run continues while you move the knobs",
 }
 _STARTS = {"rest": "start: from rest", "previous": "start: previous state"}
-#: Replaces “from rest” while the motion on the screen began in another state: of a story, a map or a branch.
+#: Replaces “from rest” while the motion on the screen began in another state, given by a story, a map or a branch.
 _STARTED_ELSEWHERE = "start: a given state"
 
 
 class Header(Component):
-    """Buttons and lists of choices, each of which sends one message."""
+    """Buttons and lists of choices, each of which sends one message to the server."""
 
     _esm = module("header.js")
     _stylesheets = [text("controls.css"), text("header.css"), text("gallery.css")]  # noqa: RUF012

@@ -1,4 +1,4 @@
-// The icons of the bar on top.
+// The icons of the bar at the top.
 
 import { button } from "../toolkit/dom.js";
 

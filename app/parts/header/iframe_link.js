@@ -1,4 +1,4 @@
-// The bar of an embedded page: its title, and a link to the whole page.
+// The bar of an embedded page: its title, and a link to the full page.
 
 import { element } from "../toolkit/dom.js";
 

@@ -1,6 +1,6 @@
 // The keys that work everywhere on the page.
 
-const KEPT_AS = "granchain-help-key"; // in the browser, from visit to visit
+const KEPT_AS = "granchain-help-key"; // in the browser, from one visit to the next
 
 // Whether the key “?” opens the help. It can be switched off, because speech input may type it by accident (WCAG 2.1.4).
 export const opensHelp = {
@@ -17,12 +17,12 @@ export const opensHelp = {
     try {
       localStorage.setItem(KEPT_AS, on ? "on" : "off");
     } catch {
-      /* private browsing keeps nothing: it is switched off until the next visit */
+      /* private browsing stores nothing, so the choice lasts until the page is closed */
     }
   },
 };
 
-// Whether the event comes from a field, a list or a button, which needs the key itself.
+// Whether the event comes from a field, a list or a button, which uses the key itself.
 const inField = (event) =>
   event.composedPath().some((node) => /^(INPUT|SELECT|BUTTON|TEXTAREA|SUMMARY)$/.test(node.tagName));
 

@@ -1,4 +1,4 @@
-// The two buttons that only the bar of a phone has: they show all knobs, or the curve, in the lower half of the screen.
+// The two buttons that only a phone's bar has: they show all knobs, or the curve, in the lower half of the screen.
 
 import { icon, iconButton } from "./icons.js";
 

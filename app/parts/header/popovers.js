@@ -1,4 +1,4 @@
-// The boxes that the bar on top opens: the help, and the link to the picture.
+// The boxes that the bar at the top opens: help, link to the picture, exports, and the menu “⋯”.
 
 import { button, element } from "../toolkit/dom.js";
 import { exportMenu } from "./export_menu.js";
@@ -7,34 +7,34 @@ import { opensHelp } from "./keys.js";
 const HELP = [
   [
     "knobs",
-    "Drag, type, or use the arrow keys (Shift: larger steps). Double-click or press Delete for the scene's value.",
+    "Drag, type, or use the arrow keys (Shift: larger steps). Double-click or press Delete for the scene's own value.",
   ],
-  ["time", "Runs downwards in all pictures; drag in a picture to stop and move through time, press Space to play."],
+  ["time", "Runs downwards in all pictures. Drag in a picture to stop and move through time; press Space to play."],
   [
     "values",
-    "Point at a picture: a line through all of them, with the values there. Shift and drag in the energy map: a measuring tape for time, distance and speed.",
+    "Point at a picture for a line through all of them, with the values there. Hold Shift and drag in the energy map for a measuring tape of time, distance and speed.",
   ],
-  ["settled", "The steady state for these knobs, whole periods, replayed in slow motion."],
-  ["status", "The line at the bottom: a click on an entry says what it means."],
-  ["live", "The run goes on while you move the knobs: transients, jumps, hysteresis."],
+  ["settled", "The steady state for these knobs: whole periods, replayed in slow motion."],
+  ["status", "The line at the bottom: click an entry to see what it means."],
+  ["live", "The run continues while you move the knobs: transients, jumps, hysteresis."],
   [
     "accuracy",
-    "Click the error in the status line: that of each quantity, and a page that measures what accuracy costs on this machine.",
+    "Click the error in the status line for the error of each quantity and a page that measures what accuracy costs on this machine.",
   ],
   ["effects", "In the tab “effects”: switch an effect on or off and see what it costs."],
-  ["curve", "Click a frequency to go there. Shape and colour of a point show its regime."],
+  ["curve", "Click a frequency to go there. The shape and colour of a point show its regime."],
 ];
 
 const KEYS = [
   ["?", "this help, unless it is switched off below"],
   ["Space", "play or pause"],
-  ["Ctrl-Z", "undo; Ctrl-Shift-Z: redo; so do the browser's back and forward"],
+  ["Ctrl-Z", "undo; Ctrl-Shift-Z: redo; the browser's back and forward do the same"],
   ["Tab", "to the next control; Shift-Tab: back"],
   ["← →", "on a knob: fine steps, with Shift coarse; on tabs: the next tab; on the parameter map: the next cell"],
   ["Delete", "on a knob: back to the scene's value"],
   ["↑ ↓", "on the time cursor: one sample; Page ↑ and ↓: one drive period; Home and End: the ends"],
   ["Enter", "on the name of a peak: go there; in a knob's number: apply it"],
-  ["Esc", "closes what is open"],
+  ["Esc", "close whatever is open"],
 ];
 
 function list(rows) {
@@ -52,7 +52,7 @@ function helpKeySwitch() {
 
 const title = (textContent) => element("h2", { textContent });
 
-// At most one of them is open. It gets the focus; when it is closed, the focus goes back to where it was.
+// The boxes, of which at most one is open. It gets the focus; when it closes, the focus returns to where it was.
 export class Popovers {
   constructor(send, files) {
     this.field = element("input", { readOnly: true, ariaLabel: "link to this picture" });
@@ -66,7 +66,7 @@ export class Popovers {
     this.openers = new Map();
   }
 
-  // `opener` is the button of this box and says whether it is open.
+  // Makes `opener` the button of this box, which says whether the box is open.
   setOpener(box, opener) {
     this.openers.set(box, opener);
     opener.ariaExpanded = "false";
@@ -78,7 +78,7 @@ export class Popovers {
     for (const [popover, opener] of this.openers) opener.ariaExpanded = String(popover === box);
   }
 
-  // A button at the end of the help.
+  // Adds a button at the end of the help.
   offer(words, act) {
     const go = () => {
       this.close();
@@ -97,8 +97,8 @@ export class Popovers {
     return this.all.some((popover) => popover.contains(popover.getRootNode().activeElement));
   }
 
-  // Opens a box and moves the focus to this element of it. If a box is opened from another one, the focus
-  // later goes back to the opener of the first.
+  // Opens a box and moves the focus to `focused`, an element in it. If a box is opened from another one, the focus
+  // later returns to the opener of the first.
   open(box, focused) {
     if (!this.hasFocus()) this.opener = window.granchain.focused;
     this.showOnly(box);
@@ -109,7 +109,7 @@ export class Popovers {
     this.toggle("help");
   }
 
-  // Opens the box of this name, or closes it if it is open; closes the others.
+  // Opens the box of this name, or closes it if it is open, and closes the others.
   toggle(name) {
     const box = this[name];
     if (box.hidden) this.open(box, box === this.help ? box : box.querySelector("button, select, input"));

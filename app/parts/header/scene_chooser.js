@@ -1,12 +1,12 @@
-// The scenes in the bar on top: the list of their names, and the button that opens the gallery.
+// The scenes in the bar at the top: the list of their names, and the button that opens the gallery.
 
 import { chooser } from "../toolkit/dom.js";
 import { Gallery } from "./gallery.js";
 import { icon, iconButton } from "./icons.js";
 
 export class SceneChooser {
-  // `ask` requests the gallery's cards from the server, `choose` opens a scene; `changed` is called when the width of the
-  // list changes.
+  // `ask` requests the gallery's cards from the server, `choose` opens a scene, and `changed` is called when the width
+  // of the list changes.
   constructor(ask, choose, changed) {
     this.list = chooser("scene", "scene", choose);
     this.list.addEventListener("mousedown", () => this.openList());
@@ -15,20 +15,20 @@ export class SceneChooser {
     this.button = iconButton(icon("scenes"), "Scenes with pictures", () => this.gallery.open(this.list.value));
   }
 
-  // While a scene is being chosen, its name is not cut, and the list keeps its width.
+  // While a scene is being chosen, its name is not shortened, and the list keeps its width.
   openList() {
     const { width } = this.list.getBoundingClientRect();
     this.name(true);
     this.list.style.width = `${width}px`;
   }
 
-  // Scenes by name and title, or by name alone where the bar is too short for the title; the open list has both.
+  // Lists scenes by name and title, or only by name if the bar is too short for the title; the open list has both.
   name(withTitle) {
     this.list.style.width = "";
     for (const option of this.list.options) option.textContent = withTitle ? option.title : option.value;
   }
 
-  // The scenes to choose from, and the one that is open.
+  // Shows the scenes to choose from, and which of them is open.
   show(scenes, scene) {
     const options = scenes.map(({ name, title }) => {
       const option = new Option(`${name} — ${title}`, name);

@@ -1,10 +1,10 @@
-// Errors of scripts in the browser are reported to the server, which logs them: otherwise nobody learns of them.
+// Reports script errors in the browser to the server, which logs them; otherwise nobody would learn of them.
 
-const MOST = 5; // errors of one page; the server logs no more either
+const MOST = 5; // errors of one page; the server does not log more either
 const LONGEST = 400; // characters
-const HARMLESS = /^ResizeObserver loop/; // the browser does the rest of the layout in the next frame
+const HARMLESS = /^ResizeObserver loop/; // the browser finishes the layout in the next frame
 
-// Calls `report` with the words of an error that no script has caught, and the place where it was raised.
+// Calls `report` with the message of each uncaught error and the place where it was raised.
 export function watchScriptErrors(report) {
   let reported = 0;
   const reportFew = (words) => {

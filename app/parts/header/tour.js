@@ -1,17 +1,17 @@
-// The tour of a first visit: five steps, each beside a part of the page. A visitor can leave it at any time. It comes
-// once and interrupts nothing: it takes the focus only from the page as a whole, never from a control.
+// The tour on a first visit: five steps, each next to a part of the page. A visitor can leave it at any time. It
+// appears once and interrupts nothing: it takes the focus only from the page as a whole, never from a control.
 
 import { button, element, PHONE } from "../toolkit/dom.js";
 
-const KEPT_AS = "granchain-toured"; // in the browser, from visit to visit
+const KEPT_AS = "granchain-toured"; // in the browser, from one visit to the next
 const STEPS = [
-  ["knobs", "The driver, red, pushes the chain f times a second. Move f: all pictures follow at once."],
+  ["knobs", "The driver (red) pushes the chain f times a second. Move f: all pictures follow at once."],
   ["chain", "Steel beads that touch but are not bonded, so they can separate. The brighter a bead, the faster it is."],
-  ["map", "The same chain over time: each bead is a column, time runs down, bright is fast. A stripe is a pulse."],
-  ["right", "What arrives at the wall over the same time: pulses of force, green."],
+  ["map", "The same chain over time: each bead is a column, time runs downwards, bright is fast. A stripe is a pulse."],
+  ["right", "What arrives at the wall over the same time: pulses of force (green)."],
   [
     "curve",
-    "The largest of these forces for every f. Peaks are resonances, valleys anti-resonances, the flat end is the stop band. Click a name and go there.",
+    "The largest of these forces for every f. Peaks are resonances, valleys are anti-resonances, and the flat end is the stop band. Click a name to go there.",
   ],
 ];
 const GAP = 10; // px between a part and its words
@@ -20,7 +20,7 @@ const remembered = () => {
   try {
     return localStorage.getItem(KEPT_AS) !== null;
   } catch {
-    return true; // in a browser that stores nothing it would come at every visit
+    return true; // in a browser that stores nothing, it would appear at every visit
   }
 };
 
@@ -45,14 +45,15 @@ export class Tour {
     document.addEventListener("keydown", ({ key }) => key === "Escape" && !this.root.hidden && this.end());
   }
 
-  // Begins at a first visit once there is a picture; not in an embedded page, nor over a page that a link opens.
+  // Starts the tour on a first visit once there is a picture, unless the page is embedded or a link opens a tab or an
+  // overlay.
   begin() {
     const { granchain } = window;
     if (remembered() || granchain.embedded || granchain.address.place.page || granchain.address.place.tab) return;
     this.open(document.activeElement === document.body);
   }
 
-  // Shows the first step; the focus goes back to the element that has it now when the tour ends.
+  // Shows the first step. When the tour ends, the focus returns to the element that has it now.
   open(takesFocus = true) {
     this.opener = window.granchain.focused;
     this.show(0);
@@ -74,7 +75,7 @@ export class Tour {
     this.place();
   }
 
-  // The part that a step explains has a frame; on a phone, where knobs are hidden in a drawer, the bar has it.
+  // The part that a step explains, which gets a frame; the bar if that part is hidden, as the knobs on a phone may be.
   part() {
     const [id] = STEPS[this.number];
     const part = document.getElementById(id);
@@ -88,7 +89,7 @@ export class Tour {
     this.part().scrollIntoView({ block: PHONE.matches ? "start" : "nearest" }); // a phone has the words at the bottom
   }
 
-  // Beside the part if there is room; otherwise below or above it, or at the bottom of the window.
+  // Places the words next to the part if there is room, otherwise below or above it, or at the bottom of the window.
   place() {
     const box = this.part().getBoundingClientRect();
     const { offsetWidth: wide, offsetHeight: tall } = this.root;
@@ -113,7 +114,7 @@ export class Tour {
     try {
       localStorage.setItem(KEPT_AS, "yes");
     } catch {
-      /* private browsing keeps nothing */
+      /* private browsing stores nothing */
     }
     if (tab) window.granchain.emit("place", { tab, page: "" });
   }

@@ -1,1 +1,1 @@
-"""Scripts that the page runs before any module: shared objects, the address, the connection."""
+"""Scripts that the page runs before any module: shared objects, the address and the connection."""

@@ -6,14 +6,14 @@
   const FOLLOW_AFTER = 400; // ms; browsers limit the number of changes per second
   const NEWEST = "granchain-newest";
 
-  // The part of an address that the server knows.
+  // The part of an address that the server interprets.
   const linkOf = (search) => {
     const query = new URLSearchParams(search);
     for (const name of BROWSER_FIELDS) query.delete(name);
     return query.toString();
   };
 
-  /** The page's place in the browser's history; the steps of the history are the steps of undo and redo. */
+  /** The page's place in the browser's history, whose steps are also those of undo and redo. */
   class Steps {
     #at = 0;
     #newest = 0;
@@ -34,7 +34,7 @@
       return this.#returning;
     }
 
-    /** Finds the place. After a lost connection the browser has forgotten it; then it is in `again`. */
+    /** Finds the place. After a lost connection, the browser has forgotten it and it is in `again` instead. */
     begin(again) {
       this.#at = history.state?.at ?? again?.at ?? 0;
       this.#newest = history.state || again ? Math.max(this.#at, Steps.#kept()) : this.#at;
@@ -55,14 +55,14 @@
       history.replaceState({ ...history.state, at: this.#at }, "", url);
     }
 
-    /** The browser has gone to the step with this `history.state`. */
+    /** Notes that the browser has gone to the step with this `history.state`. */
     moved(state) {
       this.#at = state?.at ?? 0;
       this.#returning = !granchain.connection.lost;
       this.tell();
     }
 
-    /** The server has applied the address of the step. */
+    /** Notes that the server has applied the address of the step. */
     arrived() {
       this.#returning = false;
     }
@@ -84,7 +84,7 @@
       try {
         sessionStorage.setItem(NEWEST, String(newest));
       } catch {
-        /* redo is forgotten at a reload */
+        /* a reload forgets what could be redone */
       }
     }
 
@@ -98,15 +98,15 @@
   }
 
   /**
-   * Keeps the address so that it describes what is on the screen: reload, back and a bookmark restore it. A change by the
-   * visitor that is followed by a rest is a step of the browser's history, so back is undo and forward is redo.
+   * Keeps the address up to date with what is on the screen, so that reload, back and bookmarks restore it. A change by
+   * the visitor that is followed by a pause is a step of the browser's history, so back is undo and forward is redo.
    */
   class Address {
     #steps;
     #link = linkOf(location.search); // the last share link from the server
     #known = false; // whether the server has sent one
-    #unanswered = new Map(); // the requests that are not in it yet
-    #viewFields = []; // the fields of a link that belong to no scene
+    #unanswered = new Map(); // the requests that this link does not include yet
+    #viewFields = []; // the fields of a link that do not depend on the scene
     #place;
     #timer = 0;
     #acted = false; // whether the visitor has changed anything since the last step
@@ -133,8 +133,8 @@
     }
 
     /**
-     * A request is on its way to the server. Choosing a scene discards earlier requests, whose knobs belong to the
-     * scene before. The name moves to the end, because the later one of k and kappa counts (`url`).
+     * Notes that a request is on its way to the server. Choosing a scene discards earlier requests, whose knobs belong
+     * to the previous scene. The name moves to the end, because the later one of k and kappa counts (`url`).
      */
     requested(name, value) {
       if (name === "scene") this.#unanswered.clear();
@@ -142,9 +142,9 @@
       this.#unanswered.set(name, value);
     }
 
-    /** The server has sent a share link, which answers the requests of these names. */
+    /** Takes a share link from the server, which answers the requests of these names. */
     linkReceived(query, answered, viewFields = this.#viewFields) {
-      // A link that answers a request is a step of the history, even if it is the first link or comes in parts.
+      // A link that answers a request is a step of the history, even if it is the first link or arrives in parts.
       const acted = answered.some((name) => this.#unanswered.has(name)) || (this.#known && query !== this.#link);
       this.#link = query;
       this.#viewFields = viewFields;
@@ -153,14 +153,14 @@
       this.#follow(acted);
     }
 
-    /** The server has sent a link that only makes the present address more precise, which is not a new step. */
+    /** Takes a link from the server that only makes the present address more precise, which is not a new step. */
     linkRefined(query) {
       this.#link = query;
       this.#known = true;
       this.#follow(false);
     }
 
-    /** The server has applied an address of the history. */
+    /** Notes that the server has applied an address of the history. */
     applied(query) {
       this.linkRefined(query);
       this.#steps.arrived();
@@ -170,7 +170,7 @@
     url() {
       const url = new URL(location.href);
       const query = new URLSearchParams(this.#link);
-      // Knobs of the scene before do not belong to the new one.
+      // Knobs of the previous scene do not belong to the new one.
       if (this.#unanswered.has("scene"))
         for (const name of [...query.keys()]) if (!["v", ...this.#viewFields].includes(name)) query.delete(name);
       for (const [name, value] of this.#unanswered) {
@@ -200,7 +200,7 @@
       return query.toString();
     }
 
-    // Gives the browser the address after a rest, as a new step if the visitor has acted.
+    // Gives the address to the browser after a pause, as a new step if the visitor has acted.
     #follow(acted) {
       this.#acted ||= acted && !this.#steps.returning;
       clearTimeout(this.#timer);
@@ -213,7 +213,7 @@
       }, FOLLOW_AFTER);
     }
 
-    // The visitor has gone back or forward: asks the server to show the address that the browser has now.
+    // After the visitor has gone back or forward, asks the server to show the address that the browser now has.
     #moved(state) {
       clearTimeout(this.#timer);
       this.#acted = false;

@@ -1,9 +1,9 @@
-// Watches the connection. While the server does not answer, the pictures may not match the knobs. So the pictures turn
-// grey, the knobs are disabled, and a banner says so. Once the server is back, the page reloads from its link.
+// Watches the connection. While the server does not answer, the pictures may not match the knobs, so the pictures turn
+// grey, the knobs are disabled, and a banner says why. Once the server is back, the page reloads from its link.
 (() => {
   const { granchain } = window;
-  // All in milliseconds. For PING_EVERY + PING_TIMEOUT a page without its server still looks alive, so this stays below
-  // 2 s; it is no shorter because a server that is only busy must not count as lost.
+  // All in milliseconds. For PING_EVERY + PING_TIMEOUT, a page without its server still looks alive, so the sum is
+  // below 2 s; it is not shorter because a server that is merely busy must not count as lost.
   const TICK = 100, // how often the state is checked
     PING_EVERY = 600, // from an answer to the next ping
     PING_TIMEOUT = 1300, // silence after a ping that counts as a lost connection
@@ -11,14 +11,14 @@
     RETRY_LONGEST = 5000, // between two attempts at most
     SILENT_SOCKET = 3000; // how long the socket may stay silent once the server answers HTTP again
   const LOST = "Connection lost – trying again … The pictures may be out of date.";
-  const FULL = "The server is full – your place opens as soon as one is free, with your settings …";
+  const FULL = "The server is full – your page will open with your settings as soon as there is room …";
   const BACK = "Connected again – restoring your settings …";
   // Keys of the browser's storage. The pictures have a separate key: if they do not fit, the rest is still kept.
   const RESUME = "granchain-resume";
   const PICTURES = "granchain-pictures";
   const PARTS = ["bar", "side", "stage", "curves", "overlay", "foot"];
 
-  // A value that does not fit into the storage, or that the browser refuses to store, is missing after the reload.
+  // Tries to store a value. One that does not fit, or that the browser refuses to store, is missing after the reload.
   const attempt = (store) => {
     try {
       store();
@@ -49,7 +49,7 @@
       this.#image.remove();
     }
 
-    /** The pictures on the screen, as the address of an image. */
+    /** The pictures on the screen as the data URL of an image. */
     static capture() {
       const canvas = Object.assign(document.createElement("canvas"), { width: innerWidth, height: innerHeight });
       if (!granchain.overlay)
@@ -69,20 +69,20 @@
     }
   }
 
-  /** Pings the server; shows when it does not answer, and reloads the page once it answers again. */
+  /** Pings the server, shows when it does not answer, and reloads the page once it answers again. */
   class Connection {
     #resumeState = Connection.#readResumeState();
     #carried = {};
     #lost = false;
     #leaving = false;
     #ping = null;
-    #closed = false; // whether the socket is
+    #closed = false; // whether the socket is closed
     #lastTick = performance.now();
     // Times in milliseconds.
-    #sincePing = null; // since the ping that is unanswered; null if there is none
+    #sincePing = null; // since the unanswered ping; null if there is none
     #sinceAnswer = 0; // since the last answer
     #sinceTry = Infinity; // since the last attempt to reach a lost server
-    #pause = RETRY_FIRST; // until the next attempt at most
+    #pause = RETRY_FIRST; // the longest time until the next attempt
     #retryAfter = 0; // until the next attempt
     #sinceReached = null; // since a lost server answered HTTP again; null while it does not
 
@@ -92,7 +92,7 @@
       setInterval(() => this.#tick(), TICK);
     }
 
-    /** Whether the server does not answer. */
+    /** Whether the server has stopped answering. */
     get lost() {
       return this.#lost;
     }
@@ -107,14 +107,14 @@
       return this.#resumeState;
     }
 
-    /** Returns the kept state to the script that restores it, only once. */
+    /** Hands the kept state, only once, to the script that restores it. */
     takeResumeState() {
       const state = this.#resumeState;
       this.#resumeState = null;
       return state;
     }
 
-    /** The state that the page needs, besides its link, after a reload. */
+    /** The state that the page needs after a reload in addition to its link. */
     get carried() {
       return this.#carried;
     }
@@ -123,7 +123,7 @@
       this.#carried = { ...this.#carried, ...values };
     }
 
-    /** Begins to watch; `send` sends a ping. */
+    /** Starts watching; `send` sends a ping. */
     connect(send) {
       this.#ping = send;
       for (const shown of window.Bokeh.documents)
@@ -133,7 +133,7 @@
         });
     }
 
-    /** The server has answered. If its socket was only silent, the page goes on: the server has read every message. */
+    /** Notes an answer. If the socket was only silent, the page continues, as the server has read every message. */
     answerReceived() {
       this.#sincePing = null;
       this.#sinceAnswer = 0;
@@ -142,7 +142,7 @@
     }
 
     // Bokeh gives up the first connection without an event. The server refuses it if the page has lost its place to a
-    // newer one, which happens when all pages of a full server come back at once.
+    // newer one, which happens when all pages of a full server reconnect at once.
     #watchFirstSocket() {
       const closed = () => {
         if (this.#ping) return; // Bokeh reports it
@@ -157,7 +157,7 @@
       };
     }
 
-    // A late tick counts as four at most: the server is not to blame if the computer slept or the page is busy.
+    // A late tick counts as four ticks at most: the server is not to blame if the computer slept or the page is busy.
     #tick() {
       const now = performance.now(),
         passed = Math.min(now - this.#lastTick, 4 * TICK);
@@ -206,7 +206,7 @@
     #reload() {
       this.#leaving = true;
       const { at } = granchain.steps;
-      // A page that had no connection has no pictures of its own.
+      // A page that never had a connection has no pictures of its own.
       const { snapshot, ...before } = this.#ping ? {} : (this.#resumeState ?? {});
       attempt(() => sessionStorage.setItem(RESUME, JSON.stringify({ ...this.#carried, at, ...before })));
       attempt(() => sessionStorage.setItem(PICTURES, snapshot ?? LastPictures.capture()));
@@ -240,7 +240,7 @@
       }
     }
 
-    // The state kept by the page before the reload, which is read once; null if there is none.
+    // Reads the state kept by the page before the reload, and deletes it; null if there is none.
     static #readResumeState() {
       try {
         const [kept, snapshot] = [sessionStorage.getItem(RESUME), sessionStorage.getItem(PICTURES)];

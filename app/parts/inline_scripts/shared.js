@@ -1,37 +1,37 @@
 // The browser imports modules itself. Panel loads a shim for browsers without import maps, which this page does not
-// need. The shim would fetch and rewrite every module: which takes 0.2 s at each opening.
+// need. The shim would fetch and rewrite every module, which takes 0.2 s each time a page is opened.
 window.importShim = Object.assign((url) => import(url), { addImportMap() {} }); // the maps that Panel adds are empty
 
 window.granchain = (() => {
-  const KEPT_AS = "granchain-look"; // the theme, in the browser from visit to visit
+  const KEPT_AS = "granchain-look"; // the theme, in the browser from one visit to the next
   const { themes: THEMES, terms: TERMS } = window.pageConstants; // app/session/page_constants.py
 
-  // The events by name; each comment says what has happened and, after the colon, what the detail is. There is also
-  // "page:NAME" for each page, which has published the detail.
+  // The events by name. Each comment says what has happened and, after the colon, what the detail is. There is also an
+  // event "page:NAME" for each page, whose detail is what the page has published.
   const EVENTS = new Set([
-    "theme", // another theme: its name
+    "theme", // the theme has changed: its name
     "place", // another tab and page are to be shown: { tab, page }, empty for the first tab and no page
     "tab", // a tab was opened: its name
     "overlay", // an overlay was opened or closed: its name or null
-    "visible", // other pages are visible: the set of their names
+    "visible", // the set of visible pages has changed: their names
     "story", // a story was opened or left: whether one is shown
     "curved", // on a phone, the curve was shown or hidden: whether it is shown
     "drawer", // on a phone, the knobs were shown or hidden: whether they are shown
     "steps", // the place in the history has changed: { back, forward }, whether there are such steps
-    "lost", // the connection was lost, or is there again: whether it is lost
-    "shown", // a picture has come: `granchain.shown`
+    "lost", // the connection was lost or is back: whether it is lost
+    "shown", // a picture has arrived: `granchain.shown`
     "painted", // a picture is on the screen: { number, live, lag }, the lag in milliseconds
-    "numbers-received", // the numbers of a picture have come
+    "numbers-received", // the numbers of a picture have arrived
     "play", // the replay begins or pauses: whether it runs
     "pause", // the replay is to pause
     "period", // the replay is to go one drive period forward
-    "speed", // another speed of the replay: drive periods a second
-    "sound", // the sound is to be on or off: whether on
+    "speed", // the speed of the replay has changed: drive periods per second
+    "sound", // the sound is to be on or off: whether it is on
     "bead", // a bead was chosen: its number
     "compare", // a picture was pinned, and its numbers are to be shown
   ]);
 
-  /** Events between scripts: a script listens to an event by its name, and any script can emit it. */
+  /** Events between scripts: scripts listen to events by name, and any script can emit them. */
   class Events {
     #listeners = new Map();
 
@@ -45,7 +45,7 @@ window.granchain = (() => {
       for (const listener of this.#of(name)) listener(detail);
     }
 
-    // The listeners of an event. An unknown event name raises an error; otherwise the mistake would go unnoticed.
+    // The listeners of an event. An unknown name raises an error, as the mistake would otherwise go unnoticed.
     #of(name) {
       if (!EVENTS.has(name) && !name.startsWith("page:")) throw new Error(`there is no event ${name}`);
       if (!this.#listeners.has(name)) this.#listeners.set(name, new Set());
@@ -53,7 +53,7 @@ window.granchain = (() => {
     }
   }
 
-  /** The theme: the visitor's choice, now or at an earlier visit; without a choice, the theme of the system. */
+  /** The theme: the visitor's choice, now or on an earlier visit; without a choice, the theme of the system. */
   class Theme {
     names = THEMES;
     #events;
@@ -88,18 +88,18 @@ window.granchain = (() => {
         try {
           localStorage.setItem(KEPT_AS, name);
         } catch {
-          /* private browsing keeps nothing */
+          /* private browsing stores nothing */
         }
       this.#events.emit("theme", name);
     }
 
-    /** After a step back or forward: applies the theme of the address or, if it has none, the one before any choice. */
+    /** Applies, after a step back or forward, the theme of the address or, without one, the theme before any choice. */
     restore(name) {
       this.#chosen = THEMES.includes(name);
       this.set(this.#chosen ? name : this.#first, false);
     }
 
-    /** Chooses the next in the list. */
+    /** Chooses the next theme in the list. */
     next() {
       this.set(THEMES[(THEMES.indexOf(this.name) + 1) % THEMES.length], true);
     }
@@ -129,18 +129,18 @@ window.granchain = (() => {
   }
 
   /**
-   * What the parts of the dashboard share in the browser: events, what pages publish, the overlay, the
-   * panels of a phone, and one object for each of theme, address, history and connection.
+   * The state that the parts of the dashboard share in the browser: events, what pages publish, the overlay, the panels
+   * of a phone, and one object each for theme, address, history and connection.
    */
   class Dashboard extends Events {
     #overlay = null; // the name of the overlay
     #opener = null; // the element that had the focus when the overlay was opened
     pages = new Map(); // what pages have published, by page
-    embedded = new URLSearchParams(location.search).get("embed") === "1"; // the picture alone, for a slide
+    embedded = new URLSearchParams(location.search).get("embed") === "1"; // only the picture, for a slide
     theme = new Theme(this);
-    terms = TERMS; // of the glossary, with their definitions
+    terms = TERMS; // terms of the glossary, with their definitions
 
-    // Other scripts set the members below; the comments name them.
+    // The members below are set by other scripts, which the comments name.
     // visibility.js: the names of the visible pages, and of the curve if it is visible
     visible = new Set();
     // address.js: the share link and where the visitor is; the browser's history
@@ -167,15 +167,15 @@ window.granchain = (() => {
     }
 
     /**
-     * Keeps what a page publishes for other parts, such as its tab. It is announced as the event "page:NAME", which
-     * cannot be confused with an event that has the name of a page.
+     * Keeps what a page publishes for other parts, for example its tab, and announces it as the event "page:NAME",
+     * which cannot be confused with an event that has the name of a page.
      */
     publish(name, data) {
       this.pages.set(name, data);
       this.emit(`page:${name}`, data);
     }
 
-    /** The name of the overlay, or null. An open one stops the curve unless it needs the curve. */
+    /** The name of the overlay, or null. An open overlay stops the curve unless it needs it. */
     get overlay() {
       return this.#overlay;
     }
@@ -188,8 +188,8 @@ window.granchain = (() => {
     }
 
     /**
-     * Opens the overlay of this name. An unknown name closes the open one. The focus moves to the heading of the
-     * overlay, and back to the element that had it.
+     * Opens the overlay of this name; an unknown name closes the open one. The focus moves to the heading of the
+     * overlay and, when it is closed, back to the element that had it.
      */
     openPage(wanted) {
       const sheets = [...document.querySelectorAll("[data-overlay]")];
@@ -201,7 +201,7 @@ window.granchain = (() => {
       this.#overlay = name;
       document.getElementById("dashboard").classList.toggle("overlaid", name !== null);
       for (const sheet of sheets) sheet.hidden = sheet.dataset.overlay !== name;
-      // The main landmark is the part that is on the screen; a web page may have only one.
+      // The visible part is the main landmark, of which a web page may have only one.
       over.setAttribute("role", name === null ? "none" : "main");
       this.emit("overlay", name);
       if (name !== null) this.#focusHeading(sheets.find((sheet) => !sheet.hidden));
@@ -215,7 +215,7 @@ window.granchain = (() => {
       heading.focus();
     }
 
-    // A tab may have been drawn again meanwhile, with another button of the same `data-name`.
+    // The tab may have been redrawn since, with another button of the same `data-name`.
     #focusOpener() {
       const tabs = document.getElementById("tabs");
       const again = (selector) => selector && find(tabs, selector);

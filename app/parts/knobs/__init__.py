@@ -1,1 +1,1 @@
-"""The knobs, and the words beside them."""
+"""The knobs, and the notes next to them."""

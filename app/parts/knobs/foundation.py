@@ -1,4 +1,4 @@
-"""The words beside the knobs k and κ = k/(K√A₀): the foundation's frequency, and how a new A₀ changed κ."""
+"""The notes next to the knobs k and κ = k/(K√A₀): the foundation's frequency, and how a new A₀ changed κ."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from granchain_core.scene.validity import moved_kappa
 
 
 def foundation_words(current: Scene) -> str:
-    """The foundation frequency in words, or "none"."""
+    """Return the foundation frequency in words, or "none"."""
     frequency = current.foundation_frequency
     return f"{frequency:.1f} Hz" if frequency > 0 and math.isfinite(frequency) else "none"
 
 
 def beside_kappa(current: Scene) -> str:
-    """The preset's κ if A₀ has moved since and k has not; otherwise an empty string."""
+    """Return the preset's κ, in words, if A₀ has moved since and k has not; otherwise an empty string."""
     return moved_kappa(scene(current.name), current)

@@ -1,11 +1,11 @@
 // One knob: slider, number and unit. Arrow keys move it in small steps, with Shift in large ones. A double click, or
-// Delete or Backspace on the slider or the list, restores the scene's value.
+// Delete or Backspace on the slider or list, restores the scene's value.
 
 import { element } from "../toolkit/dom.js";
 
 const STEPS = 1000;
 
-// From slider position (0 to 1) to value and back, for the three kinds of range.
+// Conversion from slider position (0 to 1) to value and back, for the three kinds of range.
 export const RANGE = {
   linear: {
     value: (p, { low, high }) => low + p * (high - low),
@@ -105,7 +105,7 @@ export class Knob {
     }
   }
 
-  // Text that is not a number is sent as it is; the server answers with a message.
+  // Text that is not a number is sent unchanged; the server answers with a message.
   typed() {
     this.editing = false;
     delete this.field.dataset.typing;
@@ -131,7 +131,7 @@ export class Knob {
     this.send({ do: "restore", name: this.spec.name }, true);
   }
 
-  // Tells screen readers that the knob is back at the scene's value. The regime has a region of its own, so neither
+  // Tells screen readers that the knob is back at the scene's value. The regime has a separate region, so that neither
   // announcement overwrites the other.
   announce() {
     const { label, unit, factor } = this.spec;

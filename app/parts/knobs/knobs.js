@@ -1,12 +1,12 @@
-// The knobs, one below another; those that are rarely moved are under "more knobs".
+// The knobs, one below the other; those that are rarely moved are under "more knobs".
 
 import { element } from "../toolkit/dom.js";
 import { Knob } from "./knob.js";
 
-const KEPT = "κ = k/(K√A₀): at the same k, κ changes with A₀. Set κ to get the old value back.";
+const KEPT = "κ = k/(K√A₀): at fixed k, κ changes with A₀. Set κ to get the old value back.";
 const FREQUENCY = "Frequency of one bead on its foundation spring alone: √(k/m) / 2π.";
 
-// Sends at most one message per animation frame and knob, since faster changes cannot be seen. The first goes at once.
+// Sends the first message at once and then at most one per animation frame and knob: faster changes cannot be seen.
 class Sender {
   constructor(model) {
     this.model = model;
@@ -29,7 +29,7 @@ class Sender {
     if (!this.resting) requestAnimationFrame(() => this.flush());
   }
 
-  // Whether message `seq` is the newest: none was sent after it and none waits.
+  // Whether message `seq` is the newest: none was sent after it and none is waiting.
   isNewest(seq) {
     return seq >= this.sent && !this.waiting.size;
   }
@@ -51,7 +51,7 @@ class Knobs {
     this.root = element("div", { className: "part" });
   }
 
-  // The knobs of another scene.
+  // Builds the knobs of another scene.
   build() {
     const open = Boolean(this.root.querySelector("details")?.open);
     const more = element("details", { innerHTML: "<summary>more knobs</summary>", open });
@@ -80,8 +80,8 @@ class Knobs {
   receive(message) {
     if (message.type !== "values") return;
     const { sent } = this.sender;
-    // Values without a number answer no movement: they were set elsewhere, as by a tap on the curve. So they answer no
-    // request of the address; but they are shown, unless a movement waits to be sent.
+    // Values without a number answer no movement: they were set elsewhere, for example by a tap on the curve. So they
+    // answer no request of the address, but they are shown unless a movement is waiting to be sent.
     const newest = this.sender.isNewest(message.seq ?? -1);
     window.granchain.address.linkReceived(message.query, newest ? [...this.knobs.keys()] : []);
     // An answer to an older movement must not move the knob while it is being dragged.

@@ -15,24 +15,24 @@ from .foundation import beside_kappa, foundation_words
 
 MAIN = tuple(name for name, quantity in QUANTITIES.items() if quantity.main)
 MORE = tuple(name for name in QUANTITIES if name not in MAIN)
-#: The values at which knobs have no effect: the defaults of the fields of `Scene`.
+#: The values at which knobs have no effect: the defaults of the fields of `Scene`, by knob.
 _DEFAULTS = {field.name: field.default for field in fields(Scene)}
 #: The label and meaning of a knob in a scene without a drive.
 _UNDRIVEN = {
-    "f": ("time shown = 1/f", "This chain has no drive: 1/f is only the time that is shown."),
+    "f": ("time shown = 1/f", "This chain has no drive: 1/f is only the length of time shown."),
     "A0": ("unit of length", "This chain has no drive: A₀ is only the unit of length in the computation."),
 }
 
 
 class Knobs(Component):
-    """The knobs' drawing; a movement comes as {"do": "set", "name": knob, "value": SI value, "seq": number}."""
+    """All knobs; a movement arrives as {"do": "set", "name": knob, "value": SI value, "seq": number}."""
 
     _esm = module("knobs.js")
     _stylesheets = [text("controls.css"), text("knobs.css")]  # noqa: RUF012
 
 
 def knob_state(current: Scene) -> dict[str, Any]:
-    """Everything that the browser needs to draw the knobs of a scene."""
+    """Return everything that the browser needs to draw the knobs of a scene."""
     preset = scene(current.name).knobs
     return {
         "specs": [_spec(name, current, preset) for name in MAIN + MORE],
@@ -43,7 +43,7 @@ def knob_state(current: Scene) -> dict[str, Any]:
 
 
 def beside_knobs(current: Scene) -> dict[str, Any]:
-    """The words beside the knobs of a scene: on the foundation, and on a knob that has no effect at present."""
+    """Return the notes next to a scene's knobs: on the foundation, and on knobs that have no effect at present."""
     idle = {"D": "no effect: the law, under “more knobs”, is “none”"} if current.dissipation == "none" else {}
     return {"foundation": foundation_words(current), "kept": beside_kappa(current), "idle": idle}
 

@@ -1,4 +1,4 @@
-// The status line: what is on the screen, how certain it is, and what it cost. A click on an entry explains it.
+// The status line: what is on the screen, how accurate it is, and what it cost. A click on an entry explains it.
 
 import { explainingButton, hideMeaning } from "../toolkit/bubble.js";
 import { button, element, onWidth, PHONE } from "../toolkit/dom.js";
@@ -6,19 +6,19 @@ import { button, element, onWidth, PHONE } from "../toolkit/dom.js";
 const ENTRIES = [
   ["busy", (v) => v, "The server is busy: computations queue and intermediate pictures are skipped."],
   ["force", (v) => v, ""], // its title comes with it
-  ["start", (v) => v, "Where the steady state was started."],
+  ["start", (v) => v, "The start from which the steady state was reached."],
   ["accuracy", (v) => v, ""], // its title comes with it
   [
     "energy",
     (v) => v,
-    "Work of the driver minus energy lost and stored, over the largest of the three, for the periods shown.",
+    "Work of the driver minus energy lost and stored, divided by the largest of the three, for the periods shown.",
   ],
-  ["method", (v) => v, "Method of integration."],
+  ["method", (v) => v, "Integration method."],
   ["effects", (v) => v.join(" · "), "The effects being computed; an absent one has no code and costs nothing."],
 ];
 
 // The order in which entries give way if the line is too short: an entry takes its shorter forms, one after the other,
-// and is then left out.
+// and is then hidden.
 const GIVES_WAY = ["effects", "method", "start", "accuracy", "energy", "regime", "regime", "accuracy"];
 const NOT_ON_PHONE = ["force", "method", "start", "effects"];
 
@@ -43,7 +43,7 @@ class Line {
     this.el = element("div", { className: "line" });
     this.pen = document.createElement("canvas").getContext("2d");
     this.fonts = new Map(); // fonts by the entry's name, kept because asking the browser for one costs a layout
-    // Elements stay and only their words change: an element that is replaced while it is pressed gets no click.
+    // The elements stay and only their text changes: an element that is replaced while it is pressed gets no click.
     this.regime = emptyEntry("regime");
     this.others = new Map(ENTRIES.map(([name]) => [name, emptyEntry(name)]));
     this.rest = emptyEntry("rest");
@@ -101,7 +101,7 @@ class Line {
     this.regime.title = this.regime.textContent === regime ? regime_hint : `${regime}. ${regime_hint}`;
   }
 
-  // On a phone it may have several lines, since the page scrolls.
+  // On a phone, the line may wrap, since the page scrolls.
   fitPhone() {
     for (const name of NOT_ON_PHONE) if (this.entries.has(name)) this.entries.get(name).hidden = true;
     // More than two lines would cover the figures.
@@ -133,7 +133,7 @@ class Line {
     }
   }
 
-  // The dots at the end list the entries that have no room.
+  // Lists the entries that have no room in the title of the dots at the end.
   nameRest() {
     const hidden = [...this.entries.values()].filter((entry) => entry.hidden);
     this.rest.hidden = !hidden.length;
@@ -141,7 +141,7 @@ class Line {
   }
 }
 
-// Tells screen readers which motion there is, once it has stayed for a moment: a moving knob passes through many.
+// Tells screen readers the regime once it has stayed for a moment: a moving knob passes through many.
 const STANDS = 1200; // ms
 let timer = 0;
 function announce(words) {
@@ -157,7 +157,7 @@ export function render({ model }) {
   const close = button("✕", () => model.send_msg({ do: "dismiss-sentence" }), { title: "Close" });
   const insist = button("Compute it anyway", () => model.send_msg({ do: "insist" }), {
     id: "insist",
-    title: "It may take as long as the sentence says; a moved knob ends it.",
+    title: "It may take as long as the message says; moving a knob cancels it.",
   });
   const sentence = element("div", { className: "sentence", role: "alert" }, words, insist, close);
   const line = new Line();

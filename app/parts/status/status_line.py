@@ -16,26 +16,26 @@ from ..toolkit.component import Component, text
 
 #: The meanings of the names of places on the curve.
 _PLACES = {
-    "peak": "Resonance: a peak of the curve, where more arrives at the wall than at frequencies beside it.",
-    "valley": "Anti-resonance: a valley of the curve, where less arrives at the wall than at frequencies beside it.",
-    "flank": "Flank: between a peak of the curve and the valley beside it.",
+    "peak": "Resonance: a peak of the curve, where more arrives at the wall than at neighbouring frequencies.",
+    "valley": "Anti-resonance: a valley of the curve, where less arrives at the wall than at neighbouring frequencies.",
+    "flank": "Flank: between a peak of the curve and the valley next to it.",
     "stop band": f"Stop band: above the last peak, less than {100 * STOP_BAND_FRACTION:.0f} % of the input force "
                  "reaches the wall.",
 }
 #: The meanings of the names of regimes that are not periodic.
 _REGIME_MEANINGS = {
-    "quasi-periodic": "Quasi-periodic: it comes back near every earlier state and never exactly to one.",
+    "quasi-periodic": "Quasi-periodic: it returns close to every earlier state, but never exactly.",
     "chaotic": "Chaotic: it never repeats, and small disturbances grow.",
-    "unsettled": "Not settled: no regime could be decided in the periods that were run.",
+    "unsettled": "Not settled: the regime could not be determined in the periods that were run.",
 }
-_UNDRIVEN = "Nothing drives the chain: what is shown begins at the start of the motion."
+_UNDRIVEN = "Nothing drives the chain: the picture begins at the start of the motion."
 _NOT_ITS_PLACE = "The ratio counts pushes, not peaks: every anti-resonance is 1:1, whatever peaks it lies between."
-_CONTRACTION = "Transient shrinks to: factor by which the distance to the orbit was seen to shrink per orbit."
-_LYAPUNOV = ("Lyapunov exponent: mean growth of a small disturbance, as the logarithm of its factor per drive period; "
-             "clearly above zero the motion is chaotic.")
+_CONTRACTION = "Transient shrinks to: observed factor by which the distance to the orbit shrinks per orbit."
+_LYAPUNOV = ("Lyapunov exponent: mean growth of a small disturbance, as the logarithm of its factor per drive period. "
+             "If it is clearly above zero, the motion is chaotic.")
 _FOLLOWED = ("Followed to its orbit: the motion approached it so slowly that the orbit was computed from the last "
              "periods, by Newton's method or extrapolation.")
-_SETTLED = ("Settled: number of drive periods that were run until the bound on the distance to the periodic orbit was "
+_SETTLED = ("Settled: number of drive periods run until the bound on the distance to the periodic orbit was "
             f"at most {SETTLED_DISTANCE:g} of the motion.")
 
 
@@ -47,10 +47,10 @@ class StatusLine(Component):
 
 
 def settled_entries(settled: Settled, place: Place | None, force: str) -> dict[str, Any]:
-    """The line for a settled picture.
+    """Return the entries of the line for a settled picture.
 
-    `place` is where it lies on the curve from rest, None while that is computed; `force` is the largest output force in
-    words.
+    `place` is where it lies on the curve from rest, None while that is being computed; `force` is the largest output
+    force in words.
     """
     regime, pushed = settled.regime.sentence, pushes(settled.run)
     name = regime.split(",")[0]  # without the evidence
@@ -65,14 +65,14 @@ def settled_entries(settled: Settled, place: Place | None, force: str) -> dict[s
 
 
 def regime_words(settled: Settled, pushed: tuple[int, int] | None, place: Place | None, regime: str) -> str:
-    """The motion in words: strong pushes of the driver in how many periods, what the curve has here, and its regime."""
+    """Return the motion in words: strong pushes of the driver in n periods, its place on the curve, and its regime."""
     ready = "" if settled.final else "preview, "
     counted = place_words(pushed, place)
     return ready + (f"{counted}, " if counted else "") + regime
 
 
 def regime_hint(regime: Regime, pushed: tuple[int, int] | None, place: Place | None) -> str:
-    """The explanations of the line's words: the ratio, the place on the curve, the regime and its evidence."""
+    """Return an explanation of the line's words: ratio, place on the curve, regime and its evidence."""
     meanings = []
     if pushed is not None:
         meanings.append(f"{pushed[0]}:{pushed[1]}: {push_words(pushed)}.")
@@ -91,7 +91,7 @@ def regime_hint(regime: Regime, pushed: tuple[int, int] | None, place: Place | N
 
 
 def multiplier_words(modulus: float, period: int) -> str:
-    """The meaning of |μ| for a small disturbance of an orbit of `period` drive periods."""
+    """Return the meaning of |μ| for a small disturbance of an orbit of `period` drive periods."""
     orbit = "drive period" if period == 1 else f"{period} drive periods"
     words = modulus_words(modulus)
     change = f"shrinks to {100.0 * modulus:.3g} %" if modulus < 1.0 else f"grows by the factor {words}"
@@ -100,23 +100,23 @@ def multiplier_words(modulus: float, period: int) -> str:
 
 
 def error_words(error: float | None, before: str = "") -> str:
-    """A relative error with its prefix, or the words for none."""
+    """Return a relative error after `before`, or the words for an error that is not estimated."""
     return "not estimated" if error is None else before + short_error(error)
 
 
 def accuracy_words(run: Run) -> str:
-    """The accuracy asked for and reached."""
+    """Return the accuracy asked for and reached."""
     reached = error_words(run.displacement_error, "reached ")
     return f"asked {short_error(run.scene.accuracy)} · {reached}{_worse_forces(run)}"
 
 
-#: Where the accuracy asked for is reached, errors of forces up to this factor above the error of displacements are
-#: shown only in the hint: the line has room for one number.
+#: If the accuracy asked for is reached, errors of forces up to this factor above the error of displacements are shown
+#: only in the hint: the line has room for one number.
 _ALIKE_FACTOR = 10.0
 
 
 def _worse_forces(run: Run) -> str:
-    """The larger error of both largest forces, if it misses the accuracy asked for or is far above the one reached."""
+    """Return the larger error of the two largest forces if it misses the accuracy or is far above the one reached."""
     errors = [(error, name) for error, name in ((run.force_errors.output, "output force"),
                                                 (run.force_errors.input, "input force")) if error is not None]
     worst, name = max(errors, default=(0.0, ""))
@@ -126,7 +126,7 @@ def _worse_forces(run: Run) -> str:
 
 
 def why_no_error(run: Run) -> str:
-    """The reason why no error of the displacements is stated; empty if one is."""
+    """Return the reason why no error of the displacements is stated; empty if one is."""
     if run.displacement_error is not None:
         return ""
     if run.regime.name in NEVER_REPEATING:
@@ -136,27 +136,27 @@ def why_no_error(run: Run) -> str:
 
 
 def force_hint(run: Run) -> str:
-    """An explanation of the force in the line, and its error."""
+    """Return an explanation of the force in the line, with its error."""
     return ("The largest output force in the periods shown, the dashpot's part included; relative error "
-            f"{error_words(run.force_errors.output)}. A force is positive where the bodies push each other; below zero "
+            f"{error_words(run.force_errors.output)}. A force is positive where the bodies push; below zero, "
             "the dashpot of an opening contact pulls. The force at the wall may be larger than that of the driver: a "
-            f"wave presses harder where it is turned back."
+            f"wave presses harder where it is reflected."
             f"{why_no_error(run) if run.force_errors.output is None else ''}")
 
 
 def errors_hint(run: Run) -> str:
-    """The error of each quantity: displacements, and the three largest forces."""
+    """Return the error of each quantity: displacements, and the three largest forces."""
     errors = [f"{name} {error_words(error)}" for name, error in (
         ("displacements", run.displacement_error), ("largest output force", run.force_errors.output),
         ("its elastic part", run.force_errors.elastic), ("largest input force", run.force_errors.input))]
-    return ("“Asked” is the knob ε, “reached” the relative error of the displacements, and the time that of the "
-            "computation, longer where the machine has other things to do. Relative errors of the numerical solution: "
+    return ("“Asked” is the knob ε, “reached” the relative error of the displacements, and the time is "
+            "that of the computation, longer if the machine is busy. Relative errors of the numerical solution: "
             f"{', '.join(errors)}.{why_no_error(run)} How well the model fits an experiment is another question: the "
-            "tab “data” compares it with yours, the page “paper” with what the paper states of its rig.")
+            "tab “data” compares it with yours, and the page “paper” with what the paper states about its rig.")
 
 
 def run_entries(run: Run, force: str) -> dict[str, Any]:
-    """Largest output force, accuracy, method and effects of a run."""
+    """Return the entries for largest output force, accuracy, method and effects of a run."""
     return {
         "force": f"{force} at the wall",
         "force_hint": force_hint(run),
@@ -165,6 +165,6 @@ def run_entries(run: Run, force: str) -> dict[str, Any]:
         "accuracy_hint": errors_hint(run),
         "energy": "" if run.energy_residual is None else f"energy residual {short_error(run.energy_residual)}",
         "method": run.cost.method,
-        "method_hint": f"Method of integration: {METHODS[run.cost.method].title}.",
+        "method_hint": f"Integration method: {METHODS[run.cost.method].title}.",
         "effects": list(run.scene.effects),
     }

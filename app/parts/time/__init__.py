@@ -1,1 +1,1 @@
-"""The replay clock, the time cursor and the crosshair of all figures over time, and where these figures are."""
+"""The replay clock, the time cursor and the crosshair of all figures over time, and the places of these figures."""

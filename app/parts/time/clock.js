@@ -9,7 +9,7 @@ export class Clock {
     this.last = performance.now();
   }
 
-  // New frames keep the phase of the drive, so the chain does not jump when a knob moves.
+  // Takes new frames and keeps the drive phase, so that the chain does not jump when a knob moves.
   show(frames) {
     if (this.frames && !this.frames.live && !frames.live) {
       const phase = (this.row / this.frames.samples) % 1;
@@ -22,7 +22,7 @@ export class Clock {
     this.frames = frames;
   }
 
-  // Starts from now: the time during which it stood still does not count.
+  // Starts or stops the clock from now: time during which it stood still does not count.
   play(playing) {
     this.playing = playing;
     this.last = performance.now();

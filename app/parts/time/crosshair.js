@@ -1,18 +1,18 @@
-// A line through all figures over time at the time under the pointer, with the values at that time. Dragging with Shift in the
-// map measures time, distance and speed between two places.
+// A line through all figures over time at the time under the pointer, with the values at that time. Dragging with Shift
+// in the map measures time, distance and speed between two places.
 
 import { element } from "../toolkit/dom.js";
 import { prefixed } from "../toolkit/round_numbers.js";
 import { draw } from "../toolkit/svg.js";
 
-// A value with three figures and a prefix, as "0.52 N".
+// A value with three figures and an SI prefix, for example "0.52 N".
 function quantity(value, unit) {
   const [factor, letter] = prefixed(value);
   return `${String(Number((value / factor).toPrecision(3))).replace("-", "−")} ${letter}${unit}`;
 }
 
 export class Crosshair {
-  // `onBead` is called with the bead in whose column the pointer is, 0 for none.
+  // `onBead` is called with the bead whose column is under the pointer, 0 for none.
   constructor(clock, layout, onBead) {
     Object.assign(this, { clock, layout, onBead });
     this.line = element("div", { id: "cross", hidden: true });
@@ -24,7 +24,7 @@ export class Crosshair {
     this.bead = element("i", { id: "crossbead", hidden: true });
     this.tape = draw("svg", { id: "tape", "aria-hidden": "true" });
     this.measured = element("p", { id: "measured", role: "status", hidden: true });
-    this.line.ariaHidden = "true"; // the time cursor tells a screen reader the same
+    this.line.ariaHidden = "true"; // screen readers get the same from the time cursor
     layout.stage.append(this.line, this.bead, this.tape, this.measured);
     for (const figure of layout.stage.querySelectorAll(".figure")) {
       figure.addEventListener("pointermove", (event) => this.moved(event));
@@ -34,7 +34,7 @@ export class Crosshair {
     document.addEventListener("keydown", ({ key }) => key === "Escape" && this.roll());
   }
 
-  // The place of a pointer event: as a part of the time shown and of the beads, and in pixels of the stage.
+  // The place of a pointer event: as a fraction of the time shown and of the beads, and in pixels of the stage.
   at({ clientX, clientY }) {
     const { stage, area, columns } = this.layout;
     const box = stage.getBoundingClientRect();
@@ -43,7 +43,7 @@ export class Crosshair {
     return { x, y, time: (y - area.y) / area.height, beads: (x - columns.left) / columns.width };
   }
 
-  // Draws at most once in an animation frame.
+  // Draws at most once per animation frame.
   moved(event) {
     this.event = event;
     if (this.requested) return;
@@ -98,7 +98,7 @@ export class Crosshair {
     Object.assign(this.bead.style, { left, top: `${area.y}px`, height: `${area.height}px` });
   }
 
-  // The measuring tape, from where the drag began to where the pointer is.
+  // Draws the measuring tape, from where the drag began to where the pointer is.
   measure(event) {
     const { frames } = this.clock;
     if (!frames || frames.rows < 2) return;
@@ -130,7 +130,7 @@ export class Crosshair {
     this.measured.hidden = true;
   }
 
-  // Time, distance at rest and speed; in a live picture the time is in drive periods, too.
+  // Time in seconds and drive periods, distance at rest, and speed; of a single bead, the frequency instead.
   sentence(from, to) {
     const { frames } = this.clock;
     const periods = (Math.abs(to.time - from.time) * (frames.rows - 1)) / frames.samples;

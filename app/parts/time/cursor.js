@@ -1,6 +1,6 @@
 // The time cursor: a line across all figures over time, at the row of the clock.
 
-const STILL = 4; // px; a pointer that moves farther drags and does not click
+const STILL = 4; // px; a pointer that moves farther is dragging, not clicking
 
 // The line across all figures over time; dragging it, or any of the figures, stops time.
 export class Cursor {
@@ -58,7 +58,7 @@ export class Cursor {
     this.line.style.display = "block";
     const { fraction, playing, frames } = this.clock;
     this.line.style.top = `${area.y + fraction * area.height}px`;
-    if (playing && !frames.live && this.line.hasAttribute("aria-valuetext")) return; // nobody can read so fast
+    if (playing && !frames.live && this.line.hasAttribute("aria-valuetext")) return; // nobody can read that fast
     this.line.setAttribute("aria-valuenow", String(Math.round(100 * fraction)));
     const periods = (fraction * (frames.rows - 1)) / frames.samples;
     this.line.setAttribute("aria-valuetext", frames.live ? "now" : `${periods.toFixed(2)} drive periods`);

@@ -1,5 +1,5 @@
-// The places of the figures over time on the stage, and of the elements over and under them: titles, colour scale, largest
-// values and key.
+// The places of the figures over time on the stage, and of the elements over and under them: titles, colour scale,
+// largest values and key.
 
 export class FigureLayout {
   constructor() {
@@ -51,7 +51,7 @@ export class FigureLayout {
     });
   }
 
-  // Whether an axis title under the force trains is wider than its room.
+  // Whether an axis title of the force trains is wider than the room for it.
   isCompact({ left, right }) {
     const pen = document.createElement("canvas").getContext("2d");
     pen.font = `bold ${getComputedStyle(document.documentElement).getPropertyValue("--small-text-size").trim()} helvetica`;

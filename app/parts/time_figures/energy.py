@@ -13,7 +13,7 @@ from ..figures.figure_style import GAP, bare_plot
 
 
 class EnergyMap:
-    """One image with one colour mapper, whose contents each new picture changes."""
+    """One image with one colour mapper; each new picture changes their contents."""
 
     def __init__(self, time: Range1d) -> None:
         self._source = ColumnDataSource({name: [] for name in ("image", "x", "y", "dw", "dh")})
@@ -33,7 +33,7 @@ class EnergyMap:
         return plot
 
     def set_compact(self, compact: bool) -> None:
-        """Number fewer beads where there is little room."""
+        """Number fewer beads if there is little room."""
         self._compact = compact
         set_properties(self._axis, axis_label="bead" if compact else "bead, numbered as above")
         set_properties(self._axis.ticker, interval=bead_interval(self._beads, 6 if compact else 12))

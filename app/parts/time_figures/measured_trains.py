@@ -14,13 +14,13 @@ from .pinned_trains import MOST_POINTS, NO_TRAIN
 if TYPE_CHECKING:
     from granchain_core.fitting.overlay import Overlay
 
-#: The forces in the order of the figures, and the place of the shaker's displacement after them.
+#: The forces in the order of the figures, and the index of the shaker's displacement after them.
 _FORCES = ("input_force", "output_force")
 _DRIVE = 2
 
 
 def thinned(values: np.ndarray, most: int) -> np.ndarray:
-    """The places of at most `most` of the values, in order: the least and the largest of each of equal parts."""
+    """Return the indices of at most `most` values, in order: the smallest and largest of each of equal parts."""
     if len(values) <= most:
         return np.arange(len(values))
     size = -(-len(values) // (most // 2))
@@ -53,12 +53,12 @@ class MeasuredTrains:
         return 0.0 if swing is None else float(np.abs(swing).max())
 
     def load(self, shown: Overlay | None) -> None:
-        """Replace the series, by None to remove it, and draw it over the picture."""
+        """Replace the series (None removes it), and draw it over the picture."""
         self._shown = shown
         self.update(*self._last)
 
     def update(self, shown: float, scale: float, push: float, out: float, drive: float) -> None:
-        """Draw over `shown` seconds; `scale` is the axis over the time [1/s].
+        """Draw over `shown` seconds; `scale` is the axis divided by the time [1/s].
 
         `push` and `out` [N] are the units of the forces, `drive` [m] that of the displacement.
         """

@@ -15,9 +15,9 @@ from ...plots.theme import GREY
 
 #: Dashes of the pins, in their order.
 DASHES = ([7, 3], [2, 3], [9, 3, 2, 3])
-#: The same dashes in a text.
+#: The same dashes as text.
 SIGNS = ("╌", "┈", "─ ·")
-#: Most points of a line; beyond that a train ends before the picture does.
+#: Largest number of points of a line; a longer train ends before the picture does.
 MOST_POINTS = 30_000
 #: The data of a line that shows nothing.
 NO_TRAIN = {"time": np.zeros(0, np.float32), "force": np.zeros(0, np.float32)}
@@ -25,7 +25,7 @@ NO_TRAIN = {"time": np.zeros(0, np.float32), "force": np.zeros(0, np.float32)}
 
 @dataclass(frozen=True, eq=False)
 class _Train:
-    """One pinned motion: times and forces [s, N] at the driver and at the wall; it repeats, or is shown once."""
+    """One pinned motion: times and forces [s, N] at the driver and at the wall. It repeats or is shown once."""
 
     lasts: float
     repeats: bool
@@ -33,14 +33,14 @@ class _Train:
 
     @classmethod
     def of(cls, run: Run) -> _Train:
-        """The trains of a run."""
+        """Return the trains of a run."""
         time = run.time - run.time[0]
         lines = tuple(with_jumps(time, force, jumps_of(run, contact))
                       for force, contact in ((run.input_force, 0), (run.output_force, run.scene.N)))
         return cls(float(time[-1]), run.regime.name == "periodic", lines)
 
     def over(self, copies: int, line: int) -> tuple[np.ndarray, np.ndarray]:
-        """One of the lines, `copies` times one after the other."""
+        """Return one of the lines, repeated `copies` times in a row."""
         time, force = self.lines[line]
         shifts = self.lasts * np.arange(copies)
         return (time[None, :] + shifts[:, None]).ravel(), np.tile(force, copies)
@@ -49,7 +49,7 @@ class _Train:
 class PinnedTrains:
     """The lines in both figures. They are redrawn when the pins, the units or the time on the axis change.
 
-    A line is made when it is first needed: most visitors pin nothing.
+    A line is made only when needed, since most visitors pin nothing.
     """
 
     def __init__(self, left: Plot, right: Plot) -> None:
@@ -82,9 +82,9 @@ class PinnedTrains:
         self.update(*self._last)
 
     def update(self, shown: float, scale: float, push: float, out: float) -> None:
-        """Draw over `shown` seconds; `scale` is the axis over the time [1/s], `push` and `out` [N] are its units.
+        """Draw over `shown` seconds; `scale` is the axis divided by the time [1/s], `push` and `out` are units [N].
 
-        `shown` is 0 for a live picture, over which no pins are drawn: its time axis moves on.
+        `shown` is 0 for a live picture, over which no pins are drawn because its time axis moves.
         """
         scale = float(f"{scale:.9g}")  # the same for all pictures in one unit
         self._last = shown, scale, push, out
@@ -104,7 +104,7 @@ class PinnedTrains:
 
 
 def _copies(train: _Train | None, shown: float) -> int:
-    """How often a motion is repeated to fill the picture: a power of two, so that it is rarely sent again."""
+    """Return how often a motion is repeated to fill the picture: a power of two, so that it is rarely sent again."""
     if train is None or shown <= 0.0:
         return 0
     needed = 2 ** int(np.ceil(np.log2(max(shown / train.lasts, 1.0)))) if train.repeats else 1

@@ -1,6 +1,6 @@
-"""The force trains beside the map: drive and input force on the left, output force on the right.
+"""The force trains next to the map: drive and input force on the left, output force on the right.
 
-Figures that are made once and follow every knob; app/plots/motion.py draws the same for files and notebooks.
+These figures are made once and follow every knob; app/plots/motion.py draws the same for files and notebooks.
 """
 
 from __future__ import annotations
@@ -25,20 +25,20 @@ from .pinned_trains import PinnedTrains
 if TYPE_CHECKING:
     from granchain_core.fitting.overlay import Overlay
 
-#: The lines in the order in which they are drawn, and whose axes there are.
+#: The lines in the order in which they are drawn, and the lines that have an axis.
 _LINES = (DRIVE, INPUT, ELASTIC, OUTPUT)
 _AXES = (DRIVE, INPUT, OUTPUT)
-#: The lines at zero: drive and force have theirs at different places.
+#: The style of the lines at zero, which are at different places for drive and force.
 _ZERO: dict[str, Any] = {"line_width": 1, "line_alpha": 0.35, "level": "underlay"}
-#: About how many ticks a force and the time have.
+#: Approximate numbers of ticks of a force axis and of the time axis.
 _TICKS = (3, 6)
 #: The smallest number that is written in the unit of an axis.
 _SMALLEST_READABLE = 0.01
-#: Most figures of a force under its axis, where there is little room.
+#: Largest number of figures of a force under its axis, where there is little room.
 _PEAK_FIGURES = 3
-#: Smallest pull that is shown beside the largest force, over that force.
+#: Smallest pull that is shown next to the largest force, as a fraction of that force.
 _SHOWN_PULL = 0.01
-#: Smallest pressure of an always pressed contact that is shown beside the largest force, over that force.
+#: Smallest pressure of an always pressed contact that is shown next to the largest force, as a fraction of that force.
 _SHOWN_PRESSURE = 0.2
 #: Widest titles of the axes. The browser measures them and says whether there is room for them (`set_compact`).
 WIDEST_TITLES = {"left": INPUT.label("mN"), "right": OUTPUT.label("mN")}
@@ -49,7 +49,7 @@ class ForceTrains:
 
     def __init__(self, time: Range1d) -> None:
         self._source = ColumnDataSource({name: np.zeros(0) for name in ("time", "drive", "elastic")})
-        # A force that jumps has points of its own there, between the rows.
+        # A force that jumps has extra points at its jumps, between the rows.
         self._input = ColumnDataSource({name: np.zeros(0) for name in ("time", "force")})
         self._output = ColumnDataSource({name: np.zeros(0) for name in ("time", "force")})
         self._lines: list[GlyphRenderer] = []
@@ -97,12 +97,12 @@ class ForceTrains:
     def update(self, frames: Frames, time: np.ndarray, high: Extremes, driven: bool) -> None:
         """Show `frames`, whose rows are at `time` on the shared axis, on axes that end at the forces of `high`.
 
-        A chain that is not `driven` has no line of the drive and no axis for it.
+        A chain that is not `driven` has no drive line and no axis for it.
         """
         set_properties(self._axes[0], visible=driven)
         set_properties(self._lines[0], visible=driven)
         set_properties(self._zero_of_drive, visible=driven)
-        far = -1 if frames.time[-1] else 0  # in a live picture the last row is the present, time 0
+        far = -1 if frames.time[-1] else 0  # in a live picture, the last row is the present, time 0
         scale = float(time[far] / frames.time[far]) if frames.time[far] else 1.0
         moved = max(float(np.abs(frames.drive_displacement).max()), self._measured.largest_displacement)
         drive_high = round_up(moved)
@@ -129,15 +129,15 @@ class ForceTrains:
         self._write_titles()
 
     def name_time(self, title: str) -> None:
-        """The title of the axis of time."""
+        """Set the title of the time axis."""
         set_properties(self._time_axis, axis_label=title)
 
     def peak_words(self, frames: Frames, largest: tuple[float, float],
                    errors: tuple[float | None, float | None]) -> list[list[str]]:
-        """The largest input and output force [N] of the picture, with the figures that their relative errors leave.
+        """Return the picture's largest input and output force [N], to the figures that their relative errors leave.
 
-        With it the smallest of the rows where it says something: a contact pulls, or is never free of force. Of a pull
-        one figure: it may be larger between the rows.
+        Each comes with the smallest force of the rows if that is informative: if the contact pulls, or is never free of
+        force. A pull has only one figure, since it may be larger between the rows.
         """
         words = []
         for series, force, error, axis, unit in zip((frames.input_force, frames.output_force), largest, errors,
@@ -149,25 +149,25 @@ class ForceTrains:
             if lowest < -_SHOWN_PULL * force:
                 words[-1][1] = f"min ≈ {with_figures(lowest / factor, 1)}\N{NO-BREAK SPACE}{unit}"
             elif lowest > _SHOWN_PRESSURE * force:
-                decimals = len(most.partition(".")[2])  # so that the smallest never reads larger than the largest
+                decimals = len(most.partition(".")[2])  # so that the smallest never seems larger than the largest
                 words[-1][1] = f"min ≈ {with_decimals(lowest / factor, decimals)}\N{NO-BREAK SPACE}{unit}"
         return words
 
     def output_words(self, force: float, error: float | None) -> str:
-        """A force at the wall [N] in the unit of its axis, or in its own; its relative error says how many figures."""
+        """Return a force at the wall [N] in the unit of its axis, or its own; `error` sets the number of figures."""
         factor, unit = self._readable(force, self._factors[1], self._units[2])
         return f"{'about ' if error is None else ''}{with_figures(force / factor, figures_of(error))} {unit}"
 
     @staticmethod
     def _readable(force: float, factor: float, unit: str) -> tuple[float, str]:
-        """The unit of an axis or, where `force` is too small for it, the unit of the force itself."""
+        """Return the unit of an axis or, if `force` is too small for it, a unit of its own."""
         if force >= _SMALLEST_READABLE * factor:
             return factor, unit
         factor, letter = prefixed(force)
         return factor, f"{letter}N"
 
     def pin(self, runs: Sequence[Run | None]) -> None:
-        """Pin these motions as dashed grey lines over the same time; None leaves a place free."""
+        """Pin these motions as dashed grey lines over the same time; None leaves a place empty."""
         self._pinned.load(runs)
 
     def measured(self, shown: Overlay | None) -> None:
@@ -175,7 +175,7 @@ class ForceTrains:
         self._measured.load(shown)
 
     def set_compact(self, compact: bool) -> None:
-        """Fewer ticks and shorter titles where there is little room."""
+        """Show fewer ticks and shorter titles if there is little room."""
         self._compact = compact
         for axis in self._axes:
             axis.ticker.desired_num_ticks = 2 if compact else 3
@@ -187,12 +187,12 @@ class ForceTrains:
 
 
 def _glyph(style: LineStyle, column: str = "force") -> Line:
-    """A line over time; `column` of its source is drawn."""
+    """Return a line over time, which draws `column` of its source."""
     return Line(x=column, y="time", line_color=style.colour, line_width=style.width, line_dash=list(style.dash))
 
 
 def _span(largest: float, pull: float, *series: np.ndarray) -> tuple[float, float]:
-    """A range from −`pull` to `largest` that holds all values and stays the same while they change a little."""
+    """Return a range from −`pull` to `largest` that contains all values and does not follow small changes of them."""
     high = round_up(max(largest, *(float(s.max(initial=0.0)) for s in series)))
     pull = max(pull, *(float(-s.min(initial=0.0)) for s in series))
     return (-0.06 * high if pull < 0.02 * high else -round_up(pull)), 1.04 * high

@@ -1,1 +1,1 @@
-"""Building blocks of parts and pages: the base class of components, elements, controls, small drawings."""
+"""Building blocks of parts and pages: the base class of components, elements, controls and small drawings."""

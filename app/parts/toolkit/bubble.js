@@ -1,5 +1,5 @@
-// A bubble beside a term or an entry of the status line that says what it means. It closes on Escape, on a click
-// elsewhere, and when the page scrolls under it. A bubble with controls is a dialog and gets the focus.
+// A bubble next to a term or an entry of the status line, with its meaning. It closes on Escape, on a click elsewhere,
+// and when the page scrolls under it. A bubble with controls is a dialog and gets the focus.
 
 import { button, element } from "./dom.js";
 
@@ -15,7 +15,7 @@ export const hideMeaning = () => {
   if (inside) explained?.focus();
 };
 
-// The element whose meaning is shown, null if none is.
+// The element whose meaning is shown; null if there is none.
 export const nowExplained = () => (bubble.hidden ? null : explained);
 
 const isThere = (anchor) => {
@@ -27,7 +27,7 @@ function hideIfMoved() {
   if (explained && !isThere(explained)) hideMeaning();
 }
 
-// The explained element is gone. Explains the one of `others` that has its place; without one the bubble goes.
+// After the explained element is gone, explains the one of `others` that is in its place, or hides the bubble.
 export function explainSuccessor(others, meaningOf) {
   const successor = others.find(isThere);
   if (!successor) {
@@ -35,7 +35,7 @@ export function explainSuccessor(others, meaningOf) {
     return;
   }
   showMeaning(successor, meaningOf(successor));
-  // A pointer that moves away before the browser has noticed the successor does not leave it.
+  // If the pointer moves away before the browser has noticed the successor, no event says that it has left.
   const moved = (event) => {
     if (explained === successor && !event.composedPath().includes(successor)) hideMeaning();
   };
@@ -57,8 +57,8 @@ export function showMeaning(anchor, words, ...controls) {
   if (controls.length) bubble.focus();
 }
 
-// A button that shows what it means when it is pressed: a touch screen has no hover. `meaning` returns the words and
-// the controls.
+// A button that shows its meaning when it is pressed, since a touch screen has no hover. `meaning` returns the words
+// and the controls.
 export function explainingButton(properties, meaning) {
   const made = button("", () => showMeaning(made, ...meaning()), properties);
   return made;
@@ -66,5 +66,5 @@ export function explainingButton(properties, meaning) {
 
 document.addEventListener("keydown", ({ key }) => key === "Escape" && hideMeaning());
 document.addEventListener("scroll", hideIfMoved, true);
-// On pointerdown, so before the click, which may show another meaning.
+// On pointerdown, and so before the click, which may show another meaning.
 document.addEventListener("pointerdown", (event) => event.composedPath().includes(bubble) || hideMeaning(), true);

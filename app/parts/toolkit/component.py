@@ -1,4 +1,4 @@
-"""The base class of components that our own JavaScript draws."""
+"""The base class of components that the dashboard's own JavaScript draws."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _FILES = {**FILES, **files_by_name("*.css")}
 
 
 def text(name: str) -> str:
-    """The content of a style sheet, or of a script that is written into the page, by its name."""
+    """Return the content of a style sheet, or of a script that is written into the page, by name."""
     return _FILES[name].read_text(encoding="utf-8")
 
 
@@ -30,7 +30,7 @@ class Component(WithPlainChanges, WithCommonProperties, WithoutChildren, Without
                 JSComponent):
     """A part of the page. `state` is sent to the browser and kept; messages go both ways and are not kept.
 
-    What the visitor does comes as messages, because Panel delays property changes by 50 ms and messages not at all.
+    The visitor's actions arrive as messages, because Panel delays property changes by 50 ms, but not messages.
     """
 
     state = param.Dict(default={})
@@ -58,7 +58,7 @@ class Component(WithPlainChanges, WithCommonProperties, WithoutChildren, Without
                 self.state = merged
 
     def handle_message(self, data: Any) -> None:
-        """Take a message of this part in the browser."""
+        """Handle a message from this part in the browser."""
         if self._received is not None and isinstance(data, dict):
             self._received(data)
 

@@ -1,17 +1,17 @@
 // Elements and controls that several parts of the page use.
 
-// Whether the page is arranged for a phone, or for another low window; every style asks the same
+// Whether the page is arranged for a phone or another low window; every style sheet has the same query
 // (tests/dashboard/test_phone.py).
 export const PHONE = matchMedia("(max-width: 820px), (max-height: 560px)");
 
-// An element with its properties and children.
+// Makes an element with its properties and children.
 export const element = (tag, properties = {}, ...children) => {
   const made = Object.assign(document.createElement(tag), properties);
   made.append(...children);
   return made;
 };
 
-// The pieces of a text with its numbers and |μ|, of which none is broken at the end of a line.
+// The pieces of a text, where numbers such as 3e-7 and |μ| 0.54 are not broken at the end of a line.
 export const unbroken = (text) =>
   text
     .split(/(\|μ\| [\d.]+\)?|\d[\d.]*e-\d+[.,;]?)/)
@@ -26,7 +26,7 @@ export const button = (textContent, act, properties = {}) => {
   return made;
 };
 
-// A list of choices that calls `act` with the value that is chosen.
+// A list of choices that calls `act` with the chosen value.
 export function chooser(label, className, act) {
   const select = element("select", { className, title: label, ariaLabel: label });
   select.addEventListener("change", () => act(select.value));
@@ -42,7 +42,7 @@ export const table = (titles, body, properties = {}) => {
   return element("table", properties, element("thead", {}, head), body);
 };
 
-// The button in a tab that opens the page of the tab. By `data-name` the focus finds it again in a tab that is drawn anew.
+// The button in a tab that opens the tab's page. By its `data-name`, the focus finds it again in a redrawn tab.
 export const openButton = (name) => {
   const opener = button("open the page", () => window.granchain.openPage(name), { className: "open" });
   opener.dataset.name = "open";
@@ -60,7 +60,7 @@ export const pageHead = (title, ...controls) =>
     button("✕", () => window.granchain.closePage(), { title: "Back to the chain", className: "close" }),
   );
 
-// Has the browser save a file under this name.
+// Makes the browser save a file under this name.
 export function download(name, blob) {
   const link = element("a", { href: URL.createObjectURL(blob), download: name });
   link.click();

@@ -1,6 +1,6 @@
-// Numbers for a reader: prefixes, round values, ticks of an axis.
+// Numbers for a reader: prefixes, round values, axis ticks.
 
-// Factor and letter of the SI prefix in which a value, to three figures, reads from 1 to 1000 (as in app/format.py).
+// Factor and letter of the SI prefix that puts a value, to three figures, between 1 and 1000 (as in app/format.py).
 const PREFIXES = [..."GMk mµnpfa"].map((letter, i) => [10 ** (9 - 3 * i), letter.trim()]);
 export const prefixed = (value) => PREFIXES.find(([factor]) => Math.abs(value) >= 0.9995 * factor) ?? [1, ""];
 
@@ -15,7 +15,7 @@ const inDecade = (value, pick) => {
 export const stepBelow = (value) => inDecade(value, (of) => STEPS.findLast((step) => of(step) <= value) ?? 1);
 const stepAbove = (value) => inDecade(value, (of) => STEPS.find((step) => of(step) >= value) ?? 10);
 
-// Round values between low and high, about `count` of them.
+// About `count` round values between low and high.
 export function ticks(low, high, count) {
   const step = stepAbove((high - low) / count);
   const values = [];

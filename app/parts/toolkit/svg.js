@@ -1,4 +1,4 @@
-// Elements of SVG, and a frame with axes.
+// SVG elements, and a drawing with room for axes.
 
 export const SVG = "http://www.w3.org/2000/svg";
 export const draw = (tag, attributes = {}, ...children) => {
@@ -8,7 +8,7 @@ export const draw = (tag, attributes = {}, ...children) => {
   return element;
 };
 
-// A frame with axes in both directions; `box` is the room for data.
+// Puts an empty drawing into `host`; returns it with its size and the edges of the room for data inside these margins.
 export function frame(host, { left, right, top, bottom }, label) {
   const width = Math.max(60, host.clientWidth),
     height = Math.max(60, host.clientHeight);

@@ -1,7 +1,7 @@
 """Compiling outside the server process, so that only the session that needs the kernels waits.
 
-Numba holds the GIL while it compiles. Kernels that are not cached yet are therefore compiled in processes of their own,
-and the server then loads them from the cache.
+Numba holds the GIL while it compiles. Kernels that are not cached yet are therefore compiled in separate processes, and
+the server then loads them from the cache.
 """
 
 from __future__ import annotations
@@ -33,14 +33,14 @@ _ROOT = Path(__file__).resolve().parents[3]
 
 
 def compiling_words(what: str, piece: str) -> str:
-    """A sentence: what is being compiled, and how long the longest `piece` takes."""
+    """Return a sentence on what is being compiled, and how long the longest `piece` takes."""
     return f"compiling {what}: about {COMPILE_SECONDS[piece]} s, only the first time on this computer"
 
 
 def _compile(scene: Scene, piece: str) -> None:
     """Compile in another process, or in this one if no other can be started."""
     command = [sys.executable, "-m", f"{__package__}.compiling_process", str(os.getpid()), piece]
-    try:  # in a session of its own, where a terminal's Ctrl-C does not reach it; its stderr is the server's
+    try:  # in its own process session, out of reach of a terminal's Ctrl-C; its stderr is the server's
         subprocess.run(command, input=json.dumps(scene.to_json()), text=True, cwd=_ROOT, check=True,
                        stdout=subprocess.DEVNULL, start_new_session=True)
     except (OSError, subprocess.CalledProcessError) as problem:
@@ -65,7 +65,7 @@ class Compiler:
         self._loaded: set[tuple[str, str]] = set()
 
     def has(self, scene: Scene, *pieces: str) -> bool:
-        """Whether these kernels are compiled for the scene's structure, and only need to be loaded."""
+        """Return whether these kernels are compiled for the scene's structure and only need to be loaded."""
         missing = [piece for piece in pieces if (structure(scene), piece) not in self._known]
         if missing and not is_warm(scene, missing):
             return False
@@ -73,7 +73,7 @@ class Compiler:
         return True
 
     def ask(self, scene: Scene, piece: str) -> Future[None]:
-        """Begin to compile in another process, unless that is under way or done. A failed piece is tried again."""
+        """Start compiling in another process, unless that is under way or done. A failed piece is tried again."""
         key = structure(scene), piece
         with self._lock:
             compilation = self._compilations.get(key)
@@ -82,7 +82,7 @@ class Compiler:
             return compilation
 
     def await_piece(self, scene: Scene, piece: str, stop: Stop) -> bool:
-        """Wait for these kernels in a worker thread; False if the stop flag was set first."""
+        """Wait for these kernels in a worker thread; return False if the stop flag was set first."""
         if self.has(scene, piece):
             return True
         compilation = self.ask(scene, piece)
@@ -116,7 +116,7 @@ class Compiler:
 class Requests:
     """The pieces that one session's work has asked for, each only once, so that a failing piece is not tried forever.
 
-    The work of another session, or a picture, may try it again.
+    Another session's work, or a picture, may try it again.
     """
 
     def __init__(self, compiler: Compiler) -> None:
@@ -124,7 +124,7 @@ class Requests:
         self._compilations: dict[tuple[str, str], Future[None]] = {}
 
     def failure(self, scene: Scene, *pieces: str) -> Exception | None:
-        """Ask for these kernels. Return why a piece could not be compiled; None as long as no failure is known."""
+        """Ask for these kernels. Return the error if one could not be compiled; None while no failure is known."""
         for piece in pieces:
             key = structure(scene), piece
             if key not in self._compilations:

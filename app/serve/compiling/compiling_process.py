@@ -1,6 +1,6 @@
 """A process that compiles for the server and ends when the server ends.
 
-Its arguments are PARENT PIECE; the scene comes as JSON on standard input.
+Its arguments are PARENT PIECE; it reads the scene as JSON from standard input.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from granchain_core.execution.child_processes import end_with_parent
 
 
 def main(parent: str, piece: str) -> None:
-    """Watch the parent before the imports, which take seconds; then compile."""
+    """Start watching the parent before the imports, which take seconds, and then compile."""
     end_with_parent(int(parent))
     from granchain_core import Scene
     from granchain_core.precompile.warm import compile_piece

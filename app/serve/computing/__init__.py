@@ -1,1 +1,1 @@
-"""Computing for many sessions: worker pools, turns, priorities, processor time, shared results."""
+"""Computing for many sessions: worker pools, turns, priorities, processor time and shared results."""

@@ -1,4 +1,4 @@
-"""The processor time that each session has used lately; turns are given by it (turns.py)."""
+"""The processor time that each session has used recently, by which turns are given (turns.py)."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ import math
 import time
 from collections.abc import Callable
 
-#: Time in which half of what a session has used is forgotten [s].
+#: Time after which half of the time that a session has used is forgotten [s].
 _HALF_LIFE = 5.0
 
 
 class CpuTime:
-    """The processor time that one session has used lately [s]."""
+    """The processor time that one session has used recently [s]."""
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock, self._used, self._at = clock, 0.0, clock()
@@ -29,7 +29,7 @@ class CpuTime:
 class SharedCpuTime(CpuTime):
     """The processor time of a computation that several sessions wait for.
 
-    The sessions share the cost. The computation has the rank of the session that has used least.
+    The sessions share the cost. The computation ranks like the session that has used the least.
     """
 
     def __init__(self) -> None:
@@ -38,11 +38,11 @@ class SharedCpuTime(CpuTime):
 
     @property
     def used(self) -> float:
-        """The smallest time that a member has used [s]."""
+        """The smallest time used by any member [s]."""
         return min((member.used for member in list(self.members)), default=math.inf)
 
     def charge(self, seconds: float) -> None:
-        """Charge every member an equal part."""
+        """Charge every member an equal share."""
         members = list(self.members)
         for member in members:
             member.charge(seconds / len(members))

@@ -1,6 +1,6 @@
 """One computation at a time, replaced by a newer request.
 
-Each session has two of these: for its picture, and for drafts of its curve.
+Each session has two `LatestWins`: one for its picture and one for the drafts of its curve.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ _FIRST_RESULT_TIME = 1.0
 
 
 class _Alarms:
-    """A thread that calls each action when it is due; a `threading.Timer` would be a thread for each action."""
+    """A thread that calls each action when it is due; a `threading.Timer` would need a thread for each action."""
 
     def __init__(self) -> None:
         self._changed = threading.Condition()
@@ -46,7 +46,7 @@ class _Alarms:
             self._changed.notify()
 
     def _start(self) -> None:
-        """Start the thread. If the system allows none now, the next call tries again; until then no action is due."""
+        """Start the thread. If the system refuses, the next call tries again; until then, no action is called."""
         thread = threading.Thread(target=self._serve, daemon=True, name="alarms")
         try:
             thread.start()
@@ -71,8 +71,8 @@ _later = _Alarms()
 class LatestWins:
     """Runs at most one computation and keeps at most one waiting request; a newer request replaces the waiting one.
 
-    A computation is an iterator of ever better results. A newer request stops a computation that has had its first
-    result at once. A computation without a result may go on for up to a second: if every request stopped it, the page
+    A computation is an iterator of ever better results. A newer request stops a computation at once if it has had its
+    first result. A computation without a result may continue for up to a second: if every request stopped it, the page
     would show no new picture during a drag.
     """
 
@@ -91,11 +91,11 @@ class LatestWins:
 
     @property
     def busy(self) -> bool:
-        """Whether a computation runs or waits."""
+        """Whether a computation is running or waiting."""
         return self._running
 
     def submit(self, work: TurnWork) -> None:
-        """Compute `work` next; it replaces a request that still waits."""
+        """Compute `work` next; it replaces a request that is still waiting."""
         with self._lock:
             if self._closed:
                 return
@@ -111,25 +111,25 @@ class LatestWins:
             self._began = time.monotonic()
         try:
             SESSION_WORK.submit(self._drain)
-        except Exception:  # the caller reports it; the next request has to begin
+        except Exception:  # the caller reports it; the next request must be able to start
             with self._lock:
                 self._running, self._waiting = False, None
             raise
 
     def _give_up(self, stop: TurnFlag) -> None:
-        """Stop a computation that has no result after a second, if newer work waits."""
+        """Stop a computation that has no result after a second if newer work is waiting."""
         with self._lock:
             if self._stop is stop and self._waiting is not None:
                 stop.set()
 
     def cancel(self) -> None:
-        """Stop the computation that runs, and drop a request that waits; a later request is computed as usual."""
+        """Stop the running computation and drop a waiting request; later requests are computed as usual."""
         with self._lock:
             self._waiting = None
             self._stop.set()
 
     def close(self) -> None:
-        """Stop: nothing more is computed or delivered."""
+        """Stop for good: nothing more is computed or delivered."""
         with self._lock:
             self._closed = True
             self._waiting = None
@@ -154,7 +154,7 @@ class LatestWins:
                 return
 
     def _do(self, work: TurnWork) -> None:
-        """Deliver the results of a computation. If newer work waits, end after the next result; report a failure."""
+        """Deliver the results of a computation. If newer work is waiting, end after the next result."""
         try:
             for result in work(self._stop):
                 if self._closed:
@@ -170,7 +170,7 @@ class LatestWins:
             self._report(error)
 
     def _report(self, error: Exception) -> None:
-        """Report a failure. If reporting fails too, log that, so that the next computation still begins."""
+        """Report a failure. If reporting fails too, log that, so that the next computation still starts."""
         try:
             if not self._closed:
                 self._fail(error)

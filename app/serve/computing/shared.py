@@ -1,7 +1,7 @@
 """Shared results: request coalescing (*single flight*) with an LRU cache in bounded memory.
 
-A result is computed once for all sessions that wait for it, so a lecture hall whose pages all have the same knobs costs
-as much as one session. A computation ends when the last session that waits for it has moved on or ended.
+A result is computed once for all sessions that wait for it, so a lecture hall in which all pages have the same knobs
+costs as much as one session. A computation ends when the last session waiting for it has moved on or ended.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from .worker_pools import WorkerPool
 
 Item = TypeVar("Item")
 
-#: Time between two checks of the stop flag of a session that waits [s]; new items wake the session at once.
+#: Time between two checks of a waiting session's stop flag [s]; new items wake the session at once.
 _STOP_CHECK_INTERVAL = 0.5
 
 
@@ -36,18 +36,18 @@ class _Computation(Generic[Item]):
 
 
 def _own(error: Exception) -> Exception:
-    """A copy of an error for one session, so that raising it adds only that session's frames to the traceback."""
-    own = type(error).__new__(type(error), *error.args)  # copy.copy would call __init__, whose arguments may be others
+    """Return a copy of an error for one session: raising it adds only that session's frames to the traceback."""
+    own = type(error).__new__(type(error), *error.args)  # copy.copy would call __init__, which may take other arguments
     own.__dict__.update(error.__dict__)
     own.__cause__, own.__suppress_context__ = error.__cause__, error.__suppress_context__
     return own.with_traceback(error.__traceback__)
 
 
 class Shared(Generic[Item]):
-    """Computations by their keys.
+    """Shared computations, by key.
 
-    `kept` chooses the items of a finished computation that are kept, and `size` gives the memory of an item. All that
-    is kept takes at most `memory` bytes; the least recently used computation is dropped first. With `turns` the
+    `kept` chooses the items of a finished computation that are kept, and `size` returns the memory of an item. All kept
+    items together take at most `memory` bytes; the least recently used computation is dropped first. With `turns`, the
     computations take turns (turns.py).
     """
 
@@ -62,9 +62,9 @@ class Shared(Generic[Item]):
 
     def follow(self, key: Hashable, compute: Callable[[TurnFlag], Iterator[Item]], stop: Stop,
                cpu_time: CpuTime) -> Generator[Item, None, None]:
-        """The items of `compute`, or of the computation with the same key that is under way or finished.
+        """Yield the items of `compute`, or of the computation with the same key that is under way or finished.
 
-        A computation with the key None is not shared. Raises `Cancelled` when `stop` is set, and what `compute` raises.
+        A computation with the key None is not shared. Raises `Cancelled` when `stop` is set, and errors of `compute`.
         """
         with self._lock:
             if key in self._finished:
@@ -84,7 +84,7 @@ class Shared(Generic[Item]):
 
     def _join(self, key: Hashable, compute: Callable[[TurnFlag], Iterator[Item]],
                 cpu_time: CpuTime) -> _Computation[Item]:
-        """The computation under way, or a new one; called with the lock held."""
+        """Return the computation under way, or a new one; called with the lock held."""
         computation = None if key is None else self._under_way.get(key)
         if computation is None:
             computation = _Computation()
@@ -155,7 +155,7 @@ class Shared(Generic[Item]):
                 if error is None and key is not None:
                     self._keep(key, self._kept(computation.items))
         finally:
-            with computation.changed:  # after an error, too, because sessions wait
+            with computation.changed:  # after an error as well, because sessions are waiting
                 computation.done, computation.error = True, error
                 computation.changed.notify_all()
 

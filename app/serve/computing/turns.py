@@ -1,7 +1,7 @@
-"""Turns to compute, given by *least attained service* with a time slice; `Turns` has the rule.
+"""Turns to compute, given by *least attained service* with a time slice; the docstring of `Turns` has the rule.
 
-Kernels run without the GIL, so about as many computations as there are cores run at once. A computation is new until it
-has its first result or has taken long; from then on it is a refinement.
+Kernels run without the GIL, so about as many computations run at once as there are cores. A computation is new until it
+has its first result or has taken long; from then on, it is a refinement.
 """
 
 from __future__ import annotations
@@ -22,23 +22,24 @@ from .priorities import lower_priority
 
 Result = TypeVar("Result")
 
-#: Processor time for which a computation without a result is new [s]. A first picture of ten beads takes a tenth of it.
+#: Processor time after which a computation is no longer new, even without a result [s]. A first picture of ten beads
+#: takes a tenth of it.
 _NEW_CPU_TIME = 0.03
-#: Time for which a turn is kept although others wait [s]. Passing it on at every pause would cost too much: each
+#: Time for which a turn is kept although others are waiting [s]. Passing it on at every pause would cost too much: each
 #: handover to another thread waits for the GIL several times.
 _TIME_SLICE = 0.02
-#: Most new computations whose waits are averaged.
+#: Largest number of new computations whose waits are averaged.
 _MOST_WAITS = 200
-#: Span of time over which the waits are averaged [s].
+#: Period over which the waits are averaged [s].
 _WAITS_WINDOW = 10.0
-#: Wait after which a refinement gets a turn although new computations use all cores [s].
+#: Wait after which a refinement gets a turn even if new computations use all cores [s].
 _LONGEST_WAIT = 0.5
 #: Interval at which a waiting thread checks whether a computation may begin [s]: nothing notifies it when a turn has
-#: become too old, or a wait too long. The time is multiplied by the number of computations that wait.
+#: become too old, or a wait too long. The interval is multiplied by the number of waiting computations.
 _CHECK_INTERVAL = 0.05
-#: Largest factor of this time.
+#: Largest factor by which this interval is multiplied.
 _LONGEST_CHECK_MULTIPLE = 20
-#: Age beyond which a turn no longer keeps others waiting [s], since not every computation can pause.
+#: Age after which a turn no longer keeps others waiting [s], since not every computation can pause.
 _LONGEST_TURN = 0.1
 
 
@@ -61,23 +62,23 @@ class _Turn:
         self.granted = threading.Event()
 
     def priority(self, now: float) -> _Priority:
-        """The place of the thread among the waiting threads."""
+        """Return the sort key of this thread among the waiting threads."""
         return _Priority(not self.is_new, now - self.at < _LONGEST_WAIT, self.cpu_time.used)
 
 
 class Turns:
-    """Gives turns to computations that wait.
+    """Gives turns to waiting computations.
 
     *Who is next.* New computations go before refinements. Among equals, those that have waited for `_LONGEST_WAIT` go
-    first, then the session that has used the least processor time lately.
+    first, followed by the session that has recently used the least processor time.
 
     *When.* A new computation gets a turn while fewer than `at_once` new computations have one, whatever else computes.
     A refinement gets a turn while fewer than `at_once` computations of both kinds have one. A refinement that has
-    waited for `_LONGEST_WAIT` gets a turn while fewer than `at_once` refinements have one. So `2 * at_once` turns are
-    possible for a moment. Only turns younger than `_LONGEST_TURN` count.
+    waited for `_LONGEST_WAIT` gets a turn while fewer than `at_once` refinements have one, so there can briefly be
+    `2 * at_once` turns. Only turns younger than `_LONGEST_TURN` count.
 
-    *How long.* A new computation is short and keeps its turn. A refinement gives its turn up at the first pause after
-    its time slice at which `should_yield` finds another due.
+    *How long.* A new computation is short and keeps its turn. A refinement gives up its turn at the first pause after
+    its time slice at which `should_yield` returns True.
     """
 
     def __init__(self, at_once: int, clock: Callable[[], float] = time.monotonic) -> None:
@@ -90,14 +91,14 @@ class Turns:
 
     @property
     def wait(self) -> float:
-        """Mean wait of new computations lately [s]."""
+        """Mean recent wait of new computations [s]."""
         since = self._clock() - _WAITS_WINDOW
         waits = [wait for at, wait in list(self._waits) if at > since]
         return sum(waits) / len(waits) if waits else 0.0
 
     @property
     def waiting(self) -> int:
-        """Number of computations that wait for a turn."""
+        """Number of computations waiting for a turn."""
         return len(self._waiting)
 
     @property
@@ -134,17 +135,17 @@ class Turns:
             self._grant()
 
     def became_refinement(self, turn: _Turn) -> None:
-        """Treat the computation as a refinement from now on, which makes room for a new one."""
+        """Treat the computation as a refinement from now on, to make room for a new one."""
         if turn.is_new:
             with self._lock:
                 turn.is_new = False
                 self._grant()
 
     def should_yield(self, turn: _Turn) -> bool:
-        """Whether a refinement has to give up its turn; a new computation keeps its turn.
+        """Return whether a computation must give up its turn; a new computation keeps its turn.
 
-        A refinement has to give up its turn if a waiting computation has a higher priority. It also has to if more than
-        `at_once` computations have a turn and its session has used the most processor time of them.
+        A refinement must give up its turn if a waiting computation has a higher priority. It must also do so if more
+        than `at_once` computations have a turn and its session has used the most processor time of them.
         """
         with self._lock:
             now = self._clock()
@@ -158,7 +159,7 @@ class Turns:
             return more < too_many
 
     def _grant(self) -> None:
-        """Give turns in the order of priority; called with the lock held."""
+        """Give turns in order of priority; called with the lock held."""
         self._checked_at = now = self._clock()
         # Usually there is no room, and checking that is cheaper than sorting.
         if not any(self._has_room(turn, now) for turn in self._waiting):
@@ -174,7 +175,7 @@ class Turns:
             turn.granted.set()
 
     def _has_room(self, turn: _Turn, now: float) -> bool:
-        """Whether this turn could begin beside the turns that are held."""
+        """Return whether this turn could begin in addition to the turns that are held."""
         are_new = [other.is_new for other in self._running if now - other.at < _LONGEST_TURN]
         if turn.is_new:
             return sum(are_new) < self._at_once
@@ -186,7 +187,7 @@ TURNS = Turns(max(2, usable_cores()))
 
 
 class Flag(Stop):
-    """A stop flag that calls `on_set` in the thread that sets the flag, to wake a waiting thread."""
+    """A stop flag that calls `on_set` in the thread that sets it, in order to wake a waiting thread."""
 
     __slots__ = ("on_set",)
 
@@ -212,7 +213,7 @@ class TurnFlag(Flag):
         self._turns = turns
         self._turn: _Turn | None = None
         self._began = self._spent = 0.0
-        #: How long its thread has waited for turns [s].
+        #: Time for which its thread has waited for turns [s].
         self.waited = 0.0
 
     @property
@@ -221,12 +222,12 @@ class TurnFlag(Flag):
         return self._spent < _NEW_CPU_TIME
 
     def set(self) -> None:
-        """Set the flag; a wait for a turn ends as well."""
+        """Set the flag, which also ends a wait for a turn."""
         super().set()
         self._turns.stopped(self)
 
     def pause(self) -> None:
-        """Between two parts of the computation: give up the turn if another session is due."""
+        """Give up the turn, between two parts of the computation, if another session is due."""
         if self._turn is None:
             return
         self._charge()
@@ -239,7 +240,7 @@ class TurnFlag(Flag):
 
     @contextmanager
     def held(self, is_new: bool = False) -> Iterator[None]:
-        """Wait for a turn and hold it. With `is_new` another computation begins with this flag."""
+        """Wait for a turn and hold it. With `is_new`, another computation begins with this flag."""
         if is_new:
             self._spent = 0.0
         self._enter()
@@ -263,7 +264,7 @@ class TurnFlag(Flag):
             self._enter()
 
     def in_turns(self, results: Iterable[Result]) -> Iterator[Result]:
-        """The results, each computed while a turn is held."""
+        """Yield the results, each computed while a turn is held."""
         remaining = iter(results)
         while True:
             with self.held():

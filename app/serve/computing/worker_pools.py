@@ -1,8 +1,8 @@
-"""The pools of threads in which the dashboard computes.
+"""The thread pools in which the dashboard computes.
 
 All sessions share these pools. Kernels release the GIL, so threads are enough. Threads that compute pictures take turns
-(turns.py), and of a session's requests for pictures the latest counts (latest_wins.py). Long work has pools of its own,
-because a picture must never wait for long work.
+(turns.py), and only the latest of a session's requests for pictures counts (latest_wins.py). Long work has separate
+pools, because a picture must never wait for long work.
 """
 
 from __future__ import annotations
@@ -25,17 +25,17 @@ Result = TypeVar("Result")
 
 
 class WorkerPool:
-    """At most `workers` threads for work of one kind, first come, first served. A thread is started when it is needed.
+    """At most `workers` threads for one kind of work, first come, first served. A thread is started when it is needed.
     `purpose` says what the work is (docs/dashboard.md).
 
-    The threads are daemons: a branch or a map takes minutes, and a server that ends does not wait for them. Threads of
-    a `low_priority` pool leave the processor to others (priorities.py).
+    The threads are daemons: a branch or a map takes minutes, and a server that shuts down does not wait for them.
+    Threads of a `low_priority` pool leave the processor to others (priorities.py).
 
     With a `per_owner_limit`, at most that many pieces of one owner's work run or wait for a thread. Further pieces are
-    held. When an earlier piece of the owner ends, the next is queued behind the work of others.
+    held back. When an earlier piece of the owner ends, the next is queued behind the work of others.
 
-    A thread is busy from the moment at which it is given work, before the work begins. Otherwise the next piece of work
-    would be given to the same thread, and wait although another thread is free.
+    A thread counts as busy from the moment it is given work, before the work begins. Otherwise the next piece of work
+    would be given to the same thread and wait, although another thread is free.
     """
 
     def __init__(self, name: str, workers: int, purpose: str = "", low_priority: bool = False,
@@ -56,7 +56,7 @@ class WorkerPool:
 
     @property
     def busy_threads(self) -> int:
-        """Number of threads that have work, even if they wait in the middle of it, such as for a turn."""
+        """Number of threads that have work, even if they are waiting in the middle of it, for example for a turn."""
         return len(self._threads) - self._free
 
     @property
@@ -66,11 +66,11 @@ class WorkerPool:
             return sum(map(len, self._held.values()))
 
     def submit(self, work: Callable[..., Result], *args: object, owner: object = None) -> Future[Result]:
-        """Call `work` as soon as a thread is free; the future has its result or its error.
+        """Call `work` as soon as a thread is free; the returned future gets its result or error.
 
-        Work without an `owner` has no limit. Raises what `Thread.start` raises if the pool has no thread and the system
-        allows none. If the future is cancelled before the work begins, the work is not done,
-        and nothing keeps the work or its arguments alive.
+        Work without an `owner` has no limit. Raises the error of `Thread.start` if the pool has no thread and the
+        system allows none. If the future is cancelled before the work begins, the work is not done, and nothing keeps
+        the work or its arguments alive.
         """
         future: Future[Result] = Future()
         limited = self.per_owner_limit is not None and owner is not None
@@ -114,10 +114,10 @@ class WorkerPool:
         self._given.put(do)
 
     def _let_go(self, owners: list[object], do: Callable[[], None]) -> bool:
-        """Drop cancelled work that is held because of its owner's limit; return whether it was held.
+        """Drop cancelled work that is held back by its owner's limit; return whether there was any.
 
-        Cancelled work that is queued stays in the queue and does nothing. `owners` is empty if a thread has taken the
-        work since it was cancelled.
+        Cancelled work that is already queued stays in the queue and does nothing. `owners` is empty if a thread has
+        taken the work since it was cancelled.
         """
         with self._lock:
             waiting = self._held.get(owners[0]) if owners else None
@@ -129,7 +129,7 @@ class WorkerPool:
             return True
 
     def _ended(self, owner: object) -> None:
-        """Work of this owner has ended: queue the owner's next work."""
+        """Queue the next work of this owner, because earlier work of the owner has ended."""
         with self._lock:
             if waiting := self._held.get(owner):
                 self._give(waiting.popleft())
@@ -142,8 +142,8 @@ class WorkerPool:
     def _begin(self) -> bool:
         """Start one more thread; called with the lock held.
 
-        If the system allows no more threads, return False: the threads of the pool do all work, later. Raise the error
-        if the pool has no thread.
+        If the system allows no more threads, return False: the existing threads then do all work, only later. Raise the
+        error if the pool has no threads.
         """
         thread = threading.Thread(target=self._serve, daemon=True, name=f"{self.name} {next(self._numbers)}")
         try:
@@ -159,7 +159,7 @@ class WorkerPool:
     def _is_replaced(self) -> bool:
         """Let this thread leave the pool, and start another if work is queued; called with the lock held.
 
-        If no other thread can be started, return False: this thread has to stay, though its priority is lower.
+        If no other thread can be started, return False: this thread must stay, despite its lower priority.
         """
         if self.queued:
             if not self._begin():
@@ -169,9 +169,9 @@ class WorkerPool:
         return True
 
     def _serve(self) -> None:
-        """Do one piece of work after the other, in a thread.
+        """Do one piece of work after another, in a thread.
 
-        A thread whose priority was lowered by its work ends, because it cannot get its usual priority back.
+        A thread whose priority was lowered by its work ends, because it cannot regain its usual priority.
         """
         if self.low_priority:
             lower_priority()
@@ -188,14 +188,14 @@ class WorkerPool:
                     self._free += 1
 
 
-#: Their number is limited because a thread takes memory. The limit is below the largest `--max-sessions`, since most
-#: pages rest.
+#: The number of threads is limited because each takes memory. The limit is below the largest `--max-sessions`, since
+#: most pages are idle.
 SESSION_WORK = WorkerPool(
     "session_work", 1000,
     "a thread for each session that waits for its main picture; live steps, drafts of the curve, energy accounts")
 #: There are more threads than cores, because turns decide which threads compute (turns.py), and a picture that waits
-#: for the compiler keeps its thread. If more pictures than this have a thread or wait for one, first pictures no longer
-#: go before refinements.
+#: for the compiler keeps its thread. If more pictures than this need a thread, first pictures no longer go before
+#: refinements.
 PICTURES = WorkerPool("pictures", 200, "the main pictures, for all sessions that wait; the Observer page, without a "
                                        "turn")
 #: Short work, which is cancelled when a knob moves. The long questions of the page Analysis are work of `LONG`.
@@ -203,26 +203,26 @@ ANALYSES = WorkerPool(
     "analyses", 8,
     "while the knobs rest: Stability, pinned motions, the motion of a story's step, the names of peaks, where a "
     "measured series lies over the picture", low_priority=True)
-#: On the event loop this work would hold up everybody. The files of one session are read one by one, so that they
+#: On the event loop, this work would hold up everyone. The files of one session are read one by one, so that they
 #: cannot take both threads.
 FILES = WorkerPool("files", 2, "reading a measurement, writing an export", per_owner_limit=1)
 LOADING = WorkerPool("loading", 1, "kernels loaded before a session needs them")
-#: A map waits for a curve that is under way: in one pool maps could take all threads and wait for curves that have no
-#: thread.
+#: A map waits for a curve that is under way. In a single pool, maps could take all threads and wait for curves that
+#: have no thread.
 CURVES = WorkerPool("curves", 200, "a thread for each session that waits for its resonance curve, or for that of a "
                                    "pinned picture")
 #: Each computation uses all cores, which the system divides among them.
 SWEEPS = WorkerPool(
     "sweeps", 8, "the resonance curves, and frequencies for the names of peaks, for all sessions that wait",
     low_priority=True)
-#: One session could start all of this work, and two sessions could fill the pool; so each has a limit.
+#: One session could start all of this work, and two sessions could fill the pool, so each has a limit.
 LONG = WorkerPool(
     "long", 8,
     "parameter maps, searches for attractors, branches, the questions of Analysis, figures of the paper, virtual "
     "experiments",
     low_priority=True, per_owner_limit=2)
-#: One at a time for all sessions, because two timings at once disturb each other. Its priority is not lower, because a
-#: timing that others hold up is wrong.
+#: One at a time for all sessions, because two simultaneous timings disturb each other. Its priority is not lowered,
+#: because a timing that others hold up is wrong.
 MEASUREMENTS = WorkerPool("measurements", 1, "timings of Accuracy and Effects, and hard cases")
 COMPILATIONS = WorkerPool("compilations", 2, "waiting for processes that compile kernels")
 

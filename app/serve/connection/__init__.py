@@ -1,1 +1,1 @@
-"""A page's connection to its browser: TCP options, the pace of pictures, and what happens when it ends."""
+"""A page's connection to its browser: TCP options, the pace of pictures, and the end of the connection."""

@@ -10,7 +10,7 @@ from bokeh.document import Document
 
 from ...library_internals import Internal, internals
 
-#: What is used of Bokeh beyond its documentation.
+#: The undocumented parts of Bokeh that are used here.
 INTERNALS = internals(
     __name__,
     Internal("bokeh.server.session.ServerSession", ("request_expiration",),
@@ -18,12 +18,12 @@ INTERNALS = internals(
              "for it"),
 )
 
-#: By document: the method to be called when the session ends.
+#: The method to be called when the session ends, by document.
 _PAGES: weakref.WeakKeyDictionary[Document, weakref.WeakMethod[Callable[[], None]]] = weakref.WeakKeyDictionary()
 
 
 def when_left(document: Document, close: Callable[[], None]) -> None:
-    """Call a method when the session of this document ends; the object of the method is not kept alive."""
+    """Call a method when the session of this document ends; this does not keep the method's object alive."""
     _PAGES[document] = weakref.WeakMethod(close)
 
 

@@ -1,7 +1,7 @@
 """Flow control of pictures: at most two in flight, and waiting pictures are conflated.
 
-At most two pictures are in flight until the browser acknowledges one. Of the pictures that wait only the newest is
-sent. So the browser sets the pace (*backpressure*).
+At most two pictures are in flight until the browser acknowledges one. Of the waiting pictures, only the newest is sent.
+So the browser sets the pace (*backpressure*).
 """
 
 from __future__ import annotations
@@ -12,10 +12,10 @@ from typing import Generic, TypeVar
 Picture = TypeVar("Picture")
 
 
-#: Pictures in flight at once: one that is being painted, one that travels. Live mode keeps as many in flight. Measured
-#: there with `live_figures` of tests/benchmarks/browser_latency.py, 2026-11-26, two cores with other work. With an
-#: added round trip of 50 ms: 14 pictures a second with one in flight, 26 with two. Without it: 54 and 69 pictures a
-#: second, and a median lag of 14 and 17 ms.
+#: Pictures in flight at once: one being painted, and one on its way. Live mode always has this many in flight. Measured
+#: in live mode with `live_figures` of tests/benchmarks/browser_latency.py, 2026-11-26, on two cores with other work:
+#: with an added round trip of 50 ms, 14 pictures a second with one in flight and 26 with two; without it, 54 and 69
+#: pictures a second, with a median lag of 14 and 17 ms.
 _MOST_IN_FLIGHT = 2
 
 
@@ -24,7 +24,7 @@ class PicturePacer(Generic[Picture]):
 
     Without acknowledgements, a server that computes faster than the browser paints would fill the websocket, and the
     picture would lag a second behind the knob. `on_idle` is called when the browser has acknowledged a picture and no
-    other waits.
+    other is waiting.
     """
 
     def __init__(self, send: Callable[[int, Picture], None], on_idle: Callable[[], None]) -> None:
@@ -40,7 +40,7 @@ class PicturePacer(Generic[Picture]):
         return self._sent - self._painted >= _MOST_IN_FLIGHT
 
     def offer(self, picture: Picture) -> None:
-        """Send `picture` now or as soon as the browser is ready; it replaces a picture that waits."""
+        """Send `picture` now or as soon as the browser is ready; it replaces a waiting picture."""
         if self.is_full:
             self._waiting = picture
             return
@@ -49,7 +49,7 @@ class PicturePacer(Generic[Picture]):
         self._send(self._sent, picture)
 
     def painted(self, number: object) -> None:
-        """Picture `number` is on the screen, as the browser reports."""
+        """Note that picture `number` is on the screen, as reported by the browser."""
         if not isinstance(number, int) or not self._painted < number <= self._sent:
             return
         self._painted = number

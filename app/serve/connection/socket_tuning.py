@@ -1,6 +1,6 @@
-"""A page's sockets, which send every message at once.
+"""Makes a page's sockets send every message at once.
 
-Tornado and Bokeh have no public way to a page's streams. If a release lacks one of the attributes, messages leave as
+Tornado and Bokeh have no public access to a page's streams. If a release lacks one of the attributes, messages leave as
 the libraries send them.
 """
 
@@ -14,7 +14,7 @@ from tornado.iostream import IOStream
 from ...library_internals import Internal, internals
 
 _WITHOUT = "messages wait for the acknowledgement of earlier ones"
-#: What is used of Bokeh and Tornado beyond their documentation.
+#: The undocumented parts of Bokeh and Tornado that are used here.
 INTERNALS = internals(
     __name__,
     Internal("bokeh.server.session.ServerSession", ("_subscribed_connections",), _WITHOUT),
@@ -25,7 +25,7 @@ INTERNALS = internals(
 
 
 def _streams(document: Document) -> list[IOStream]:
-    """The streams of this page's websockets; empty if a release keeps them elsewhere."""
+    """Return the streams of this page's websockets; empty if a release keeps them elsewhere."""
     session = getattr(document.session_context, "session", None)
     connections = getattr(session, "_subscribed_connections", ())
     ws_connections = [getattr(getattr(connection, "_socket", None), "ws_connection", None)

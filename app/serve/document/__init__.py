@@ -1,1 +1,1 @@
-"""A page's document: its lock, messages to its parts, changes on their way to the browser."""
+"""A page's document: its lock, messages to its parts, and changes on their way to the browser."""

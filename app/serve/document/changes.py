@@ -1,8 +1,8 @@
 """Sends the changes of a document to the browser: all changes of one action leave as one message, in one write.
 
-The message is the one that Bokeh would send, made without a search of all models of the document. Bokeh encodes values
-that are not plain, such as new models. This module uses undocumented parts of Tornado and Bokeh; if a release lacks
-them, changes leave as Bokeh sends them.
+The message is the same that Bokeh would send, but is made without a search of all models of the document. Bokeh encodes
+values that are not plain, such as new models. This module uses undocumented parts of Tornado and Bokeh; if a release
+lacks them, changes leave as Bokeh sends them.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ _ARRAYS = {"f": "float32", "d": "float64", "i": "int32", "B": "uint8"}
 _LARGEST_INLINE_ARRAY = 8192
 _NUMBERS = itertools.count(1)
 _WITHOUT = "changes leave as Bokeh sends them: a move takes three times as long"
-#: What is used of Bokeh and Tornado beyond their documentation.
+#: The undocumented parts of Bokeh and Tornado that are used here.
 INTERNALS = internals(
     __name__,
     Internal("bokeh.document.callbacks.DocumentCallbackManager",
@@ -57,7 +57,7 @@ INTERNALS = internals(
 
 
 def is_complete() -> bool:
-    """Whether the installed releases have all of `INTERNALS`."""
+    """Return whether the installed releases have all of `INTERNALS`."""
     return not missing(INTERNALS)
 
 
@@ -75,7 +75,7 @@ class _Message:
         self.arrays: list[tuple[str, memoryview]] = []
 
     def event(self, event: DocumentPatchedEvent) -> dict[str, Any]:
-        """The event as Bokeh's `to_serializable` writes it."""
+        """Return an event as Bokeh's `to_serializable` writes it."""
         if isinstance(event, MessageSentEvent) and isinstance(event.msg_data, ModelEvent):
             sent = event.msg_data
             values = [["model", _reference(sent.model)], ["data", self.value(getattr(sent, "data", None))]]
@@ -91,10 +91,10 @@ class _Message:
         raise _NotPlainValue
 
     def value(self, value: Any) -> Any:
-        """A plain value as Bokeh writes it in JSON."""
+        """Return a plain value as Bokeh writes it in JSON."""
         if value is None or isinstance(value, (str, bool)):
             return value
-        if isinstance(value, float):  # NumPy's double is one
+        if isinstance(value, float):  # includes NumPy's double
             if math.isfinite(value):
                 return float(value)
             return {"type": "number", "value": "nan" if math.isnan(value) else f"{value:+}"}
@@ -127,7 +127,7 @@ def _reference(model: Model | None) -> dict[str, str]:
 
 
 def _frame(payload: bytes | memoryview, binary: bool = False) -> Iterator[bytes | memoryview]:
-    """A websocket frame of a server (RFC 6455): unfragmented, unmasked and uncompressed."""
+    """Yield a server's websocket frame (RFC 6455): unfragmented, unmasked and uncompressed."""
     kind, length = 0x82 if binary else 0x81, len(payload)
     if length < 126:
         yield struct.pack("!BB", kind, length)
@@ -139,7 +139,7 @@ def _frame(payload: bytes | memoryview, binary: bool = False) -> Iterator[bytes 
 
 
 def encode_patch(events: list[DocumentPatchedEvent]) -> bytes | None:
-    """The frames of a message with these events; None if Bokeh has to encode an event."""
+    """Return the frames of a message with these events; None if Bokeh has to encode one of them."""
     message = _Message()
     try:
         content = {"events": [message.event(event) for event in events]}
@@ -158,7 +158,7 @@ def encode_patch(events: list[DocumentPatchedEvent]) -> bytes | None:
 
 
 def _encoded(document: Document, events: list[DocumentPatchedEvent], connection: Any) -> bytes:
-    """The frames of these events as Bokeh encodes them: with models that are new to the browser."""
+    """Return the frames of these events as Bokeh encodes them: with models that are new to the browser."""
     message = connection.protocol.create("PATCH-DOC", events)
     parts: list[bytes | memoryview] = []
     for text in (message.header_json, message.metadata_json, message.content_json):
@@ -206,7 +206,7 @@ class _Socket:
 
 
 def _send(document: Document, session: Any, events: list[Any]) -> None:
-    """Send held events for the browser as one message; Bokeh handles all other events."""
+    """Send the held events that are for the browser as one message; Bokeh handles the others."""
     patches = [event for event in events if isinstance(event, DocumentPatchedEvent)]
     sockets = [_Socket(connection) for connection in getattr(session, "_subscribed_connections", ())]
     if patches and sockets and all(socket.usable for socket in sockets):
@@ -237,7 +237,7 @@ def batched_changes(document: Document) -> Iterator[None]:
 
 
 def _batching_document(model: Model) -> Document | None:
-    """The document of the model, if its changes are being gathered."""
+    """Return the model's document if its changes are being gathered."""
     document = model.document
     if document is None or not _COMPLETE or document.callbacks.hold_value is None:
         return None
@@ -246,14 +246,14 @@ def _batching_document(model: Model) -> Document | None:
 
 
 def is_batched(model: Model) -> bool:
-    """Whether changes of the model are being gathered."""
+    """Return whether changes of the model are being gathered."""
     return _batching_document(model) is not None
 
 
 def set_properties(model: Model, **values: Any) -> None:
     """Set properties of a model to valid values, which Bokeh neither checks nor converts.
 
-    An equal value is not a change. While no changes are gathered, this is the model's own `update`.
+    Setting an equal value is not a change. If no changes are being gathered, this calls the model's own `update`.
     """
     document = _batching_document(model)
     if document is None:
@@ -269,7 +269,7 @@ def set_properties(model: Model, **values: Any) -> None:
 
 
 def _keep_last(events: list[Any], event: Any) -> None:
-    """Keep an event in place of an earlier event of the same property, which is out of date."""
+    """Keep an event instead of any earlier event of the same property, which is out of date."""
     for number, kept in enumerate(events):
         if type(kept) is type(event) and kept.model is event.model and kept.attr == event.attr:
             events[number] = event
@@ -278,7 +278,7 @@ def _keep_last(events: list[Any], event: Any) -> None:
 
 
 def send_event(model: Model, event: ModelEvent) -> bool:
-    """Send an event to a model's view with the gathered changes; False if no changes are being gathered."""
+    """Send an event to a model's view with the gathered changes; return False if none are being gathered."""
     document = _batching_document(model)
     if document is None:
         return False

@@ -9,7 +9,7 @@ from bokeh.document import Document
 
 from ...library_internals import Internal, internals
 
-#: What is used of Bokeh beyond its documentation.
+#: The undocumented parts of Bokeh that are used here.
 INTERNALS = internals(
     __name__,
     Internal("bokeh.server.session.ServerSession", ("_pending_writes",),
@@ -18,7 +18,7 @@ INTERNALS = internals(
 
 
 def has_document_lock(document: Document) -> bool:
-    """Whether Bokeh is known to hold the document's lock, without which the document may not be changed.
+    """Return whether Bokeh is known to hold the document's lock, without which the document must not be changed.
 
     While Bokeh holds the lock, it keeps a list of pending writes. A message can arrive while answers to an earlier
     message are still being written; Bokeh then refuses every change. If a release keeps the list elsewhere, a change
@@ -31,8 +31,7 @@ def has_document_lock(document: Document) -> bool:
 def with_document_lock(document: Document, action: Callable[[], None]) -> None:
     """Run `action` as soon as the document may be changed and changes reach the browser.
 
-    The browser can send requests before it has reported that all parts are rendered. Until this report, Panel drops
-    changes.
+    The browser can send requests before it has reported that all parts are rendered. Until then, Panel drops changes.
     """
     if not pn.state.loaded:
         pn.state.onload(action)

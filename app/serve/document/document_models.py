@@ -1,4 +1,4 @@
-"""The models of a document, collected once for many changes of it."""
+"""Collects the models of a document once for many changes of it."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ from bokeh.document import Document
 
 from ...library_internals import Internal, internals
 
-#: What is used of Bokeh beyond its documentation.
+#: The undocumented parts of Bokeh that are used here.
 INTERNALS = internals(
     __name__,
     Internal("bokeh.document.models.DocumentModelManager", ("freeze",),
-             "Bokeh collects what a document refers to anew for each part: a page opens more slowly"),
+             "Bokeh collects the models of the document again for each part: a page opens more slowly"),
 )
 
 
 def models_collected_once(document: Document | None) -> AbstractContextManager[None]:
-    """Collect the models of the document once for all changes made inside this context, instead of for each change."""
+    """Collect the document's models once for all changes made inside this context, instead of for each change."""
     freeze = getattr(getattr(document, "models", None), "freeze", nullcontext)
     once: AbstractContextManager[None] = freeze()
     return once

@@ -1,4 +1,4 @@
-"""Callbacks with a document locked: all callbacks that wait run together.
+"""Callbacks with a document locked: all waiting callbacks run together.
 
 Bokeh creates, wraps, stores, announces and removes its callbacks one by one, which takes longer than most actions.
 """
@@ -25,32 +25,32 @@ from ...library_internals import Internal, internals
 from ..monitoring.faults import log_fault, new_fault_id
 from .changes import batched_changes
 
-_WITHOUT = "Bokeh calls back each action by itself, some milliseconds slower"
-#: What is used of Bokeh and Panel beyond their documentation.
+_WITHOUT = "Bokeh calls each action separately, some milliseconds later"
+#: The undocumented parts of Bokeh and Panel that are used here.
 INTERNALS = internals(
     __name__,
     Internal("bokeh.server.session.ServerSession", ("_lock", "_pending_writes"), _WITHOUT),
     Internal("panel.io.state", ("set_curdoc",), _WITHOUT),
 )
 
-#: Writes of Bokeh that are not finished. This set keeps the tasks alive: the loop has only weak references.
+#: Bokeh's unfinished writes. This set keeps the tasks alive, as the loop has only weak references.
 _FINISHING: set[asyncio.Future[None]] = set()
 
 
 def can_lock(session: Any) -> bool:
-    """Whether `run_locked` can lock this session."""
+    """Return whether `run_locked` can lock this session."""
     lockable = set_curdoc is not None and isinstance(getattr(session, "_lock", None), Lock)
     return lockable and hasattr(session, "_pending_writes")
 
 
 def session_of(document: Document) -> Any:
-    """Bokeh's session of a page; None if there is none that `run_locked` can lock."""
+    """Return Bokeh's session of a page; None if there is none that `run_locked` can lock."""
     session = getattr(getattr(document, "session_context", None), "session", None)
     return session if can_lock(session) else None
 
 
 def run_locked(session: Any, actions: list[Callable[[], None]]) -> None:
-    """Run the actions as soon as the session's document can be locked: at once, if its lock is free."""
+    """Run the actions as soon as the session's document can be locked: at once if its lock is free."""
     lock: Any = session._lock.acquire()
     if lock.done():
         _with_lock(session, actions, lock)
@@ -96,9 +96,9 @@ async def _finish(pending: list[Any], release: Any) -> None:
 
 
 class LockedCallbacks:
-    """Calls actions with a document locked, in place of Bokeh's `add_next_tick_callback` and `add_timeout_callback`.
+    """Calls actions with a document locked, instead of Bokeh's `add_next_tick_callback` and `add_timeout_callback`.
 
-    Bokeh calls the actions itself if `run_locked` cannot lock the sessions of its release.
+    Bokeh calls the actions itself if `run_locked` cannot lock the sessions of the installed release.
     """
 
     def __init__(self, document: Document) -> None:
@@ -111,7 +111,7 @@ class LockedCallbacks:
         self._timers: set[asyncio.TimerHandle] = set()
 
     def close(self) -> None:
-        """Call no further action, and forget those that wait, because the session has ended."""
+        """Call no further action and forget the waiting ones, because the session has ended."""
         with self._lock:
             self._closed = True
             self._waiting.clear()
@@ -120,7 +120,7 @@ class LockedCallbacks:
         self._timers.clear()
 
     def next_tick(self, action: Callable[[], None]) -> None:
-        """Call `action` in the next iteration of the event loop; from any thread."""
+        """Call `action` in the next iteration of the event loop; called from any thread."""
         self._note_session()
         if self._closed or self._is_destroyed():
             return
@@ -136,7 +136,7 @@ class LockedCallbacks:
             self._loop.asyncio_loop.call_soon_threadsafe(self._run)  # type: ignore[attr-defined]
 
     def call_later(self, seconds: float, action: Callable[[], None]) -> None:
-        """Call `action` after `seconds`; on the event loop."""
+        """Call `action` after `seconds`; called on the event loop."""
         self._note_session()
         if self._closed or self._is_destroyed():
             return
@@ -152,11 +152,11 @@ class LockedCallbacks:
         self._timers.add(timer)
 
     def _note_session(self) -> None:
-        """Note whether the document has a session; while the page is made, there is none."""
+        """Note whether the document has a session; it has none while the page is being made."""
         self._served = self._served or session_of(self._document) is not None
 
     def _is_destroyed(self) -> bool:
-        """Whether Bokeh has destroyed the document; it does so before it calls `on_session_destroyed`."""
+        """Return whether Bokeh has destroyed the document, which it does before it calls `on_session_destroyed`."""
         return self._served and session_of(self._document) is None
 
     def _run(self) -> None:

@@ -1,6 +1,6 @@
-"""Messages of the page's own parts, dispatched to the part without Bokeh's decoding of a change.
+"""Messages of the page's own parts, passed to the part without Bokeh's decoding of a change.
 
-Everything that a visitor does comes this way. Any other message goes to Bokeh.
+Every action of a visitor arrives this way. All other messages go to Bokeh.
 """
 
 from __future__ import annotations
@@ -21,26 +21,26 @@ Call = Callable[[Receive, dict[str, Any]], None]
 _NUMBERS = {"nan": float("nan"), "inf": float("inf"), "+inf": float("inf"), "-inf": float("-inf")}
 #: The receiver of a part's messages, by document and model id.
 _RECEIVERS: weakref.WeakKeyDictionary[Document, dict[str, weakref.WeakMethod[Receive]]] = weakref.WeakKeyDictionary()
-#: By document: how its receivers are called.
+#: The method that calls the receivers, by document.
 _CALLS: weakref.WeakKeyDictionary[Document, weakref.WeakMethod[Call]] = weakref.WeakKeyDictionary()
 
 
 class _NotAPartMessage(Exception):
-    """The message is not a part's message in plain values."""
+    """The message is not a message of a part in plain values."""
 
 
 def register(document: Document, model: str, receive: Receive) -> None:
-    """Pass the messages of the model with this id to a method of a part; the part is not kept alive."""
+    """Pass the messages of the model with this id to a method of a part; this does not keep the part alive."""
     _RECEIVERS.setdefault(document, {})[model] = weakref.WeakMethod(receive)
 
 
 def call_with(document: Document, call: Call) -> None:
-    """Have receivers of this document called by a method, which handles their errors; it is not kept alive."""
+    """Have this document's receivers called by a method that handles their errors; its object is not kept alive."""
     _CALLS[document] = weakref.WeakMethod(call)
 
 
 def dispatch(session: Any, content: dict[str, Any]) -> bool:
-    """Pass a message to its part with the session's document locked; False if Bokeh has to handle the message."""
+    """Pass a message to its part with the session's document locked; return False if Bokeh has to handle it."""
     if session is None or not can_lock(session) or session.destroyed:
         return False
     known = _RECEIVERS.get(session.document)
@@ -59,7 +59,7 @@ def dispatch(session: Any, content: dict[str, Any]) -> bool:
 
 
 def _read(content: dict[str, Any]) -> tuple[str, dict[str, Any]]:
-    """The model's id, and the message of its part."""
+    """Return the model's id and the message of its part."""
     match content:
         case {"events": [{"kind": "MessageSent", "msg_type": "bokeh_event", "msg_data": {
                 "type": "event", "name": "data_event", "values": {"type": "map", "entries": [

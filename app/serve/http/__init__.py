@@ -1,1 +1,1 @@
-"""The border to the outside: guards, sessions, rules of messages, limits, files; health and metrics for operators."""
+"""The server's boundary: guards, sessions, message rules, limits and files; health and metrics for operators."""

@@ -1,7 +1,7 @@
 """Compressed scripts and styles, each compressed once: a page needs 1 MB instead of 3.4 MB.
 
-In a lecture hall a hundred laptops fetch these files over one wireless network. Tornado would compress every file again
-for each of them.
+In a lecture hall, a hundred laptops fetch these files over one wireless network. Tornado would compress every file
+again for each of them.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from tornado.web import StaticFileHandler
 
 from ...scripts import FILES, file_at
 
-#: Kinds of files that compression makes smaller; pictures and fonts are compressed already.
+#: File types that compression makes smaller; pictures and fonts are already compressed.
 _COMPRESSED_SUFFIXES = frozenset({".js", ".mjs", ".css", ".svg", ".json", ".map", ".html", ".txt"})
 #: The modules of the page.
 _MODULES = frozenset(map(str, FILES.values()))
@@ -28,7 +28,7 @@ _SMALLEST_COMPRESSED = 1400
 
 @functools.lru_cache(maxsize=512)
 def compressed(path: str, modified: int, size: int) -> bytes | None:
-    """The compressed file; None if compression saves nothing. `modified` and `size` distinguish a changed file."""
+    """Return the compressed file; None if that saves nothing. `modified` and `size` identify the file's version."""
     if size < _SMALLEST_COMPRESSED or Path(path).suffix not in _COMPRESSED_SUFFIXES:
         return None
     content = Path(path).read_bytes()
@@ -37,9 +37,9 @@ def compressed(path: str, modified: int, size: int) -> bytes | None:
 
 
 def accepts_gzip(wanted: str) -> bool:
-    """Whether the header `Accept-Encoding` names gzip with a weight other than 0 (RFC 9110, section 12.5.3).
+    """Return whether the header `Accept-Encoding` names gzip with a weight other than 0 (RFC 9110, section 12.5.3).
 
-    `*` alone does not count as gzip: a client that names no coding gets the file as it is.
+    `*` alone does not count as gzip: a client that names no coding gets the file uncompressed.
     """
     for entry in wanted.lower().split(","):
         coding, _, weight = entry.replace(" ", "").partition(";")
@@ -49,12 +49,12 @@ def accepts_gzip(wanted: str) -> bool:
 
 
 class CompressedFiles(StaticFileHandler):
-    """A mixin for a handler of files: a browser that accepts gzip and asks for all of a file gets it compressed."""
+    """A mixin for file handlers: a browser that accepts gzip and requests a whole file gets it compressed."""
 
     def parse_url_path(self, url_path: str) -> str:
-        """The file of an address: one of our modules, or the file that the handler finds.
+        """Return the file at an address: one of our modules, or the file that the handler finds.
 
-        No address is remembered, because strangers may ask for any number of them.
+        Addresses are not cached, because strangers may request any number of them.
         """
         ours = file_at(url_path)
         return super().parse_url_path(url_path) if ours is None else str(ours)
@@ -67,7 +67,7 @@ class CompressedFiles(StaticFileHandler):
         return compressed(self.absolute_path, status.st_mtime_ns, status.st_size)
 
     async def get(self, path: str, include_body: bool = True) -> None:
-        """Replace the content of this answer alone; Tornado computes the file's version with the class's own method."""
+        """Replace the content of this answer only; Tornado computes the file's version with the class's own method."""
         self.get_content = self._content  # type: ignore[method-assign, assignment]
         await super().get(path, include_body)
 
@@ -76,14 +76,14 @@ class CompressedFiles(StaticFileHandler):
         return type(self).get_content(path, start, end) if packed is None else packed
 
     def get_content_size(self) -> int:
-        """Number of bytes of the answer."""
+        """Return the number of bytes of the answer."""
         packed = self._packed()
         return super().get_content_size() if packed is None else len(packed)
 
     def set_extra_headers(self, path: str) -> None:
         """Set headers: the encoding, its dependence on the request, and that our modules never change.
 
-        If a module changes, the addresses of all modules change; a browser may therefore keep them.
+        A browser may keep the modules, because the addresses of all modules change if one of them changes.
         """
         super().set_extra_headers(path)
         if path in _MODULES:
@@ -93,6 +93,6 @@ class CompressedFiles(StaticFileHandler):
             self.set_header("Content-Encoding", "gzip")
 
     def compute_etag(self) -> str | None:
-        """The tag of the answer: a compressed file has different bytes, so it needs a different tag."""
+        """Return the tag of the answer; a compressed file has different bytes and so needs a different tag."""
         tag = super().compute_etag()
         return tag if tag is None or self._packed() is None else f'{tag[:-1]}-gzip"'

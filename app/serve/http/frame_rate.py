@@ -1,16 +1,16 @@
 """The rate of websocket frames.
 
-Tornado passes on whole messages. It answers pings itself, and joins the frames of a fragmented message. A client could
-send any number of pings and fragments, and no handler would see them. Frames are therefore counted in the bytes that
+Tornado passes on whole messages. It answers pings itself and joins the frames of a fragmented message, so a client
+could send any number of pings and fragments that no handler would see. Frames are therefore counted in the bytes that
 Tornado reads, by the format of RFC 6455, section 5.2.
 """
 
 from __future__ import annotations
 
-#: Sustained rate of frames [1/s], at which the token bucket of a connection is filled. A drag sends 60 messages a
-#: second, each in three frames.
+#: Sustained frame rate [1/s], at which a connection's token bucket is refilled. A drag sends 60 messages a second, each
+#: in three frames.
 FRAME_RATE = 600.0
-#: Burst: the number of frames for which the bucket holds tokens.
+#: Burst: the number of tokens in a full bucket.
 FRAME_BURST = 3000.0
 #: Bytes of a frame that cost one more token: a sustained rate of 6 MB/s, a burst of eleven large uploads.
 FRAME_UNIT = 10_000
@@ -22,13 +22,13 @@ class FrameBucket:
     def __init__(self, now: float) -> None:
         self._tokens = FRAME_BURST
         self._refilled_at = now
-        #: The bytes of a frame's header that have come so far.
+        #: The bytes of a frame's header that have arrived so far.
         self._head = b""
         #: Bytes of the payload that are still to come.
         self._left = 0
 
     def consume(self, data: bytes, now: float) -> bool:
-        """Consume tokens for the frames that begin in the next bytes; False if the bucket is empty.
+        """Consume tokens for the frames that begin in the next bytes; return False if the bucket is empty.
 
         `now` is the present time [s].
         """
@@ -51,7 +51,7 @@ class FrameBucket:
 
 
 def _length_of_head(head: bytes) -> int:
-    """The length of a frame's header, by its first two bytes."""
+    """Return the length of a frame's header, known from its first two bytes."""
     return 2 + {126: 2, 127: 8}.get(head[1] & 0x7F, 0) + (4 if head[1] & 0x80 else 0)
 
 

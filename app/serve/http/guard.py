@@ -1,7 +1,7 @@
 """Request guard: checks host, session and the number of sessions, and adds security headers.
 
-docs/security.md has the promises. The handlers of Bokeh, Panel and Tornado stay as they are: a class that is derived
-from each of them checks a request first (`app/serve/monkeypatches/request_handlers.py`).
+docs/security.md has the promises. The handlers of Bokeh, Panel and Tornado are not changed: a class derived from each
+of them checks a request first (`app/serve/monkeypatches/request_handlers.py`).
 """
 
 from __future__ import annotations
@@ -30,17 +30,17 @@ try:
 except ImportError:  # see `_opens_page`
     SessionHandler = None
 
-#: What is used of Bokeh beyond its documentation.
+#: The undocumented parts of Bokeh that are used here.
 INTERNALS = internals(
     __name__,
     Internal("bokeh.server.views.session_handler", ("SessionHandler",),
-             "a server with as many sessions as it may have also refuses to sign visitors in or out"),
+             "a server that has reached its largest number of sessions also refuses to sign visitors in or out"),
 )
 
 #: Bokeh's addresses that our page does not use; the first would make a session. The dot matches any character, as in
-#: Bokeh's pattern, so that every address that Bokeh's route accepts is refused.
+#: Bokeh's pattern, so that every address accepted by Bokeh's route is refused.
 _UNUSED_ADDRESSES = re.compile(r"/(autoload.js|metadata)/?")
-#: Whether the request that is being answered has passed a guard. A page is made in the context of its request.
+#: Whether the request being answered has passed a guard. A page is made in the context of its request.
 _IS_GUARDED: ContextVar[bool] = ContextVar("is_guarded", default=False)
 
 
@@ -59,7 +59,7 @@ class Guard(RequestHandler):
         self.set_header("X-Request-Id", self.request_id)
 
     async def prepare(self) -> None:
-        """Refuse a request that is not allowed; then let the handler prepare its answer."""
+        """Refuse a request that is not allowed, or let the handler prepare its answer."""
         if self.rules.proxy:
             read_proxy_headers(self.request, self.rules.proxy_header)
         self.check_request()
@@ -97,12 +97,12 @@ class Guard(RequestHandler):
                      500: "Something went wrong inside granchain."}
         sentence = f"{sentences.get(status_code, 'The request cannot be answered.')} (request {self.request_id})\n"
         if status_code == 503:
-            seconds = random.randint(*RETRY_AFTER)  # so that waiting pages do not all come back at once
+            seconds = random.randint(*RETRY_AFTER)  # so that waiting pages do not all return at once
             self.set_header("Retry-After", seconds)
             if self.request.path == "/":
                 self.set_header("Content-Type", "text/html; charset=UTF-8")
                 sentence = (f'<!doctype html><html lang="en"><title>granchain</title><meta http-equiv="refresh" '
-                            f'content="{seconds}"><p>{sentence}<p>This page tries again by itself.\n')
+                            f'content="{seconds}"><p>{sentence}<p>This page tries again automatically.\n')
         self.finish(sentence)
 
     def log_exception(self, typ: Any, value: Any, tb: Any) -> None:
@@ -116,12 +116,12 @@ class Guard(RequestHandler):
 
 
 def _opens_page(handler: RequestHandler) -> bool:
-    """Whether a request may open a page. Without Bokeh's class of such handlers, every unknown handler may."""
+    """Return whether a request may open a page. Without Bokeh's class of such handlers, any unknown handler may."""
     if SessionHandler is not None:
         return isinstance(handler, SessionHandler)
     return not isinstance(handler, (StaticFileHandler, WebSocketHandler, *HANDLERS.values()))
 
 
 def is_guarded() -> bool:
-    """Whether the request that is being answered has passed a guard."""
+    """Return whether the request being answered has passed a guard."""
     return _IS_GUARDED.get()

@@ -1,7 +1,7 @@
 """The guard of a websocket: its session, the rate of its frames, and the messages that reach Bokeh.
 
-docs/libraries.md lists the behaviour of Tornado and Bokeh that the guard relies on. If a release behaves otherwise, the
-first message closes the connection.
+docs/libraries.md lists the behaviour of Tornado and Bokeh that the guard relies on. If a release behaves differently,
+the first message closes the connection.
 """
 
 from __future__ import annotations
@@ -28,17 +28,17 @@ from .message_rules import LARGEST_HEADER, RefusedMessage, checked_content
 
 log = logging.getLogger("granchain.requests")
 
-#: Status of a websocket that is closed because of what the client did (RFC 6455, section 7.4.1).
+#: Status of a websocket closed because of the client's behaviour (RFC 6455, section 7.4.1).
 _POLICY_VIOLATION = 1008
-#: Most bytes that wait to be sent when another message is written. Two pictures of the longest chain with the most
-#: rows, in flight to a slow browser, have a little less; other pictures have a hundredth.
+#: Largest number of unsent bytes when another message is written. Two pictures of the longest chain with the most rows,
+#: in flight to a slow browser, have slightly fewer; other pictures have a hundredth of that.
 MOST_UNSENT = 64_000_000
-#: Most bytes that wait to be sent to all pages together: several clients that read nothing must not fill the memory.
+#: Largest number of unsent bytes of all pages together: several clients that read nothing must not fill the memory.
 MOST_UNSENT_TOGETHER = 256_000_000
 
 
 class GuardedSocket(Guard):
-    """The guard of a websocket: one connection for a session, a limited rate of frames, only messages of pages."""
+    """The guard of a websocket: one connection per session, a limited frame rate, and only messages that pages send."""
 
     #: Whether incoming frames are counted.
     _counted = False
@@ -46,39 +46,39 @@ class GuardedSocket(Guard):
     _fragments: tuple[str, ...] = ()
     _refused = False
     _left = False
-    #: The stream, once frames come and go.
+    #: The stream, once frames are exchanged.
     _stream: IOStream | None = None
-    #: The session whose token came with the request, and the same session once it has its connection.
+    #: The session whose token was in the request, and the same session once it has its connection.
     _offered = _session_id = ""
     _has_connection = False
 
     def check_request(self) -> None:
         """Also refuse a connection without a valid token of this server.
 
-        Bokeh checks the signature, too, but only after the handshake.
+        Bokeh also checks the signature, but only after the handshake.
         """
         super().check_request()
         offered = [word.strip() for word in self.request.headers.get("Sec-WebSocket-Protocol", "").split(",")]
         try:
             token, secret = offered[1], self.rules.secret
             session = get_session_id(token) if check_token_signature(token, secret, signed=True) else None
-        except Exception:  # a stranger may have written anything there
+        except Exception:  # a stranger may have sent anything
             session = None
         if session is None:
-            raise HTTPError(403, "no token of ours")
+            raise HTTPError(403, "no token of this server")
         self._offered = session
 
     def admit(self) -> None:
-        """Refuse a connection whose session was dropped, if there is no place for a new one."""
+        """Refuse a connection whose session was dropped if there is no place for a new one."""
         super().admit()
         if not self.rules.sessions.has_place(self._offered):
             self.refuse_session()
 
     def select_subprotocol(self, subprotocols: list[str]) -> str | None:
-        """Give the session its one connection; raise `HTTPError` if the session had one before.
+        """Give the session its only connection; raise `HTTPError` if the session has already had one.
 
-        Tornado has checked origin and headers of the handshake by now. Earlier, a request that fails would use up the
-        connection of the page.
+        Tornado has checked the origin and headers of the handshake by now. If this came earlier, a failing request
+        would use up the page's connection.
         """
         if not self.rules.sessions.claim_connection(self._offered):
             raise HTTPError(403, "a second connection to one session, or a page that has lost its place")
@@ -86,7 +86,7 @@ class GuardedSocket(Guard):
         return super().select_subprotocol(subprotocols)  # type: ignore[misc]
 
     def check_origin(self, origin: str) -> bool:
-        """Whether pages of this origin may connect."""
+        """Return whether pages of this origin may connect."""
         return urlsplit(origin).netloc.lower() in self.rules.origins \
             or bool(super().check_origin(origin))  # type: ignore[misc]
 
@@ -96,10 +96,11 @@ class GuardedSocket(Guard):
         return self.rules.sessions.find(self._session_id) if self._session_id else None
 
     def detach(self) -> IOStream:
-        """The stream of the websocket, which too many frames or too many unsent bytes close.
+        """Return the websocket's stream, which is closed by too many frames or too many unsent bytes.
 
         Bytes count as unsent until the operating system has taken them, which it does as long as the client reads.
-        Answers to pings count, too. If too many wait for all pages together, the connection with the most is closed.
+        Answers to pings also count. If all pages together have too many unsent bytes, the connection with the most is
+        closed.
         """
         stream: IOStream = super().detach()
         self._stream, unsent = stream, self.rules.unsent
@@ -115,9 +116,9 @@ class GuardedSocket(Guard):
 
         def write_and_count(data: bytes | memoryview) -> Future[None]:
             if unsent.of(self) > MOST_UNSENT:
-                self.drop("too much that waits to be sent")
+                self.drop("too many unsent bytes")
             elif unsent.total > MOST_UNSENT_TOGETHER:
-                unsent.largest().drop("too much that waits to be sent to all pages together")
+                unsent.largest().drop("too many unsent bytes of all pages together")
             if stream.closed():
                 unwritten: Future[None] = Future()
                 unwritten.set_exception(StreamClosedError())
@@ -134,26 +135,26 @@ class GuardedSocket(Guard):
         return stream
 
     def drop(self, reason: str) -> None:
-        """Close the connection without a closing frame, which would wait behind the unsent bytes."""
+        """Close the connection without waiting for a closing frame, which would be queued behind the unsent bytes."""
         self._refuse(reason)
         if self._stream is not None:
             self._stream.close()
 
     def on_message(self, fragment: str | bytes) -> Awaitable[None] | None:
-        """Pass on whole messages; a message that no page sends closes the connection."""
+        """Pass on whole messages, and close the connection after a message that no page sends."""
         if self._refused:  # fragments may still arrive after the closing frame
             return None
         try:
             if not self._counted:
                 raise RefusedMessage("frames that were not counted")
             if not self._has_connection:
-                raise RefusedMessage("a connection that no session was given")
+                raise RefusedMessage("a connection without a session")
             if not isinstance(fragment, str):
                 raise RefusedMessage("binary data")
             self._fragments = (*self._fragments, fragment)
             if len(self._fragments) < 3:
                 if len(fragment) > LARGEST_HEADER:
-                    raise RefusedMessage("too long a header")
+                    raise RefusedMessage("header too long")
                 return None
             fragments, self._fragments = self._fragments, ()
             content = checked_content(fragments[0], fragments[2])
@@ -175,12 +176,12 @@ class GuardedSocket(Guard):
         self.close(_POLICY_VIOLATION, reason)  # type: ignore[attr-defined]
 
     def _log_fields(self) -> dict[str, str]:
-        """Fields of a line of the log: the request's id, the visitor's address, and the session if there is one."""
+        """Return fields for a log line: the request's id, the visitor's address, and the session if there is one."""
         fields = {"request": self.request_id, "remote": str(self.request.remote_ip)}
         return {**fields, "session": session_label(self._session_id)} if self._session_id else fields
 
     def on_close(self) -> None:
-        """The visitor has left: end the page's computations; Bokeh drops the session at its next check.
+        """End the page's computations because the visitor has left; Bokeh drops the session at its next check.
 
         Tornado calls this method twice if the closing frame of a refused page arrives before its stream ends.
         """
@@ -196,12 +197,12 @@ class GuardedSocket(Guard):
             end_session(session)
 
     def write_message(self, message: Any, *args: Any, **kwargs: Any) -> Any:
-        """Send a message; an error has the request's id in place of a traceback."""
+        """Send a message; an error has the request's id instead of a traceback."""
         return super().write_message(self._without_traceback(message), *args, **kwargs)  # type: ignore[misc]
 
     def _without_traceback(self, frame: Any) -> Any:
-        """The frame, without the traceback if it is the content of an error, which has the key `traceback`."""
-        if not isinstance(frame, str) or '"traceback"' not in frame:  # inside a string the quotes have backslashes
+        """Return the frame, without its traceback if it is the content of an error, which has the key `traceback`."""
+        if not isinstance(frame, str) or '"traceback"' not in frame:  # inside a string, the quotes have backslashes
             return frame
         content = json.loads(frame)
         if not isinstance(content, dict) or "traceback" not in content:

@@ -14,7 +14,7 @@ from .rules import Rules
 
 
 class Liveness(RequestHandler):
-    """`/liveness`: answers while the event loop runs. Panel's own handler would make a page for each request."""
+    """`/liveness`: answers while the event loop is running. Panel's own handler would make a page for each request."""
 
     def get(self) -> None:
         """Answer `{"/liveness": true}`."""
@@ -22,7 +22,7 @@ class Liveness(RequestHandler):
 
 
 class Readiness(RequestHandler):
-    """`/readiness`: whether another page can be opened. A full server is not a failure, so nothing is logged."""
+    """`/readiness`: whether another page can be opened. A full server is not a fault, so nothing is logged."""
 
     rules: Rules
 
@@ -41,14 +41,14 @@ class MetricsHandler(RequestHandler):
     """`/metrics`: the text for Prometheus."""
 
     def get(self) -> None:
-        """Answer this machine and private networks with the metrics."""
+        """Answer requests from this machine and private networks with the metrics."""
         asking = ipaddress.ip_address(self.request.remote_ip or UNKNOWN)
-        # `ipaddress` calls the unknown address private, so it is refused by name
+        # `ipaddress` counts the unknown address as private, so it is refused explicitly
         if asking.is_unspecified or not asking.is_private:
             raise HTTPError(403, "metrics are for private addresses")
         self.set_header("Content-Type", "text/plain; version=0.0.4; charset=utf-8")
         self.write(METRICS.text())
 
 
-#: The handlers by address; a new health check is one more row.
+#: The handlers by address; to add a health check, add a row.
 HANDLERS: dict[str, type[RequestHandler]] = {"/liveness": Liveness, "/readiness": Readiness, "/metrics": MetricsHandler}

@@ -1,6 +1,6 @@
-"""Limits of sessions and uploads, and names of headers, that several modules need.
+"""Limits of sessions and uploads, and header names, that several modules need.
 
-The other limits of docs/security.md are beside what they limit: frame_rate.py, guarded_socket.py, sessions.py,
+The other limits of docs/security.md are in the modules that apply them: frame_rate.py, guarded_socket.py, sessions.py,
 message_rules.py, app/server.py, app/session/share.py and app/session/budget.py. This module imports nothing, because
 the command line reads it before it loads the server.
 """
@@ -9,11 +9,11 @@ the command line reads it before it loads the server.
 USUAL_SESSIONS = 200
 #: The largest value of the option `--max-sessions`.
 MOST_SESSIONS = 10_000
-#: Shortest and longest time after which a client that a full server has refused tries again [s].
+#: Shortest and longest time after which a client refused by a full server tries again [s].
 RETRY_AFTER = (20, 60)
 #: Largest file of a measurement [bytes].
 LARGEST_UPLOAD = 2_000_000
-#: Most points of a measurement.
+#: Largest number of points of a measurement.
 MOST_UPLOADED_POINTS = 20_000
 #: Headers in which a proxy may name the visitor's address.
 ADDRESS_HEADERS = ("X-Real-IP", "X-Forwarded-For")

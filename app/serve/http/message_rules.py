@@ -1,9 +1,9 @@
 """Rules for websocket messages: only those that BokehJS sends for our page reach Bokeh.
 
-Bokeh decodes more than its browser side sends: arrays of any shape, new models of any kind, a whole new document, and
-compressed bytes: a few kilobytes may expand to gigabytes. Bokeh also keeps whatever a browser writes into a property. A
-message consists of three texts: header, metadata and content. The rules accept a message that asks for the document,
-that reports the sizes of a figure, or that sends events with plain values of limited depth.
+Bokeh decodes more than BokehJS sends: arrays of any shape, new models of any kind, a whole new document, and compressed
+bytes, a few kilobytes of which may expand to gigabytes. Bokeh also keeps whatever a browser writes into a property. A
+message consists of three texts: header, metadata and content. The rules accept a message that requests the document,
+reports the sizes of a figure, or sends events with plain values of limited depth.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ TYPES = ("number", "array", "set", "map", "event")
 #: Properties that BokehJS reports for the figures of our page: their sizes in pixels (the browser tests collect them).
 #: The figures have no tool that moves a range or selects points, and the parts of Panel change no property.
 REPORTED_PROPERTIES = frozenset({"inner_width", "inner_height", "outer_width", "outer_height"})
-#: Most characters of a content without a file. The longest content of a page has a link of at most `LONGEST` characters
-#: (app/session/share.py).
+#: Largest number of characters in a content without a file. A page's longest content has a link of at most `LONGEST`
+#: characters (app/session/share.py).
 LARGEST_PLAIN_CONTENT = 100_000
-#: Most characters of a header, and of metadata; BokehJS writes an id and a kind.
+#: Largest number of characters in a header or metadata; BokehJS writes an id and a kind.
 LARGEST_HEADER = 1000
 #: The value of `do` in a message with a visitor's file.
 UPLOAD = "measurement"
@@ -36,7 +36,7 @@ class RefusedMessage(Exception):
 
 
 def checked_content(header: str, content: str) -> dict[str, Any]:
-    """The content of a message; raise `RefusedMessage` if the rules do not accept the message."""
+    """Return the content of a message; raise `RefusedMessage` if the rules do not accept the message."""
     head = _object("header", header)
     if not isinstance(head.get("msgid"), str) or head.get("msgtype") not in KINDS:
         raise RefusedMessage("unknown kind of message")
@@ -44,7 +44,7 @@ def checked_content(header: str, content: str) -> dict[str, Any]:
         raise RefusedMessage("binary data")
     given = _object("content", content)
     if len(content) > LARGEST_PLAIN_CONTENT and not _is_upload(given):
-        raise RefusedMessage("too long a message")
+        raise RefusedMessage("message too long")
     if head["msgtype"] == "PULL-DOC-REQ":
         return given
     events = given.get("events")
@@ -71,7 +71,7 @@ def _object(what: str, text: str) -> dict[str, Any]:
 
 
 def _is_upload(given: dict[str, Any]) -> bool:
-    """Whether the content is one event of a part with a file and its name, and nothing else."""
+    """Return whether the content is a single event of a part with a file and its name, and nothing else."""
     match given:
         case {"events": [{"kind": "MessageSent", "msg_data": {"values": {"entries": [
                 ["model", _], ["data", {"entries": [*entries]}]]}}}]}:
@@ -87,14 +87,14 @@ def _check_property(name: object, value: object) -> None:
     if not isinstance(name, str) or name not in REPORTED_PROPERTIES:
         raise RefusedMessage("a change of a property that no page reports")
     if value is not None and not isinstance(value, (int, float)):
-        raise RefusedMessage("a size that is no number")
+        raise RefusedMessage("a size that is not a number")
 
 
 def _check_value(value: Any, deepest: int) -> None:
     if not isinstance(value, (dict, list)):
         return
     if deepest == 0:
-        raise RefusedMessage("too deep a value")
+        raise RefusedMessage("value nested too deeply")
     if isinstance(value, dict):
         if "type" in value and value["type"] not in TYPES:
             raise RefusedMessage("a value of a kind that no page sends")

@@ -1,8 +1,8 @@
 """The visitor's address and protocol behind a proxy.
 
-Tornado's `xheaders` lets `X-Real-IP` win over `X-Forwarded-For`, and `X-Scheme` over `X-Forwarded-Proto`. Behind a
-proxy that sets only the second of two, a client could then choose the first, and with it the address that `/metrics`
-and the log see. So the server reads these headers itself and believes no value that a client may have sent.
+With Tornado's `xheaders`, `X-Real-IP` takes precedence over `X-Forwarded-For`, and `X-Scheme` over `X-Forwarded-Proto`.
+Behind a proxy that sets only the second of a pair, a client could then choose the first, and with it the address that
+`/metrics` and the log see. So the server reads these headers itself and trusts no value that a client may have sent.
 """
 
 from __future__ import annotations
@@ -17,11 +17,12 @@ UNKNOWN = "0.0.0.0"
 
 
 def read_proxy_headers(request: HTTPServerRequest, header: str = "") -> None:
-    """Set the visitor's address and protocol of a request from the headers of the proxy.
+    """Set the visitor's address and protocol of a request from the proxy's headers.
 
-    Only the last entry of a header counts, which the nearest proxy has written; a client may have written those before
-    it. With a `header` no other is read. Without, both are read if they are there: one of them may be the client's own,
-    so the address is unknown if they differ. A request without any comes from the proxy's own machine, not through it.
+    Only the last entry of a header counts, which the nearest proxy has written; a client may have written the entries
+    before it. If `header` is given, no other is read for the address. Otherwise, both are read if present: one of them
+    may come from the client, so the address is unknown if they differ. A request with neither comes from the proxy's
+    machine itself, not through the proxy.
     """
     addresses = {_last(request, name) for name in ([header] if header else ADDRESS_HEADERS) if name in request.headers}
     if addresses:

@@ -13,29 +13,29 @@ from .unsent import UnsentBytes
 
 @dataclass(frozen=True)
 class Rules:
-    """The rules of one server. They do not change; its `sessions` and its `unsent` bytes do."""
+    """The rules of one server, which do not change, with its `sessions` and `unsent` bytes, which do."""
 
     #: Hosts that are served; all hosts if empty.
     hosts: frozenset[str] = frozenset()
-    #: The sessions of the server, and their largest number.
+    #: The sessions of the server, which know their largest number.
     sessions: Sessions = field(default_factory=lambda: Sessions(USUAL_SESSIONS))
     #: Origins whose pages may embed the dashboard.
     embedding: tuple[str, ...] = ()
     #: The secret that signs sessions.
     secret: bytes = field(default=b"", repr=False)
-    #: Origins at IPv6 addresses, which Bokeh's own option refuses, as browsers write them.
+    #: Origins at IPv6 addresses, as browsers write them; Bokeh's own option refuses them.
     origins: frozenset[str] = frozenset()
-    #: Whether a proxy is in front of the server, and the header in which it names the visitor's address, if given.
+    #: Whether a proxy is in front of the server, and the header in which it passes the visitor's address, if given.
     proxy: bool = False
     proxy_header: str = ""
-    #: The bytes that wait to be sent, by websocket.
+    #: The bytes waiting to be sent, by websocket.
     unsent: UnsentBytes[Any] = field(default_factory=UnsentBytes)
 
     def headers(self) -> dict[str, str]:
-        """The headers of every answer.
+        """Return the headers of every answer.
 
-        BokehJS makes functions of text, Panel loads modules from blobs, and both write style into the page, so the
-        policy has to allow these scripts and styles. No data may come from another host or go there; 'self' covers
+        BokehJS makes functions from text, Panel loads modules from blobs, and both write styles into the page, so the
+        policy must allow these scripts and styles. No data may come from or go to another host; 'self' covers
         websockets of the page's own origin.
         """
         ancestors = " ".join(("'self'", *self.embedding))
@@ -52,6 +52,6 @@ class Rules:
         return sent if self.embedding else {**sent, "X-Frame-Options": "SAMEORIGIN"}
 
     def serves(self, host: str) -> bool:
-        """Whether requests for this host are answered; the names may have Bokeh's wildcards, such as *.example.org."""
-        plain = host.lower().strip("[]")  # in a pattern, the brackets of IPv6 would be a set of letters
+        """Return whether requests for this host are answered; `hosts` may have Bokeh's wildcards (*.example.org)."""
+        plain = host.lower().strip("[]")  # in a pattern, the brackets of IPv6 would be a character set
         return not self.hosts or any(fnmatchcase(plain, name) for name in self.hosts)

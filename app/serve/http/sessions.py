@@ -1,4 +1,4 @@
-"""The sessions of a server: how many there are, and which have used their connection."""
+"""The sessions of a server: their number, and which of them have used their connection."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ..connection.leaving import end_session
 
 #: Time for which the token of a loaded page is valid [s].
 TOKEN_LIFETIME = 300
-#: Time for which a connected session is remembered, so that its token cannot be used again [s]: longer than a token is
+#: Time for which a connected session is remembered, so that its token cannot be used again [s]; longer than tokens are
 #: valid.
 _SESSIONS_REMEMBERED = 2.0 * TOKEN_LIFETIME
 
@@ -20,17 +20,17 @@ _SESSIONS_REMEMBERED = 2.0 * TOKEN_LIFETIME
 class Sessions:
     """The sessions of one server.
 
-    A session is *loading* from the request of its page until its websocket connects. A client that fetches pages and
-    never connects would soon take all places. So loading pages have at most half of the places, and the oldest loading
-    page makes room for a new one. A smaller share would evict visitors who open the page at the same moment.
+    A session is *loading* from the request for its page until its websocket connects. A client that fetches pages and
+    never connects would soon take all places. Loading pages therefore have at most half of the places, and the oldest
+    loading page makes room for a new one. A smaller share would evict visitors who open the page at the same moment.
     """
 
     def __init__(self, most: int) -> None:
         self.most = most
         self.most_loading = max(1, most // 2)
-        #: The server, which is set before the first request.
+        #: The server; set before the first request.
         self.server: Server | None = None
-        #: By id: when a session connected or was evicted [s].
+        #: The time at which a session connected or was evicted [s], by id.
         self._claimed: dict[str, float] = {}
 
     @property
@@ -40,7 +40,7 @@ class Sessions:
         return len(self._present()) - loading + min(loading, self.most_loading - 1) >= self.most
 
     def find(self, session_id: str) -> Any:
-        """Bokeh's session with this id, or None."""
+        """Return Bokeh's session with this id, or None."""
         assert self.server is not None
         try:
             return self.server.get_session("/", session_id)
@@ -48,7 +48,7 @@ class Sessions:
             return None
 
     def make_room(self) -> bool:
-        """Make room for a page that is about to be loaded; False if all places are taken."""
+        """Make room for a page that is about to be loaded; return False if all places are taken."""
         if self.full:
             return False
         loading = self._loading()
@@ -58,7 +58,7 @@ class Sessions:
         return True
 
     def claim_connection(self, session_id: str) -> bool:
-        """Give the session its one connection; False if the session had one before, or has lost its place."""
+        """Give the session its only connection; return False if it has had one before or has lost its place."""
         now = time.monotonic()
         present = {session.id for session in self._present()}
         oldest = now - _SESSIONS_REMEMBERED
@@ -70,14 +70,14 @@ class Sessions:
         return True
 
     def has_place(self, session_id: str) -> bool:
-        """Whether a session may connect. Bokeh makes a dropped session again from its token, which needs a place."""
+        """Return whether a session may connect. Bokeh remakes a dropped session from its token, which needs a place."""
         return len(self._present()) < self.most or self.find(session_id) is not None
 
     def _loading(self) -> list[Any]:
-        """The sessions whose websocket has not connected yet."""
+        """Return the sessions whose websocket has not connected yet."""
         return [session for session in self._present() if session.id not in self._claimed]
 
     def _present(self) -> list[Any]:
-        """The sessions that Bokeh holds, oldest first; a closed session stays among them until Bokeh drops it."""
+        """Return the sessions that Bokeh holds, oldest first, including closed sessions until Bokeh drops them."""
         assert self.server is not None
         return self.server.get_sessions()

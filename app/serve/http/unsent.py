@@ -1,4 +1,4 @@
-"""Bytes that wait to be sent, over all websockets of a server."""
+"""Bytes waiting to be sent, over all websockets of a server."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ Owner = TypeVar("Owner")
 
 
 class UnsentBytes(Generic[Owner]):
-    """How many bytes wait to be sent to each owner, and to all of them together. Used on the event loop alone."""
+    """The numbers of bytes waiting to be sent to each owner and to all of them. Used only on the event loop."""
 
     def __init__(self) -> None:
         self.total = 0
         self._by_owner: dict[Owner, int] = {}
 
     def of(self, owner: Owner) -> int:
-        """The bytes that wait to be sent to this owner."""
+        """Return the number of bytes waiting to be sent to this owner."""
         return self._by_owner.get(owner, 0)
 
     def add(self, owner: Owner, count: int) -> None:
-        """Count bytes that were written and that the operating system has not taken yet."""
+        """Count bytes that were written but that the operating system has not taken yet."""
         self._by_owner[owner] = self.of(owner) + count
         self.total += count
 
@@ -31,5 +31,5 @@ class UnsentBytes(Generic[Owner]):
         self.total -= count
 
     def largest(self) -> Owner:
-        """The owner with the most waiting bytes."""
+        """Return the owner with the most waiting bytes."""
         return max(self._by_owner, key=self._by_owner.__getitem__)

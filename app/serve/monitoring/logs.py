@@ -1,4 +1,4 @@
-"""The server's log: JSON lines on standard error, with the id of the request or of the fault if there is one."""
+"""The server's log: JSON lines on standard error, with the id of the request or fault if there is one."""
 
 from __future__ import annotations
 
@@ -11,22 +11,22 @@ from tornado.web import RequestHandler
 
 from ...library_internals import Internal, internals
 
-#: What is used of Bokeh beyond its documentation.
+#: The undocumented parts of Bokeh that are used here.
 INTERNALS = internals(
     __name__,
     Internal("bokeh.server.protocol_handler", ("log",),
              "messages that Bokeh cannot handle leave tracebacks in the log"),
 )
 
-#: Fields that a line may have besides time, level, logger and message.
+#: Fields that a line may have in addition to time, level, logger and message.
 _FIELDS = ("request", "path", "remote", "fault", "session", "link")
 
 
 class JsonFormatter(logging.Formatter):
-    """A record as one line of JSON."""
+    """Writes a record as one line of JSON."""
 
     def format(self, record: logging.LogRecord) -> str:
-        """Time in UTC, level, logger, message, the fields of the request, fault or session, and the failure."""
+        """Return time in UTC, level, logger, message, the fields of the request, fault or session, and the failure."""
         line = {"time": time.strftime("%Y-%m-%dT%H:%M:%S", time.gmtime(record.created)) + f".{int(record.msecs):03d}Z",
                 "level": record.levelname.lower(), "logger": record.name, "message": record.getMessage()}
         line.update((name, getattr(record, name)) for name in _FIELDS if hasattr(record, name))
@@ -36,7 +36,7 @@ class JsonFormatter(logging.Formatter):
 
 
 def only_when_debugging(_record: logging.LogRecord) -> bool:
-    """A filter for Bokeh's records of messages that it cannot handle: they are logged only with --log-level debug.
+    """Filter Bokeh's records of messages that it cannot handle, so that only --log-level debug logs them.
 
     The guard logs such a message in one line without a traceback, and a stranger can send any number of them.
     """
@@ -46,8 +46,8 @@ def only_when_debugging(_record: logging.LogRecord) -> bool:
 def log_request(handler: RequestHandler) -> None:
     """Log an answered request, only with --log-level debug; it replaces Tornado's own function.
 
-    The guard has logged every request that was refused or has failed, with its id. And a full server answers
-    `/readiness` with 503 again and again, which is no failure.
+    The guard has logged every request that was refused or has failed, with its id. In addition, a full server answers
+    `/readiness` with 503 again and again, which is not a failure.
     """
     request = handler.request
     logging.getLogger("tornado.access").debug(

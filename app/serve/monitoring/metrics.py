@@ -1,4 +1,4 @@
-"""Metrics of the server. `/metrics` shows them (app/serve/http/health.py)."""
+"""The server's metrics, which `/metrics` shows (app/serve/http/health.py)."""
 
 from __future__ import annotations
 
@@ -22,20 +22,20 @@ BUCKETS = (0.025, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0)
 
 
 class Stage(NamedTuple):
-    """A stage of a picture: what happens in it, and what an operator does if it takes long."""
+    """A stage of a picture: what happens in it, and what an operator can do if it takes long."""
 
     what: str
     remedy: str
 
 
-#: The stages of a picture, by the label that `/metrics` gives them.
+#: The stages of a picture, by their label in `/metrics`.
 STAGES = {
-    "turn": Stage("it waits for the session's computation before it, for a thread and for a time slice (turn)",
+    "turn": Stage("it waits for the session's previous computation, for a thread and for a time slice (turn)",
                   "more cores, or another machine"),
     "kernels": Stage("it waits for kernels that are being compiled", "compile them beforehand with `granchain warm`"),
-    "compute": Stage("it is computed, or a session waits for the same picture of another",
+    "compute": Stage("it is computed, or the session waits for the same picture of another session",
                      "nothing: the visitor's chain is long"),
-    "prepare": Stage("the arrays that are drawn are made", "more cores: other threads have them"),
+    "prepare": Stage("the arrays to be drawn are prepared", "more cores: other threads are using them"),
     "loop": Stage("it waits for the event loop", "another process: a process uses one core for its event loop"),
     "pace": Stage("it waits until the browser has painted earlier pictures", "nothing: see `travel` and `paint`"),
     "travel": Stage("it is sent and its acknowledgement comes back; both wait for an event loop",
@@ -51,11 +51,11 @@ HISTOGRAMS = {
 }
 #: Interval between measurements of the event loop's lag [s].
 _LAG_INTERVAL = 0.25
-#: Number of measurements that are kept: those of ten seconds.
+#: Number of measurements that are kept: ten seconds' worth.
 _LAGS_KEPT = 40
-#: A single lag above this makes the server busy, too [s]: the mean of ten seconds hides one stall of five.
+#: A single lag above this also makes the server busy [s], since the mean over ten seconds hides a single stall.
 _BUSY_STALL = 1.0
-#: Mean lag of the event loop, or mean wait for a turn, above which the server is busy [s].
+#: Mean lag of the event loop, or mean wait for a turn, above which the server counts as busy [s].
 _BUSY_WAIT = 0.3
 
 #: The counters of `Metrics.count`: name without `_total`, and help text.
@@ -63,19 +63,19 @@ COUNTERS = {
     "pictures": "Pictures sent, steps of live runs included. Pictures that were replaced before they were sent are not "
                 "counted.",
     "cancelled": "Computations of pictures that were cancelled.",
-    "refused_sessions": "Sessions refused because there were as many as `--max-sessions`.",
+    "refused_sessions": "Sessions refused because `--max-sessions` were already open.",
     "refused_pictures": "Pictures refused because they would take too long.",
-    "refused_messages": "Messages that no page sends, too many frames, and too much that waits to be sent; each closed "
-                        "its connection.",
+    "refused_messages": "Messages that no page sends, too many frames, and too many unsent bytes; each closed its "
+                        "connection.",
     "errors": "Unexpected failures; each is in the log.",
 }
 
 
 class Metric(NamedTuple):
-    """A metric of Prometheus; the name of a counter ends with `_total`.
+    """A Prometheus metric; the name of a counter ends with `_total`.
 
-    `read` is called at each request of `/metrics`. With a `label` it gives a number for each value of the label. The
-    prefix is `process` for metrics that clients of Prometheus give for any program.
+    `read` is called at each request for `/metrics`. With a `label`, it returns a number for each value of the label.
+    The prefix is `process` for metrics that Prometheus clients report for any program.
     """
 
     name: str
@@ -104,7 +104,7 @@ class Histogram:
         self.total += seconds
 
     def lines(self, name: str, label: str = "") -> list[str]:
-        """The lines of Prometheus's text format; `label` is a label and its value."""
+        """Return the lines in Prometheus's text format; `label` is a label with its value."""
         lines, count = [], 0
         for bound, counted in zip((*BUCKETS, math.inf), self.counts, strict=True):
             count += counted
@@ -115,7 +115,7 @@ class Histogram:
 
 
 class Metrics:
-    """Counts since the start; an answer is the time from a change to its first picture. Any thread may count."""
+    """Counts since the server start; an answer is the time from a change to its first picture. Any thread may count."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
@@ -127,7 +127,7 @@ class Metrics:
         self._lags: deque[float] = deque(maxlen=_LAGS_KEPT)
         #: Metrics of other modules; the server sets them.
         self.added: tuple[Metric, ...] = ()
-        #: The mean wait of computations before they begin [s]; the server sets it.
+        #: Returns the mean wait of computations before they begin [s]; the server sets it.
         self.turn_wait: Callable[[], float] = lambda: 0.0
 
     def count(self, name: str) -> None:
@@ -136,18 +136,18 @@ class Metrics:
             self.counted[name] += 1
 
     def session_opened(self) -> None:
-        """A page was opened."""
+        """Count a page that was opened."""
         with self._lock:
             self.sessions += 1
             self.opened += 1
 
     def session_closed(self) -> None:
-        """A page was closed."""
+        """Count a page that was closed."""
         with self._lock:
             self.sessions -= 1
 
     def answered(self, seconds: float) -> None:
-        """Count a first picture that came `seconds` after its request."""
+        """Count a first picture that was ready `seconds` after its request."""
         with self._lock:
             self.answers.add(seconds)
 
@@ -173,7 +173,7 @@ class Metrics:
 
     @property
     def busy(self) -> bool:
-        """Whether visitors notice the load: by a lag of the event loop, or by the wait for a turn to compute."""
+        """Whether visitors notice the load, by the lag of the event loop or by the wait for a turn to compute."""
         return max(self.event_loop_lag, self.turn_wait()) > _BUSY_WAIT or self.largest_lag > _BUSY_STALL
 
     async def watch(self) -> None:
@@ -184,9 +184,9 @@ class Metrics:
             self.lagged(max(0.0, time.monotonic() - due))
 
     def table(self) -> list[Metric]:
-        """All metrics except the histograms."""
+        """Return all metrics except the histograms."""
         return [
-            Metric("build_info", "gauge", "Always 1; the label says which release of granchain answers.",
+            Metric("build_info", "gauge", "Always 1; the label is the running release of granchain.",
                    lambda: {__version__: 1}, "version"),
             Metric("sessions", "gauge", "Sessions: pages that are open.", lambda: self.sessions),
             Metric("sessions_opened_total", "counter", "Sessions opened.", lambda: self.opened),
@@ -199,11 +199,11 @@ class Metrics:
                    f"Largest lag of the event loop in the last ten seconds; above {_BUSY_STALL:g} the page says that "
                    "the server is busy.", lambda: self.largest_lag),
             Metric("turn_wait_seconds", "gauge",
-                   "Mean wait of a computation before it could begin in the last ten seconds; above "
+                   "Mean wait of computations before they could begin, in the last ten seconds; above "
                    f"{_BUSY_WAIT:g} the page says that the server is busy.", self.turn_wait),
             Metric("resident_memory_bytes", "gauge", "Resident memory.", resident_memory, prefix="process"),
             Metric("threads", "gauge", "Threads of the operating system.", os_threads, prefix="process"),
-            Metric("threads", "gauge", "Threads that Python knows; threads of numerical libraries are missing.",
+            Metric("threads", "gauge", "Threads known to Python, which exclude those of numerical libraries.",
                    threading.active_count),
             Metric("cpu_seconds_total", "counter", "Processor time of all threads, user and system.", cpu_seconds,
                    prefix="process"),
@@ -211,13 +211,13 @@ class Metrics:
                    prefix="process"),
             Metric("open_fds", "gauge", "Open file descriptors, sockets included.", open_descriptors,
                    prefix="process"),
-            Metric("max_fds", "gauge", "Most open file descriptors that the system allows.", most_descriptors,
-                   prefix="process"),
+            Metric("max_fds", "gauge", "Largest number of open file descriptors that the system allows.",
+                   most_descriptors, prefix="process"),
             *self.added,
         ]
 
     def text(self) -> str:
-        """All metrics in the text format of Prometheus, version 0.0.4."""
+        """Return all metrics in Prometheus's text format, version 0.0.4."""
         lines: list[str] = []
         for metric in self.table():
             value = metric.read()
@@ -237,7 +237,7 @@ class Metrics:
 
 
 def _lines(name: str, metric: Metric, label: str, value: float | Mapping[str, float]) -> list[str]:
-    """A metric under a name, with its help text."""
+    """Return the lines of a metric under a name, with its help text."""
     head = [f"# HELP {name} {metric.help}", f"# TYPE {name} {metric.kind}"]
     if isinstance(value, Mapping):
         return head + [f'{name}{{{label}="{key}"}} {_written(number)}' for key, number in value.items()]
@@ -245,7 +245,7 @@ def _lines(name: str, metric: Metric, label: str, value: float | Mapping[str, fl
 
 
 def _written(value: float) -> str:
-    """A number with all its digits: a counter rounded to six digits would stand still and then jump."""
+    """Write a number with all its digits: a counter rounded to six digits would stand still and then jump."""
     if not math.isfinite(value):
         return "NaN" if math.isnan(value) else "+Inf" if value > 0.0 else "-Inf"
     return str(int(value)) if value == int(value) else repr(float(value))

@@ -17,8 +17,8 @@ SLOW_PICTURE = 1.0
 class PictureStages:
     """The stages of the first picture of one request (`STAGES` in metrics.py), in seconds.
 
-    One thread at a time has a picture, so its stages follow each other: `end` gives the time since the last call to a
-    stage. A session that waits for the same picture as another has its whole wait in the stage "compute".
+    Only one thread at a time works on a picture, so its stages follow each other: `end` adds the time since the last
+    call to a stage. If a session waits for the same picture as another, its whole wait is in the stage "compute".
     """
 
     __slots__ = ("_began", "_ended", "_seconds", "turn_wait")
@@ -26,7 +26,7 @@ class PictureStages:
     def __init__(self) -> None:
         self._began = self._ended = time.monotonic()
         self._seconds: dict[str, float] = {}
-        #: How long the computation waited for turns before its first picture [s]; its thread sets it.
+        #: Time for which the computation waited for turns before its first picture [s]; its thread sets it.
         self.turn_wait = 0.0
 
     @property
@@ -35,14 +35,14 @@ class PictureStages:
         return time.monotonic() - self._began
 
     def end(self, stage: str) -> float:
-        """End a stage; return the time since the end of the stage before it [s]."""
+        """End a stage; return the time since the end of the previous stage [s]."""
         now = time.monotonic()
         seconds, self._ended = now - self._ended, now
         self._add(stage, seconds)
         return seconds
 
     def computed(self) -> None:
-        """The first picture has come: what its computation did not wait for turns, it computed."""
+        """End "compute", because the first picture is ready; the part spent waiting for turns counts as "turn"."""
         waited = min(self.turn_wait, self.end("compute"))
         self._add("turn", waited)
         self._add("compute", -waited)
@@ -53,8 +53,8 @@ class PictureStages:
     def painted(self, browser_ms: object) -> None:
         """Count the stages of a picture that is on the screen, and log a slow picture.
 
-        `browser_ms` is the time between the browser's script and the screen, as the browser says [ms]. It is not
-        trusted: what is no such time is left out, and what is too long is cut.
+        `browser_ms` is the time from the browser's script to the screen, as reported by the browser [ms]. It is not
+        trusted: a value that is not a finite number is ignored, and one out of range is clipped.
         """
         seconds = self.end("travel")
         if isinstance(browser_ms, (int, float)) and not isinstance(browser_ms, bool) and math.isfinite(browser_ms):

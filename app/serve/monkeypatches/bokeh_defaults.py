@@ -1,8 +1,8 @@
-"""Monkeypatches of Bokeh: defaults of properties are found once for all models, and made when they are needed.
+"""Monkeypatches of Bokeh: property defaults are found once for all models, and made only when needed.
 
-Bokeh finds the defaults again for each of a page's models, some 8000 times, and makes ten empty lists and dictionaries
-for each model. This takes more than half of the time of making a page. The replaced functions are not public in Bokeh,
-nor is what the replacements use. If a release lacks any of it, no function is replaced.
+Bokeh finds the defaults again for each model of a page, about 8000 times, and makes ten empty lists and dictionaries
+for each model. This takes more than half of the time to make a page. The replaced functions are not public in Bokeh,
+and neither are the parts that the replacements use. If a release lacks any of these, no function is replaced.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ try:
     import bokeh.model.util as references
     from bokeh.core.property.descriptors import PropertyDescriptor
     from bokeh.core.property.wrappers import PropertyValueContainer
-except ImportError:  # then `missing` names what there is not, and nothing is replaced
+except ImportError:  # then `missing` lists the missing names, and nothing is replaced
     pass
 
 from ...library_internals import Internal, internals, missing
 
 _WITHOUT = "opening a page costs half as much again"
-#: What is used of Bokeh beyond its documentation.
+#: The undocumented parts of Bokeh that are used here.
 INTERNALS = internals(
     __name__,
     Internal("bokeh.core.property.descriptors.PropertyDescriptor",
@@ -44,7 +44,7 @@ _CONSTANTS = (type(None), bool, int, float, str, bytes)
 
 @dataclass(frozen=True)
 class _Remembered:
-    """By class and property: constant defaults, whether the default is made for each model, whether it is empty."""
+    """Constant defaults, whether a default is made for each model, and whether it is empty, by class and property."""
 
     known: dict[tuple[type, str], Any] = field(default_factory=dict)
     changing: dict[tuple[type, str], bool] = field(default_factory=dict)
@@ -53,7 +53,7 @@ class _Remembered:
 
 
 def install_defaults_cache() -> None:
-    """Replace the functions with which Bokeh finds the defaults of its models."""
+    """Replace the functions that Bokeh uses to find the defaults of its models."""
     if missing(INTERNALS) or hasattr(PropertyDescriptor._get_default, "known"):
         return
     find: Any = PropertyDescriptor._get_default
@@ -72,13 +72,13 @@ def install_defaults_cache() -> None:
 
 
 def _theme(model: Any) -> dict[str, Any] | None:
-    """A model's themed values, without a search of its classes: the attribute is hardly ever set."""
+    """Return a model's themed values without a search of its classes, as the attribute is hardly ever set."""
     themed: dict[str, Any] | None = model.__dict__.get("__themed_values__")
     return themed
 
 
 def _merges_once(overridden: Any, defaults: _Remembered) -> Callable[[type], dict[str, Any]]:
-    """The defaults that a class and its bases override; they never change."""
+    """Return a function that finds the defaults overridden by a class and its bases only once, as they never change."""
 
     def overrides(cls: type) -> dict[str, Any]:
         if cls not in defaults.overridden:
@@ -89,10 +89,10 @@ def _merges_once(overridden: Any, defaults: _Remembered) -> Callable[[type], dic
 
 
 def _asks_once(unstable: Any, defaults: _Remembered) -> Callable[[Any, Any], bool]:
-    """Whether each model has a default of its own.
+    """Return a function that says whether each model has its own default.
 
-    For a new model the answer is no where its default would be empty: the default is made when it is asked for, and is
-    not sent to a browser anyway.
+    For a new model, the answer is no if its default would be empty: the default is made when it is requested, and is
+    not sent to the browser anyway.
     """
 
     def is_unstable(descriptor: Any, model: Any) -> bool:
@@ -107,7 +107,7 @@ def _asks_once(unstable: Any, defaults: _Remembered) -> Callable[[Any, Any], boo
 
 
 def _finds_once(find: Any, is_unstable: Callable[[Any, Any], bool], defaults: _Remembered) -> Callable[[Any, Any], Any]:
-    """Find a property's default; a constant that no theme changes is found once per class."""
+    """Return a function that finds a property's default, once per class if it is a constant that no theme changes."""
 
     def remembered(descriptor: Any, model: Any) -> Any:
         themed = _theme(model)
@@ -126,7 +126,7 @@ def _finds_once(find: Any, is_unstable: Callable[[Any, Any], bool], defaults: _R
 
 
 def _tells_what_is_there(query: Any) -> Callable[..., dict[str, Any]]:
-    """The properties of a model that are sent to a browser, found without a look at all its defaults."""
+    """Return a function that finds a model's properties for the browser without looking at all its defaults."""
 
     def changed(model: Any, wanted: Callable[[Any], bool], *, include_defaults: bool = True,
                 include_undefined: bool = False) -> dict[str, Any]:
@@ -147,7 +147,7 @@ def _tells_what_is_there(query: Any) -> Callable[..., dict[str, Any]]:
 
 
 def _visits_what_is_there(visit: Any, defaults: _Remembered) -> Callable[[Any, Any], None]:
-    """Visit the models to which a model refers; empty defaults are not made for this."""
+    """Return a function that visits the models to which a model refers, without making empty defaults for this."""
 
     def visit_model(value: Any, visitor: Any) -> None:
         if not isinstance(value, HasProps):

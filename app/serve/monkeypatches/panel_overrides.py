@@ -1,7 +1,7 @@
-"""Overrides of Panel's private methods that leave out what our parts do not need; each is a mixin of `Component`.
+"""Overrides of Panel's private methods that skip work our parts do not need; each is a mixin of `Component`.
 
 The overrides concern properties, children, design, busy indicator and changes. If a release has other methods, Panel's
-own way is taken.
+own methods are used.
 """
 
 from __future__ import annotations
@@ -20,16 +20,16 @@ from ..document.changes import is_batched, send_event, set_properties
 
 try:
     from panel.io.state import set_curdoc
-except ImportError:  # it is not in Panel's documentation
+except ImportError:  # not in Panel's documentation
     set_curdoc = None  # type: ignore[assignment]
 
 try:
     from panel.models.esm import ESMEvent
-except ImportError:  # nor is this
+except ImportError:  # not documented either
     ESMEvent = None  # type: ignore[assignment,misc]
 
-_WITHOUT = "Panel's own way is taken, some milliseconds slower"
-#: What is used of Panel and Param beyond their documentation.
+_WITHOUT = "Panel's own methods are used, which are some milliseconds slower"
+#: The undocumented parts of Panel and Param that are used here.
 INTERNALS = internals(
     __name__,
     Internal("panel.custom.JSComponent",
@@ -42,9 +42,9 @@ INTERNALS = internals(
 
 
 class _Common(NamedTuple):
-    """The properties that the models of all instances of a part share, and the names of the other properties.
+    """The properties shared by the models of all instances of a part, and the names of the other properties.
 
-    A style sheet is its text, or the address of a sheet that each document imports once.
+    A style sheet is given as its text, or as the address of a sheet that each document imports once.
     """
 
     properties: dict[str, Any]
@@ -54,8 +54,8 @@ class _Common(NamedTuple):
 
     @classmethod
     def of(cls, part: Any, properties: dict[str, Any]) -> _Common | None:
-        """Made from the properties of a class's first instance; None if these are not as expected."""
-        properties = {**properties, "_defs": []}  # the class of the data is defined once
+        """Make this from the properties of a class's first instance; None if they are not as expected."""
+        properties = {**properties, "_defs": []}  # the data class is defined only once
         data, sheets = properties.pop("data", None), properties.pop("stylesheets", [])
         if not isinstance(data, Model) or collect_models(properties):
             return None
@@ -66,7 +66,7 @@ class _Common(NamedTuple):
                    type(data), own | {"name"})
 
     def properties_of(self, part: Any, imported: dict[str, ImportedStyleSheet]) -> dict[str, Any]:
-        """The properties of another instance; `imported` has the sheets that its document imports, by address."""
+        """Return the properties of another instance; `imported` has the sheets that its document imports, by URL."""
         sheets = [text if is_text else imported.get(text) or imported.setdefault(text, ImportedStyleSheet(url=text))
                   for is_text, text in self.sheets]
         return {**self.properties, "stylesheets": sheets,
@@ -78,10 +78,10 @@ _IMPORTED: weakref.WeakKeyDictionary[Document, dict[str, ImportedStyleSheet]] = 
 
 
 class WithCommonProperties:
-    """A Panel component that finds the properties of its model once for its class.
+    """A Panel component that finds the properties of its model once per class.
 
-    Instances differ in their data alone. Panel goes through 40 parameters of each part for every session, which is a
-    tenth of the work of opening a page. If a release has unexpected properties, Panel still does so.
+    Instances differ only in their data. Panel goes through 40 parameters of each part for every session, which is a
+    tenth of the work of opening a page. If a release has unexpected properties, Panel does so again.
     """
 
     def _get_properties(self, document: Document | None) -> dict[str, Any]:
@@ -99,9 +99,9 @@ _CHILDLESS: set[type] = set()
 
 
 class WithoutChildren:
-    """A Panel component that looks for children once for its class.
+    """A Panel component that looks for children once per class.
 
-    Panel looks at all 40 parameters of each instance. If a release calls another method, Panel still does so.
+    Panel looks at all 40 parameters of each instance. If a release calls another method, Panel does so again.
     """
 
     def _get_children(self, *args: Any) -> Any:
@@ -116,8 +116,8 @@ class WithoutChildren:
 class WithoutDesign:
     """A Panel component that consults its design only when style sheets change; the design affects nothing else.
 
-    Panel works out the parameters of the design at every change of every property, in half of the time of a change. If
-    a release makes the changes elsewhere, Panel still does so.
+    Panel works out the design's parameters at every change of every property, which takes half of the time of a change.
+    If a release makes the changes elsewhere, Panel does so again.
     """
 
     def _update_properties(self, *events: Any, doc: Document) -> dict[str, Any]:
@@ -131,7 +131,7 @@ class WithoutDesign:
 class WithoutBusyIndicator:
     """A Panel component whose events skip the busy indicator, which takes 2 of 5 ms and is not shown on this page.
 
-    Panel calls `_process_bokeh_event`. If a release calls another method or has no `set_curdoc`, the indicator comes
+    Panel calls `_process_bokeh_event`. If a release calls another method or has no `set_curdoc`, the indicator is
     back.
     """
 
@@ -147,9 +147,9 @@ class WithoutBusyIndicator:
 class WithPlainChanges:
     """A Panel component, shown once, whose messages and plain values go straight to its model.
 
-    Panel's own way leads through Param's watchers, Panel's queues and a search of the documents that show the
-    component. `try_send` and `try_change` return False if Panel's way has to be taken: before the page is connected, or
-    with a release that keeps models or values elsewhere.
+    Panel's own methods go through Param's watchers, Panel's queues and a search of the documents that show the
+    component. `try_send` and `try_change` return False if Panel's methods must be used: before the page is connected,
+    or with a release that keeps models or values elsewhere.
     """
 
     def _shown(self) -> Model | None:
@@ -157,12 +157,12 @@ class WithPlainChanges:
         return models[0][0] if len(models) == 1 else None
 
     def try_send(self, message: dict[str, Any]) -> bool:
-        """Send a message to the part in the browser; False if Panel has to send it."""
+        """Send a message to the part in the browser; return False if Panel has to send it."""
         model = self._shown()
         return model is not None and ESMEvent is not None and send_event(model, ESMEvent(model=model, data=message))
 
     def try_change(self, name: str, value: Any) -> bool:
-        """Set a property of the part here and in the browser; False if Panel has to set it."""
+        """Set a property of the part here and in the browser; return False if Panel has to set it."""
         data = getattr(self._shown(), "data", None)
         values = getattr(getattr(self, "_param__private", None), "values", None)
         if not isinstance(data, Model) or not isinstance(values, dict) or not is_batched(data):

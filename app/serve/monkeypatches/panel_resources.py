@@ -1,4 +1,4 @@
-"""Monkeypatches of Panel: scripts and style sheets are worked out once, and not again for every page."""
+"""Monkeypatches of Panel: scripts and style sheets are worked out once instead of for every page."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from bokeh.models import ImportedStyleSheet
 from ...library_internals import Internal, internals
 
 _WITHOUT = "a page opens a tenth slower"
-#: What is used of Panel beyond its documentation.
+#: The undocumented parts of Panel that are used here.
 INTERNALS = internals(
     __name__,
     Internal("panel.io.server", ("bundle_resources", "patch_model_css"), _WITHOUT),
@@ -24,8 +24,8 @@ INTERNALS = internals(
 def install_resources_cache() -> None:
     """Ask Panel once for the scripts of a page, and once per kind of part for the addresses of its style sheets.
 
-    Panel goes through all models of a page for both, which takes a tenth of the time of opening it; all pages of this
-    server have the same parts. If a release works them out elsewhere, Panel is asked for every page.
+    Panel goes through all models of a page for both, which takes a tenth of the time to open it, although all pages of
+    this server have the same parts. If a release works them out elsewhere, Panel is asked for every page.
     """
     bundle: Callable[..., Any] | None = getattr(pages, "bundle_resources", None)
     patch: Callable[[Model, str], None] | None = getattr(pages, "patch_model_css", None)

@@ -1,6 +1,6 @@
-"""Monkeypatch of Bokeh: a guard stands before every handler of its servers (docs/security.md).
+"""Monkeypatch of Bokeh that puts a guard before every handler of its servers (docs/security.md).
 
-Tornado asks the application for the handler of each request (`get_handler_delegate`). The replacement gives it a class
+Tornado asks the application for the handler of each request (`get_handler_delegate`). The replacement returns a class
 with a guard.
 """
 
@@ -18,19 +18,19 @@ from ..http.guard import Guard
 from ..http.guarded_socket import GuardedSocket
 from ..http.rules import Rules
 
-#: The name of the setting that has an application's `Guards`.
+#: The name of the setting that contains an application's `Guards`.
 _SETTING = "granchain_guards"
 
 
 class Guards:
-    """The guarded handlers of one application: for each class of handlers a derived class, which is made once."""
+    """The guarded handlers of one application: a derived class for each handler class, made once."""
 
     def __init__(self, rules: Rules) -> None:
         self._rules = rules
         self._derived: dict[type[RequestHandler], type[RequestHandler]] = {}
 
     def before(self, handler: type[RequestHandler]) -> type[RequestHandler]:
-        """The handler class with a guard before it; a handler of files also sends them compressed."""
+        """Return the handler class with a guard before it; a file handler also sends the files compressed."""
         if handler not in self._derived:
             guard = GuardedSocket if issubclass(handler, WebSocketHandler) else Guard
             files = (CompressedFiles,) if issubclass(handler, StaticFileHandler) else ()
@@ -42,9 +42,9 @@ class Guards:
 def install_guards(rules: Rules) -> dict[str, Guards]:
     """Put a guard before every handler of Bokeh's servers in this process; return the setting that turns it on.
 
-    The function replaces a method of `BokehTornado`; applications without the setting keep their handlers. Raises
-    `MissingPart` if Tornado has no such method. If a release has the method and does not call it, requests have no
-    guard. `is_guarded` then returns False, and no page of ours may open.
+    This replaces a method of `BokehTornado`; applications without the setting keep their handlers. Raises `MissingPart`
+    if Tornado has no such method. If a release has the method but does not call it, requests have no guard. Then
+    `is_guarded` returns False, and none of our pages opens.
     """
     if not hasattr(Application, "get_handler_delegate"):
         raise MissingPart("tornado.web.Application.get_handler_delegate", "requests would be answered without checks")

@@ -337,7 +337,7 @@ def test_only_a_message_with_a_file_may_be_long(dashboard: Listening, monkeypatc
         with connected(dashboard) as sending:
             sending.sendall(message(content, "PATCH-DOC") + message())
             came = received(sending, 30, b"PULL-DOC-REPLY")
-            assert (b"PULL-DOC-REPLY" in came) == taken and code_of(came, b"too long a message") == (0 if taken else 1008)
+            assert (b"PULL-DOC-REPLY" in came) == taken and code_of(came, b"message too long") == (0 if taken else 1008)
 
 
 def test_a_refused_message_closes_the_connection_and_what_comes_after_it_is_not_answered(
