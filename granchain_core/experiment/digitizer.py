@@ -18,19 +18,19 @@ from .grid import Row
 
 #: The mark of a tar archive (POSIX.1-1988, ustar).
 _TAR_MARK = b"ustar"
-#: Place of the mark in the header [bytes].
+#: Offset of the mark in the header [bytes].
 _TAR_PLACE = 257
-#: Largest project within an archive [bytes]: an archive states sizes that its content need not have.
+#: Largest project within an archive [bytes], because the sizes that an archive states need not be true.
 _MOST_PROJECT = 20_000_000
 
 
 def is_project(content: bytes) -> bool:
-    """Whether a file begins as a JSON object or as an archive."""
+    """Return whether a file begins like a JSON object or an archive."""
     return content[:200].lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"{") or _is_archive(content)
 
 
 def is_two_headed(rows: list[Row]) -> bool:
-    """Whether a table has the digitiser's two header rows: names of datasets, and X, Y for each."""
+    """Return whether a table has the digitiser's two header rows: the datasets' names, and X, Y for each."""
     if len(rows) < 3:
         return False
     second = [one.upper() for one in rows[1][1] if one]
@@ -38,7 +38,7 @@ def is_two_headed(rows: list[Row]) -> bool:
 
 
 def datasets_in(content: bytes) -> dict[str, list[tuple[float, float]]]:
-    """The points (x, y) of every dataset by name. Raises `BadInput`."""
+    """Return the points (x, y) of every dataset by name. Raises `BadInput`."""
     try:
         project = json.loads(_archived(content) if _is_archive(content) else content.decode("utf-8-sig"))
     except (ValueError, RecursionError) as problem:
@@ -60,7 +60,7 @@ def _is_archive(content: bytes) -> bool:
 
 
 def _archived(content: bytes) -> bytes:
-    """The wpd.json in an archive."""
+    """Return the content of wpd.json in an archive."""
     try:
         with tarfile.open(fileobj=io.BytesIO(content), mode="r:") as archive:
             for member in archive:
