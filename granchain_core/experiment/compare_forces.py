@@ -2,9 +2,9 @@
 
 Equation   d(t_i) = F_model(t_i) − F_measured(t_i) at every measured time t_i of the motion,   rms = √⟨d²⟩
            With sensors, F_model is the force that they would record: plus m_tip ü_0, after their low-pass (sensors.py)
-Note Both clocks start at the first sample, so no record is shifted in time. Nothing is subtracted either: a sensor's
-constant offset contributes to rms and largest difference, and shows separately in the mean. Without sensors, the
-model's force is not filtered, so the effect of the real sensors is a part of the difference.
+Note       Both clocks start at the first sample, so no record is shifted in time. Nothing is subtracted either: a
+           sensor's constant offset contributes to rms and largest difference, and shows separately in the mean. Without
+           sensors, the model's force is not filtered, so the effect of the real sensors is a part of the difference.
 """
 
 from __future__ import annotations

@@ -68,8 +68,7 @@ def _rows(file: File, most_rows: int) -> tuple[dict[str, Stored], str]:
 
 
 def _group(stored: dict[str, Stored]) -> list[str]:
-    """Return the rows of one group and length; those with an axis (frequency or time) come first, then the most rows.
-    """
+    """Return the rows of one group and length, preferably with an axis (frequency or time), otherwise the most rows."""
     groups: dict[tuple[str, int], list[str]] = {}
     for name, one in stored.items():
         groups.setdefault((name.rpartition("/")[0], one.shape[0]), []).append(name)

@@ -1,7 +1,8 @@
 """The difference between a computed and a measured quantity, with one definition of its numbers and their wording.
 
-Equation d = model − measured, rms = √⟨d²⟩, relative = rms / √⟨measured²⟩ Note The sign is the same everywhere: positive
-where the model is larger. If the measured quantity is 0 throughout, there is no relative difference.
+Equation   d = model − measured,   rms = √⟨d²⟩,   relative = rms / √⟨measured²⟩
+Note       The sign is the same everywhere: positive where the model is larger. If the measured quantity is 0
+           throughout, there is no relative difference.
 """
 
 from __future__ import annotations

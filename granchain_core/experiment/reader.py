@@ -24,7 +24,7 @@ def read_experiment(path: str | Path, answers: Answers | None = None,
                     wanted: Sequence[str] = TABLE_KINDS) -> Series | Shaker | Measured:
     """Return the series, shaker amplitudes or resonance curve in a file.
 
-    Raises `Unclear` for what has to be asked, and `BadInput` naming the line.
+    Raises `Unclear` if the user has to be asked, and `BadInput` with the line number.
     """
     path = Path(path)
     content = content_of(path)
@@ -43,7 +43,7 @@ def read_data(content: bytes, answers: Answers | None = None, wanted: Sequence[s
     """Return the measurement in the bytes of a file; `wanted` lists the kinds of measurement that the caller can use.
 
     `most_rows` applies to every format, `convention` only to text tables. Raises `Unclear` if the user has to be asked,
-    and `BadInput` with the number of the line.
+    and `BadInput` with the line number.
     """
     reading = Reading(answers or Answers(), wanted, source, most_bytes, most_rows, convention)
     return format_of(content).read(content, reading)

@@ -4,11 +4,12 @@ Equation   F_in = F_0 + m_tip ü_0: the input sensor sits between the shaker and
            H(f) = 1 / (1 + √2 i f/f_c − (f/f_c)²),   |H(f)|² = 1 / (1 + (f/f_c)⁴): Butterworth's low-pass of order 2
            y = 2 Re r z,   ż = p z + F,   p = 2π f_c (−1 + i)/√2,   r = (2π f_c)² / (p − p̄): the same over time
            normal noise, independent from sample to sample
-Source Butterworth 1930; the rig: Zhang et al. 2016, figure 4 Note The low-pass is an analogue filter, the same for both
-forces. A force is given at nodes and is piecewise linear, with jumps allowed. For such a force, z is advanced without
-error from node to node, at any spacing. The only error left is that of linear interpolation: for a force with f_s nodes
-per second, the amplitude of a line at f is too small by (π f/f_s)²/3, relatively. The output sensor is at the wall and
-does not move, so its mass has no effect. A wall that yields is the scene's knob `wall`.
+Source     Butterworth 1930; the rig: Zhang et al. 2016, figure 4
+Note       The low-pass is an analogue filter, the same for both forces. A force is given at nodes and is piecewise
+           linear, with jumps allowed. For such a force, z is advanced without error from node to node, at any spacing.
+           The only error left is that of linear interpolation: for a force with f_s nodes per second, the amplitude of
+           a line at f is too small by the fraction (π f/f_s)²/3. The output sensor is at the wall and does not move, so
+           its mass has no effect. A wall that yields is the scene's knob `wall`.
 """
 
 from __future__ import annotations

@@ -5,7 +5,7 @@ from __future__ import annotations
 from . import contacts, damping, energy, extremes, long_runs, numbers, regimes
 from .case import Case
 
-#: Every row, the longest first, so that two workers end together.
+#: Every case, the longest first, so that two workers finish together.
 CASES: tuple[Case, ...] = (
     Case("near a bifurcation",
          "A slow approach hardly changes from period to period and is still far from its orbit.",

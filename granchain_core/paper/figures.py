@@ -1,4 +1,4 @@
-"""The table of figures: what each shows, which data it takes, and how it is computed."""
+"""The table of figures: what each figure shows, which data it accepts, and how it is computed."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _AMPLITUDES = (f"Model (5) with the amplitudes of the presets: {_micrometres(_AT
 
 @dataclass(frozen=True)
 class PaperFigure:
-    """One figure: its number, what it shows, its caption, the data it takes and at which frequencies [Hz]."""
+    """One figure: its number, title, caption, the data that it accepts, and their frequencies [Hz]."""
 
     number: str
     title: str
@@ -116,12 +116,12 @@ _TABLE = (
                 lambda given, stop, progress: computations.trains((60.0, 90.0, 100.0), given, False, stop, progress),
                 ("series",), (60.0, 90.0, 100.0)),
 )
-#: By number, in the order of the paper.
+#: The figures by number, in the order of the paper.
 FIGURES: dict[str, PaperFigure] = {one.number: one for one in _TABLE}
 
 
 def figure_of(number: str) -> PaperFigure:
-    """The figure with this number; `BadInput` names the nearest one."""
+    """Return the figure with this number. Raises `BadInput`, which names the nearest one."""
     if number not in FIGURES:
         numbers = [int(number) for number in FIGURES if number.isdigit()]
         is_whole = number.isascii() and number.isdigit()
@@ -133,18 +133,18 @@ def figure_of(number: str) -> PaperFigure:
 
 def compute(number: str, given: Given | None = None, stop: Stop | None = None,
             progress: computations.Progress = _quietly) -> Result:
-    """The result that a figure is drawn from.
+    """Compute the result from which a figure is drawn.
 
     Parameters
     ----------
     number : str
         "1" to "12", "3a" or "3b".
     given : Given, optional
-        A user's measured data.
+        The user's measured data.
     stop : Stop, optional
         Ends the computation when another thread sets it.
     progress : callable
-        Called with the fraction that is done, 0 to 1.
+        Called with the fraction done, 0 to 1.
 
     Raises
     ------
