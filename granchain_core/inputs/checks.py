@@ -43,9 +43,7 @@ def whole_number(what: str, value: object, low: int, high: float) -> int:
 
 
 def seconds_allowed(budget: object) -> float:
-    """Return a budget of computing time [s], which may be infinite, as a float; `BadInput` unless it is a number from
-    0.
-    """
+    """Return a budget of computing time [s], possibly infinite, as a float; `BadInput` unless it is a number from 0."""
     if not isinstance(budget, numbers.Real) or isinstance(budget, bool) or not float(budget) >= 0.0:
         raise BadInput(f"budget = {str(budget)[:40]} must be a number of seconds, 0 or more; 86400 is a day.")
     return float(budget)

@@ -74,9 +74,7 @@ class Gaps:
 
 def with_zeros(time: np.ndarray, values: np.ndarray, gaps: np.ndarray,
                spacing: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Insert zeros into the gaps after the samples `gaps`, a spacing from the gaps' ends; return the zeros' indices
-    too.
-    """
+    """Insert zeros into the gaps after the samples `gaps`, a spacing from their ends; return the zeros' indices too."""
     beside = np.minimum(spacing, _PART_OF_GAP * (time[gaps + 1] - time[gaps]))
     inside = np.sort(np.concatenate([time[gaps] + beside, time[gaps + 1] - beside]))
     places = np.searchsorted(time, inside)

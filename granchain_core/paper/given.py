@@ -116,8 +116,7 @@ def moved_back(series: Series, delay: float) -> Series:
 
 
 def _component(time: np.ndarray, values: np.ndarray, f: float) -> tuple[float, float]:
-    """Return phase 2πfs and amplitude of the component a·cos(2πf(t − s)) of `values`, over whole periods if possible.
-    """
+    """Return phase 2πfs and amplitude of the part a·cos(2πf(t − s)) of `values`, over whole periods if possible."""
     duration = np.floor((time[-1] - time[0]) * f + 1e-9) / f
     inside = time - time[0] <= duration if duration > 0.0 else np.ones(len(time), dtype=bool)
     t, v = time[inside], values[inside]

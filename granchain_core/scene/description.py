@@ -133,9 +133,7 @@ class Description:
         return replace(bead, mass=part * bead.mass, radius=math.cbrt(part) * bead.radius)
 
     def mass_part(self, number: int) -> float:
-        """Return the factor of the mass of bead `number` (the chain's own numbering) by dimer, taper, striker and
-        impurity.
-        """
+        """Return the mass factor of bead `number` (chain's own numbering) by dimer, taper, striker and impurity."""
         part = 1.0 if self.N == 1 else self.taper ** (3.0 * (number - 1) / (self.N - 1))
         if number % 2 == 0:
             part *= self.dimer

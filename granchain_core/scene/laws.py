@@ -16,8 +16,8 @@ from typing import Any
 class Law:
     """The damping force D (δ/δ_r)^a δ̇ of a closed contact.
 
-    `name` is its name in scenes, `slot_class` the name of its slot class, `title` its name in words. `source` is the
-    publication to cite, or "".
+    `name` is its name in scenes, `title` its name in words, and `slot_class` the name of its slot class. `source` is
+    the publication to cite, or "" if there is none.
     """
 
     name: str
