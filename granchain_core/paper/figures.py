@@ -12,8 +12,8 @@ from . import computations
 from .given import Given
 from .results import Result
 
-_IMAGES = ("The paper's measured series are images, whose numbers we do not have, so they are not drawn. Your own data are "
-           "drawn over the figure (--data FILE).")
+_IMAGES = ("The paper's measured series are images, whose numbers we do not have, so they are not drawn. Your own data "
+           "are drawn over the figure (--data FILE).")
 _FEATURES = "Of the measurement, only the frequencies stated in the text are drawn; the text gives no forces. "
 
 
@@ -79,7 +79,7 @@ _TABLE = (
     PaperFigure("6", "The rig's response: largest transmitted force, and force trains at 60 Hz",
                 "(a) " + _FEATURES +
                 f"The curve is model (5) at a constant {_micrometres(_MIDDLE)} from rest, with its regimes; its peak "
-                f"and valley are at other frequencies. (b) Model (5) at 60 Hz with {_micrometres(_AT_60.A0)}. " + _IMAGES,
+                f"and valley are elsewhere. (b) Model (5) at 60 Hz with {_micrometres(_AT_60.A0)}. " + _IMAGES,
                 lambda given, stop, progress: computations.response(given, False, stop, progress),
                 ("curve", "series"), (60.0,)),
     PaperFigure("7", "Force trains at 90 Hz (anti-resonance) and 100 Hz (model at 50 Hz)",
@@ -92,8 +92,8 @@ _TABLE = (
                 lambda *_: computations.rig("rig")),
     PaperFigure("9", "Model and measurement: largest transmitted force, and force trains at 60 Hz",
                 "(a) " + _FEATURES +
-                "Model (3) needs the measured input force at every frequency. Instead, the figure has model (5) from rest "
-                "at four constant amplitudes and, ringed, the presets of figure 12 at the paper's frequencies. "
+                "Model (3) needs the measured input force at every frequency. Instead, the figure has model (5) from "
+                "rest at four constant amplitudes and, ringed, the presets of figure 12 at the paper's frequencies. "
                 "(b) Model (3) fed with a measured input force or, without one, with that of model (5). " + _IMAGES,
                 lambda given, stop, progress: computations.response(given, True, stop, progress),
                 ("curve", "series"), (60.0,)),
@@ -104,8 +104,8 @@ _TABLE = (
                 lambda given, stop, progress: computations.trains((90.0, 100.0), given, True, stop, progress),
                 ("series",), (90.0, 100.0)),
     PaperFigure("11", "Stability of model (4): multipliers, and the first beads of both chains",
-                f"Top: κ = 0; bottom: κ = {computations.KAPPA:g}. Multipliers of chain and observer, then bead 1 of the "
-                f"chain and of the observer, which starts {computations.COUPLED_DISTANCE:g} A0 away. The text does "
+                f"Top: κ = 0; bottom: κ = {computations.KAPPA:g}. Multipliers of chain and observer, then bead 1 of "
+                f"the chain and of the observer, which starts {computations.COUPLED_DISTANCE:g} A0 away. The text does "
                 f"not state the drive frequency; here it is {computations.COUPLED_FREQUENCY:g} Hz.",
                 lambda _, stop, __: computations.observers(stop)),
     PaperFigure("12", "Model (5) at 60, 90 and 100 Hz",
