@@ -144,7 +144,7 @@ def compute(number: str, given: Given | None = None, stop: Stop | None = None,
     stop : Stop, optional
         Ends the computation when another thread sets it.
     progress : callable
-        Called with the fraction done, 0 to 1.
+        Called with the fraction that is done, 0 to 1.
 
     Raises
     ------
