@@ -35,7 +35,7 @@ class Stop:
         self.flag[0] = 1
 
     def pause(self) -> None:
-        """Called between parts of a computation, some hundredths of a second apart, by the thread that computes.
+        """Called by the computing thread between parts of a computation, a few hundredths of a second apart.
 
         This hook does nothing here; the server's stop flag overrides it to give up its turn.
         """

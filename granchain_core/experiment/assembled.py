@@ -28,11 +28,11 @@ class Columns:
     units: dict[str, str]
 
     def has(self, *names: str) -> bool:
-        """Whether all of these quantities are present."""
+        """Return whether all of these quantities are present."""
         return all(name in self.values for name in names)
 
     def one(self, name: str) -> np.ndarray:
-        """The only column of a quantity."""
+        """Return the only column of a quantity."""
         columns = self.values[name]
         if len(columns) != 1:
             raise BadInput(f"{len(columns)} columns hold the {name.replace('_', ' ')}; name one of them.")

@@ -69,7 +69,7 @@ class ForceDifference(Misfit):
 
 
 def compared_forces(measured: Series, motion: Motion, sensors: Sensors | None = None) -> dict[str, ForceDifference]:
-    """Compare the forces of a series with those of a motion whose clock begins at the first sample.
+    """Compare the forces of a series with those of a motion whose clock starts at the first sample.
 
     Parameters
     ----------

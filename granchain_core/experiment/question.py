@@ -97,7 +97,7 @@ class Unclear(BadInput):
     """
 
     def __init__(self, question: Question) -> None:
-        super().__init__(f"{question.reason} Say it by {question.options}.")
+        super().__init__(f"{question.reason} Specify it with {question.options}.")
         self.question = question
 
 

@@ -40,7 +40,7 @@ def _parted(grid: TextGrid) -> _Parts:
         numbers = next((i for i, (_, one) in enumerate(rows) if _has_number(one)), None)
         where = f"Line {rows[numbers][0]}" if numbers is not None else f"Line {rows[-1][0]}"
         raise BadInput(f"{where}: there are no two numbers side by side; expected frequency and force, or time and "
-                       "what was measured at it.")
+                       "a measured quantity.")
     head, data = rows[:begin], rows[begin:]
     units: list[str] = []
     titles: list[str] = []
@@ -53,7 +53,7 @@ def _parted(grid: TextGrid) -> _Parts:
         head = head[:-1]
     elif head and len(head[-1][1]) > 1 and any(heading(one)[0] for one in head[-1][1]):
         raise BadInput(f"Line {head[-1][0]} has {len(head[-1][1])} titles over the {width} columns of line "
-                       f"{data[0][0]}; decimal commas need another mark between columns, and words none.")
+                       f"{data[0][0]}; separate columns by a mark that occurs in no number or title.")
     preface = [" ".join(one for one in fields if one) for _, fields in head]
     return _Parts(preface, titles, units, _trimmed(data, width), line)
 

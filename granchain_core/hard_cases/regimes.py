@@ -66,7 +66,8 @@ def distance(state: np.ndarray, orbit: np.ndarray, scale: np.ndarray) -> float:
 
 
 def claims(count: int, seed: int) -> tuple[int, int, int]:
-    """Of `count` maps near a bifurcation, count those reported as settled, the wrong ones of these, and slow ones.
+    """Count which of `count` maps near a bifurcation are reported as settled, which of these wrongly, and which are
+    slow.
 
     "Wrong" refers to a bound or a period. A slow map's multiplier is so near 1 that it cannot settle within its
     strobes.

@@ -161,7 +161,7 @@ class Plain:
             if not here.links.exists(part.encode()):
                 return None
             if here.links.get_info(part.encode()).type != h5l.TYPE_HARD:
-                raise Refused(f"{walked} is a link, and only what is stored in the file itself is read")
+                raise Refused(f"{walked} is a link, and only data in the file itself are read")
             here = h5o.open(here, part.encode())
         return here
 
@@ -171,10 +171,10 @@ class Plain:
         variable = type_.get_class() == h5t.STRING and type_.is_variable_str()
         size = _REFERENCE if variable else type_.get_size()
         if properties.get_external_count():
-            raise Refused(f"/{path} stands in another file, and only what is stored in the file itself is read")
+            raise Refused(f"/{path} is stored in another file, and only data in the file itself are read")
         if properties.get_layout() not in (h5d.CONTIGUOUS, h5d.COMPACT):
-            raise Refused(f"/{path} is virtual, compressed or in pieces, and only what is stored in the file itself as "
-                          "one block is read")
+            raise Refused(f"/{path} is virtual, compressed or in pieces, and only data in one block of the file "
+                          "itself are read")
         if dataset.get_space().get_simple_extent_type() != h5s.SIMPLE or len(dataset.shape) > _MOST_DIMENSIONS:
             raise Refused(f"/{path} is not a row or a table")
         needed = math.prod(dataset.shape) * size  # in Python integers, which do not overflow

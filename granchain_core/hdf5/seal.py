@@ -59,7 +59,7 @@ def is_sealed(path: Path, required: bool = True) -> bool:
             raise Refused("the line with its checksum is missing: the file is damaged, cut short, or was changed by "
                           "another program")
         if int(seal[1]) != size or seal[2].decode() != _digest(file, size):
-            raise Refused("its checksum does not fit: the file is damaged or was changed by another program")
+            raise Refused("its checksum does not match: the file is damaged or was changed by another program")
     return True
 
 

@@ -139,7 +139,7 @@ def _states() -> Numbers:
 
 
 def _trains() -> Numbers:
-    """The presets at 90 and 50 Hz, then 100 Hz from rest with the amplitudes of `_two_solutions`."""
+    """Compute the presets at 90 and 50 Hz, then 100 Hz from rest with the amplitudes of `_two_solutions`."""
     shown = [_settle(STATES[f]) for f in (90.0, 100.0)]
     twice = scene(STATES[100.0]).evolve(f=100.0)
     gentle = [settle(chain, rest(chain)) for chain in (twice.evolve(A0=a, kappa=KAPPA) for a in (RIG_AMPLITUDE, 10e-6))]
@@ -148,7 +148,7 @@ def _trains() -> Numbers:
 
 
 def _two_solutions() -> Numbers:
-    """100 Hz with the rig's amplitude, an intermediate one, and that of the preset; then the preset at 50 Hz."""
+    """Compute 100 Hz with the rig's amplitude, an intermediate one, and the preset's; then the preset at 50 Hz."""
     preset = scene("fig12-100")
     twice = preset.evolve(f=100.0)
     gentle = [attractors(twice.evolve(A0=a, kappa=KAPPA), 32) for a in (RIG_AMPLITUDE, 10e-6)]

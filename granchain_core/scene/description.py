@@ -133,7 +133,10 @@ class Description:
         return replace(bead, mass=part * bead.mass, radius=math.cbrt(part) * bead.radius)
 
     def mass_part(self, number: int) -> float:
-        """Return the mass factor of bead `number` (chain's own numbering) by dimer, taper, striker and impurity."""
+        """Return the mass of bead `number`, in the chain's own numbering, over that of the pattern's bead.
+
+        It follows from dimer, taper, striker and impurity, all of the same material.
+        """
         part = 1.0 if self.N == 1 else self.taper ** (3.0 * (number - 1) / (self.N - 1))
         if number % 2 == 0:
             part *= self.dimer

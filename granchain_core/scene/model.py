@@ -73,7 +73,7 @@ class Scene(Description):
         return ["contact", driver, "wall", *(effect.label(self) for effect in effects_of(self))]
 
     def equation_latex(self) -> str:
-        """The equation of motion in LaTeX, with only the terms that are computed."""
+        """Return the equation of motion in LaTeX, with only the terms that are computed."""
         return latex(self)
 
     def validity(self) -> list[str]:

@@ -147,8 +147,8 @@ _TABLE = (
              "Force at rest in every contact; the wall stays in place. 0 is the sonic vacuum.",
              0.0, 1e4, "linear", 0.1, at_zero="nothing presses the beads"),
     Quantity("dimer", "m₂/m₁", "1", "m_2/m_1", "mass of every second bead",
-             "Mass of beads 2, 4, … over the mass of the others. All are of one material, so the radius goes with its "
-             "cube root. 1 is a chain of equal beads.", 1e-3, 1e3, "log", short="dimer", main_if_set=True),
+             "Mass of beads 2, 4, … over the mass of the others. All are of one material, so the radius scales with "
+             "its cube root. 1 is a chain of equal beads.", 1e-3, 1e3, "log", short="dimer", main_if_set=True),
     Quantity("taper", "R_N/R₁", "1", "R_N/R_1", "taper",
              "Radius of the last bead over the radius of the first; the radii form a geometric sequence.",
              0.01, 100.0, "log", main_if_set=True),
@@ -161,7 +161,7 @@ _TABLE = (
              "Mass of bead j relative to a regular bead at its place; 1 means no impurity.", 1e-3, 1e3, "log",
              short="impurity", main_if_set=True),
     Quantity("drive", "", "", "", "drive", "Whether the driver moves: harmonic, or at rest as a fixed bead. Without a "
-             "drive 1/f is only the time that is shown.", choices=DRIVES, numeric=False, main_if_set=True),
+             "drive, 1/f is only the time that is shown.", choices=DRIVES, numeric=False, main_if_set=True),
     Quantity("strike", "v₁", "m/s", "v_1", "initial velocity of bead 1",
              "Speed at which bead 1 moves towards the wall at time 0.", 0.0, 100.0, "cubic", 0.001, short="strike",
              at_zero="bead 1 starts at rest", at_start=True, main_if_set=True),

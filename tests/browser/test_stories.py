@@ -61,7 +61,7 @@ def tells(page: Page, story: Story, number: int, revealed: bool) -> None:
 @pytest.mark.long
 @pytest.mark.parametrize("story", stories(overlay_names())[0], ids=lambda story: story.name)
 def test_a_story_shows_what_it_tells(at: Visit, story: Story) -> None:
-    """Each step is checked on a laptop and on a phone, starting on the size of the previous check."""
+    """Each step is opened on a laptop or a phone, then viewed on the other, where the next step is opened."""
     page = at()
     now, other = LAPTOP, PHONE
     tab = page.locator("#tabs")

@@ -19,7 +19,7 @@ from granchain_core.results.regime import Regime
 
 @cache
 def found() -> Branch:
-    """A short, complete branch of the picture's chain."""
+    """Return a short, complete branch of the picture's chain."""
     return branch(picture().run.scene, "f", 2000.0, 2020.0)
 
 
