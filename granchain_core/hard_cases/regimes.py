@@ -66,8 +66,7 @@ def distance(state: np.ndarray, orbit: np.ndarray, scale: np.ndarray) -> float:
 
 
 def claims(count: int, seed: int) -> tuple[int, int, int]:
-    """Count which of `count` maps near a bifurcation are reported as settled, which of these wrongly, and which are
-    slow.
+    """Of `count` maps near a bifurcation, return how many are reported as settled, wrongly settled, and slow.
 
     "Wrong" refers to a bound or a period. A slow map's multiplier is so near 1 that it cannot settle within its
     strobes.
