@@ -31,9 +31,7 @@ class Noted:
 
 
 def note_of(own: str, given: str) -> str:
-    """Return the note of data: the reader's, if `given`, otherwise the file's `own` comments; both if these say
-    virtual.
-    """
+    """Return the note of data: the reader's if `given`, otherwise the file's `own`; both if the latter says virtual."""
     return f"{own}; {given}" if given and own.startswith(VIRTUAL) else given or own
 
 
@@ -61,9 +59,7 @@ class Measured(Noted):
 
     @property
     def bars(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return the lower and upper ends of the error bars [N], from the error or, without one, the extremes of the
-        repeats.
-        """
+        """Return both ends of the error bars [N], from the error or, without one, from the extremes of the repeats."""
         if self.error is None and self.low is not None and self.high is not None:
             return self.low, self.high
         error = np.zeros(len(self.force)) if self.error is None else self.error

@@ -1,4 +1,4 @@
-"""Hard cases of long runs: the drive keeps its phase, and interrupting a run does not change its result."""
+"""Hard cases of long runs: the drive must keep its phase, and interrupting a run must not change its result."""
 
 from __future__ import annotations
 

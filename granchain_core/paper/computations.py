@@ -137,7 +137,7 @@ def column(named: float, series: Series | None, observed: bool, stop: Stop | Non
 
 def _observer(chain: Scene, series: Series | None, delay: float,
               stop: Stop | None) -> tuple[np.ndarray, np.ndarray, str]:
-    """Return model (3)'s time, output force and description; without a measured input force, model (5)'s drives it."""
+    """Return model (3)'s time, output force and description; without a measured input force, model (5)'s is used."""
     if series is None:
         pair = twin(chain, rest(chain), FOLLOWED_PERIODS, _TRAIN_SAMPLES, stop)
         rows = min(len(pair.time), round(SHOWN * chain.f) * _TRAIN_SAMPLES + 1)

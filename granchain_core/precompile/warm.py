@@ -75,7 +75,7 @@ def _engine(setting: MethodSetting) -> Callable[[Scene], None]:
 
 
 def _regime(short: Scene) -> None:
-    """Compile finding the period of a record of strobes, and a state in SI units."""
+    """Compile the detection of the period in a record of strobes, and a state in SI units."""
     find_period(np.zeros((2, 2, short.N)))
     scale_chain(short).to_si(np.zeros(2 * (short.N + 2)))
 
