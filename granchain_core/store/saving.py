@@ -48,7 +48,7 @@ def save(result: Labelled, path: str | Path, measured: Measured | Series | None 
     True
     """
     if not isinstance(result, Labelled):
-        raise BadInput("`save` writes results of granchain, for example of `run`, not a value of type "
+        raise BadInput("`save` writes a result of granchain, for example of `run`, not a value of type "
                        f"{type(result).__name__}.")
 
     def write(file: h5py.File) -> None:
