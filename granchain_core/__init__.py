@@ -3,8 +3,8 @@
     from granchain_core import resonance_curve, run, scene
     result = run(scene("sec2").evolve(f=340.0))
 
-This is the public API: what is listed in `__all__` is public, everything else may change. Most commands have a
-function of the same name; README.md lists the others ("Python"), docs/python.md former names that still work.
+The names in `__all__` are the public API; everything else may change. Most commands have a function of the same name.
+README.md lists the others (section "Python"), and docs/python.md lists former names that still work.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ if TYPE_CHECKING:
     from .steady.settling.settle import settle, settling
     from .store import load, save
 
-#: Public names by module. They are imported at first use, so that `import granchain_core` is quick.
+#: Public names by module, imported at first use so that `import granchain_core` is quick.
 _MODULES = {
     "runs.to_accuracy": ("run",), "runs.many": ("Runs", "run_many"), "runs.live": ("LiveChain",),
     "results.run": ("Cost", "Run"), "scene.state": ("State",), "execution.stop": ("Stop",),
@@ -69,7 +69,7 @@ _MODULES = {
     "analysis.pulse": ("Pulse", "pulse"), "analysis.bands": ("bands",),
 }
 _MODULE_OF = {name: module for module, names in _MODULES.items() for name in names}
-#: What two public functions are called in their modules, where `orbit` and `branch` are variables.
+#: Names of two public functions inside their modules, where `orbit` and `branch` are variables.
 _IN_MODULE = {"orbit": "periodic_orbit", "branch": "continue_branch"}
 
 __all__ = [
@@ -82,12 +82,12 @@ __all__ = [
     "pulse", "resonance_curve", "rotation_number", "run", "run_many", "save", "scene", "scene_names", "settle",
     "settling", "spectrum", "transfer", "work_precision",
 ]
-# `import *` gives former names too.
+# `import *` imports the former names as well.
 __all__ += [row.former for row in NAMES if row.name in __all__]
 
 
 def __getattr__(name: str) -> Any:
-    """Import a public name, or a former one, when it is first used."""
+    """Import a public or former name at its first use."""
     public = present(name)
     if public in _MODULE_OF:
         return getattr(importlib.import_module(f".{_MODULE_OF[public]}", __name__), _IN_MODULE.get(public, public))

@@ -1,21 +1,20 @@
-"""Failures of a request, each with one sentence for the user."""
+"""Exceptions of the public API, each with one sentence for the user."""
 
 from __future__ import annotations
 
 from typing import Any
 
-#: Names of the outcomes of computations whose numbers failed.
+#: Names of the outcomes of failed computations.
 FAILURES = ("not-finite", "step-too-small", "too-many-steps", "chatter", "too-many-events", "no-convergence",
             "same-orbit", "another-orbit", "no-point", "contacts", "contradicted", "solver-gave-up", "too-slow",
             "worker-failed")
 
 
 class BadInput(ValueError):
-    """A value from outside that cannot be used: the message says what, where, the allowed range and the nearest valid
-    one.
+    """Invalid input. The message names the value, its place, the allowed range and the nearest valid value.
 
-    Line breaks and control characters of the value are escaped, so that the message stays one line and does not control
-    a terminal.
+    Line breaks and control characters of the value are escaped, so that the message stays on one line and cannot
+    control a terminal.
 
     Examples
     --------
@@ -33,7 +32,7 @@ class BadInput(ValueError):
 
 
 class ComputationError(ArithmeticError):
-    """A computation that could not be finished; the message says which bead, when, why and what to do.
+    """A computation that could not be finished. The message says which bead failed, when and why, and what to do.
 
     Attributes
     ----------
@@ -70,7 +69,7 @@ class ComputationError(ArithmeticError):
 
 
 class OverBudget(BadInput):
-    """A computation that is refused before it starts, because it would take too long.
+    """A computation refused before it starts because it would take too long.
 
     Attributes
     ----------
@@ -112,7 +111,9 @@ class Cancelled(Exception):
 
 
 def outcome_of(problem: ComputationError | OverBudget) -> dict[str, Any]:
-    """The JSON object of a computation that failed or was not begun: status, message, and where and when if known."""
+    """Return the JSON object of a failed or refused computation: status, message and, if known, where and when it
+    failed.
+    """
     if isinstance(problem, OverBudget):
         return {"status": problem.status, "message": str(problem), "estimate_s": problem.estimate,
                 "budget_s": problem.budget}

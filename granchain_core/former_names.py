@@ -1,7 +1,7 @@
-"""Former names that still work, a row for each. Delete a row, and its name is gone from code, files and docs.
+"""Former names that still work, one row for each. Deleting a row removes the name from code, files and docs.
 
-Everything is called by its present name elsewhere: modules, classes, tables of files and the environment take former
-names from here, and docs/python.md lists them. app/former_names.py has those of the command line and the server.
+All other code uses present names. Modules, classes, tables of files and environment variables get their former names
+from here, and docs/python.md lists them. Former names of the command line and the server are in app/former_names.py.
 """
 
 from __future__ import annotations
@@ -13,14 +13,14 @@ from typing import Any, NamedTuple, TypeVar
 
 _Class = TypeVar("_Class", bound=type)
 
-#: What JSON and files say for `SpecialPoint.gained`.
+#: Names of the values of `SpecialPoint.gained` in JSON and files.
 EVENTS = {"closed interval": "touch", "open interval": "separation"}
 
 
 class FormerName(NamedTuple):
-    """A former name beside the present one, and the version that removes it; "stays" if none does.
+    """A former name, the present one, and the version that removes the former name ("stays" if none does).
 
-    `values` has the former values where those have changed too.
+    `values` maps present values to former ones where the values have changed too.
     """
 
     former: str
@@ -34,7 +34,7 @@ class FormerName(NamedTuple):
         return self.former.rpartition(".")[2]
 
     def of(self, owner: Any) -> Any:
-        """The value under the former name, from the owner of the present name."""
+        """Return the value under the former name, read from the object that has the present name."""
         value = getattr(owner, self.name.rpartition(".")[2])
         return self.values.get(value, value) if self.values else value
 
@@ -71,18 +71,18 @@ ATTRIBUTES = (
     FormerName("Pulse.speed", "Pulse.speed_beads_s"),
     FormerName("Pulse.speed_in_metres", "Pulse.speed_m_s"),
 )
-#: Columns in the tables of results, and so in files.
+#: Columns in the tables of results, and therefore in files.
 COLUMNS = (
     FormerName("pulse.speed", "pulse.speed_beads_s", "stays"),
     FormerName("pulse.speed_in_metres", "pulse.speed_m_s", "stays"),
 )
-#: Keys of JSON and attributes of files, after the result that has them.
+#: Keys of JSON and attributes of files, each preceded by the result that has it.
 KEYS = (FormerName("fit.freedom", "fit.degrees_of_freedom", "stays"),)
-#: Parameters of functions, which these take by their former names themselves.
+#: Parameters of functions, which accept the former names themselves.
 PARAMETERS = (FormerName("fit(design)", "fit(initial_points)"),)
 #: Environment variables.
 VARIABLES = (FormerName("GRANCHAIN_LANES", "GRANCHAIN_BATCH_SIZE", "stays"),)
-#: Extras of the package, which pyproject.toml has.
+#: Optional dependencies of the package, defined in pyproject.toml.
 EXTRAS = (FormerName("granchain[files]", "granchain[frames]"),)
 
 ALL = (*NAMES, *ATTRIBUTES, *COLUMNS, *KEYS, *PARAMETERS, *VARIABLES, *EXTRAS)
@@ -91,12 +91,12 @@ _PRESENT = {row.former: row.name for row in NAMES}
 
 
 def present(name: str) -> str:
-    """The present name of something in a module, which may be `name` itself."""
+    """Return the present name of a module's public name; `name` itself if it has not changed."""
     return _PRESENT.get(name, name)
 
 
 def of_module(module: str) -> Callable[[str], Any]:
-    """The `__getattr__` of a module: former names of what the module has."""
+    """Return a module's `__getattr__`, which resolves former names of the module's contents."""
 
     def value_of(name: str) -> Any:
         has = vars(sys.modules[module])
@@ -108,7 +108,7 @@ def of_module(module: str) -> Callable[[str], Any]:
 
 
 def with_former_names(owner: _Class) -> _Class:
-    """Class decorator: the attributes under their former names too."""
+    """Class decorator that adds the attributes under their former names."""
     for row in ATTRIBUTES:
         if row.former.startswith(f"{owner.__name__}."):
             setattr(owner, row.last, property(row.of, doc=f"The former name of `{row.name.rpartition('.')[2]}`."))
@@ -116,11 +116,11 @@ def with_former_names(owner: _Class) -> _Class:
 
 
 def with_former_keys(owner: str, values: dict[str, Any], rows: tuple[FormerName, ...] = KEYS) -> dict[str, Any]:
-    """The keys of a result's or command's JSON object, or the attributes of its file, under their former names too."""
+    """Add the former names to the keys of a result's or command's JSON object, or to the attributes of its file."""
     return values | {row.last: values[row.name.rpartition(".")[2]]
                      for row in rows if row.former.startswith(f"{owner}.")}
 
 
 def former_columns(table: str) -> dict[str, str]:
-    """The former names of a table's columns, each with the present one."""
+    """Return the former names of a table's columns, each with the present name."""
     return {row.last: row.name.rpartition(".")[2] for row in COLUMNS if row.former.startswith(f"{table}.")}

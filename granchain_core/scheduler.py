@@ -1,7 +1,8 @@
-"""Work on a Dask scheduler: maps, curves, batches and fits that are too large for one machine.
+"""Computation on a Dask cluster, for maps, curves, batches and fits that are too large for one machine.
 
-A scheduler is a client of `distributed`, as `connect` gives it. Workers need the same version of granchain. Where one
-ends, the scheduler gives its work to another; what is computed does not depend on who computes it.
+A scheduler is represented by a client of `distributed`, which `connect` returns. Workers need the same version of
+granchain. When a worker ends, the scheduler gives its work to another. Results do not depend on which worker computes
+them.
 """
 
 from __future__ import annotations
@@ -12,14 +13,14 @@ from typing import Any
 from .errors import BadInput, Cancelled, ComputationError
 from .execution.stop import Stop
 
-#: Time in which a scheduler must answer [s].
+#: Time within which a scheduler must answer [s].
 _ANSWERS = 4.0
 #: Time between two checks whether the work is still wanted [s].
 _LOOK = 0.2
 
 
 def connect(address: str) -> Any:
-    """A client of the scheduler at `address`; `BadInput` where there is none or `distributed` is not installed."""
+    """Return a client of the scheduler at `address`. Raises `BadInput` if none answers or `distributed` is missing."""
     try:
         from distributed import Client
     except ImportError:
@@ -34,17 +35,17 @@ def connect(address: str) -> Any:
 
 
 def dealt(items: Sequence[Any], size: int) -> list[list[Any]]:
-    """Items in blocks of at most `size`; each takes some from all over, so that all blocks cost about the same."""
+    """Deal items into blocks of at most `size`, each from the whole range, so that all blocks cost about the same."""
     count = max(1, -(-len(items) // size))
     return [list(items[first::count]) for first in range(count) if len(items)]
 
 
 def results(client: Any, work: Callable[..., Any], tasks: Sequence[tuple[Any, ...]],
             stop: Stop | None = None) -> Iterator[tuple[int, Any]]:
-    """Number and result of each task, `work(*task)`, in the order in which workers return them.
+    """Yield the number and result of each task, `work(*task)`, in the order in which workers return them.
 
-    Tasks that are no longer wanted are cancelled. Raises `Cancelled` when `stop` is set, and `ComputationError` where a
-    worker could not do its task.
+    Tasks that are no longer wanted are cancelled. Raises `Cancelled` when `stop` is set, and `ComputationError` if a
+    worker fails in its task.
     """
     number = {client.submit(work, *task, pure=False): i for i, task in enumerate(tasks)}
     waiting = set(number)
@@ -76,4 +77,4 @@ def _result(future: Any) -> Any:
         raise
     except Exception as problem:
         raise ComputationError(f"A worker could not do its part: {type(problem).__name__}: {str(problem)[:200]}; "
-                               "look at its log, and go on with --resume.", "worker-failed") from None
+                               "look at its log, and continue with --resume.", "worker-failed") from None

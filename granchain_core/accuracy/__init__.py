@@ -1,4 +1,4 @@
-"""The cost of accuracy on this machine: error against time for every method, and the time that each effect takes."""
+"""The cost of accuracy on this machine: error against time for every method, and the time per effect."""
 
 from .compared_methods import MeasuredMethod, compared_methods
 from .measurements import Row, WorkPrecision, cheapest

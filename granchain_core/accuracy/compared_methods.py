@@ -1,4 +1,4 @@
-"""The methods and settings that are measured: all of the table of methods, and SciPy's solvers."""
+"""The methods and settings that are measured: every row of the table of methods, and SciPy's solvers."""
 
 from __future__ import annotations
 
@@ -8,19 +8,19 @@ from dataclasses import dataclass
 from ..integrate import METHODS, MethodSetting
 from .scipy_methods import SOLVERS
 
-#: Settings of fixed-step methods: factors on the fixed-step method's number of steps.
+#: Settings of fixed-step methods: factors on the default number of steps.
 _REFINES = (1, 2, 4, 8, 16)
 #: Settings of methods with error control: tolerances per step.
 _TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
 #: Settings of SciPy's solvers: rtol = atol.
 _SCIPY_TOLERANCES = (1e-3, 1e-5, 1e-7, 1e-9)
-#: Beginning of the names of SciPy's solvers.
+#: Prefix of the names of SciPy's solvers.
 SCIPY = "scipy "
 
 
 @dataclass(frozen=True)
 class MeasuredMethod:
-    """A method as it is presented: `family` is "granchain", "naive" (in (u, v)) or "scipy"."""
+    """A method's presentation; `family` is "granchain", "naive" (in (u, v)) or "scipy"."""
 
     name: str
     title: str
@@ -41,7 +41,7 @@ class MeasuredSetting:
 
 
 def compared_methods() -> dict[str, MeasuredMethod]:
-    """Everything that can be measured, by name: the table of methods as it is now, then SciPy's solvers."""
+    """Return every method that can be measured, by name: the current table of methods, then SciPy's solvers."""
     own = [MeasuredMethod(m.name, m.title, "naive" if m.variables == "uv" else "granchain", m.observed_order,
                           m.restrictions, m.reference) for m in METHODS.values()]
     others = [MeasuredMethod(SCIPY + s.name, s.title, "scipy", s.order, s.restrictions, s.reference)
@@ -50,14 +50,14 @@ def compared_methods() -> dict[str, MeasuredMethod]:
 
 
 def label(setting: MethodSetting) -> str:
-    """A setting in words."""
+    """Describe a setting in words."""
     if METHODS[setting.method].error_control:
         return f"tolerance {setting.tolerance:.2g}"
     return f"{setting.refine:.3g} × the default steps"
 
 
 def measured_settings() -> Iterator[MeasuredSetting]:
-    """Every setting of every method, for each method the cheap ones first."""
+    """Yield every setting of every method, cheapest first within each method."""
     for method in METHODS.values():
         values = _TOLERANCES if method.error_control else _REFINES
         for value in values:

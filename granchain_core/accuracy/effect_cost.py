@@ -19,24 +19,24 @@ from ..integrate import Engine, MethodSetting
 from ..integrate.methods import RK4_SPLIT
 from ..scene import Scene
 
-#: Pairs of freshly allocated chains: where an array lies in memory can make a step a fifth slower, and stays so.
+#: Pairs of freshly allocated chains: an array's place in memory can make all its steps a fifth slower.
 _CHAINS = 7
 #: Alternating runs of each pair.
 _TURNS = 7
-#: Time of one run [s]; about half a second in all.
+#: Time of one run [s]; all runs together take about half a second.
 _RUN = 0.004
-#: Method that shows the cost of an effect's code alone.
+#: Method that measures only the cost of an effect's code.
 CODE = "rk4"
-#: Method that shows an effect's cost in this motion, with steps split at contact events.
+#: Method that measures an effect's cost in this motion, with steps split at contact events.
 MOTION = RK4_SPLIT
 
-#: Drive periods that are run before timing, so that the chain is in motion.
+#: Drive periods before timing, so that the chain is in motion.
 _BEFORE = 3
 
 
 @dataclass(frozen=True)
 class Variant:
-    """A kernel to be timed: a scene, with the energy account in its equations or without."""
+    """A kernel to be timed: a scene, and whether its equations include the energy account."""
 
     scene: Scene
     account: bool = False
@@ -44,10 +44,10 @@ class Variant:
 
 @dataclass(frozen=True)
 class EffectCost:
-    """Nanoseconds a step with the effect and without, and their difference: medians over pairs of chains.
+    """Nanoseconds per step with and without the effect, and their difference: medians over pairs of chains.
 
-    `difference` is taken pair by pair, so that a machine that slows down for a while does not count as an effect;
-    `spread` is the median distance of the pairs from it.
+    `difference` is computed pair by pair, so that a temporary slowdown of the machine does not count as a cost of the
+    effect. `spread` is the median distance of the pairs from it.
     """
 
     with_it: float
@@ -57,7 +57,7 @@ class EffectCost:
 
     @property
     def percent(self) -> float:
-        """Time that the effect adds to a step, in per cent of a step without it."""
+        """Time that the effect adds to a step, in per cent of the time of a step without it."""
         return 100.0 * self.difference / self.without
 
 
@@ -65,7 +65,7 @@ def effect_cost(with_it: Variant, without: Variant, method: str = CODE, stop: St
                 pause: Callable[[], None] | None = None) -> EffectCost:
     """Time both kernels alternately; `pause` is called before each. Raises `Cancelled`.
 
-    Of a pair's runs the fastest count, because another process on the machine only ever makes a run slower.
+    The fastest of a pair's runs count, because other processes on the machine can only make a run slower.
     """
     stop = Stop() if stop is None else stop
     times = np.zeros((_CHAINS, _TURNS, 2))
@@ -102,7 +102,7 @@ class _Stepper:
         return time.perf_counter() - began
 
     def nanoseconds_per_step(self) -> float:
-        """One short run."""
+        """Time one short run."""
         before = self._engine.counts.steps
         seconds = self._seconds()
         return 1e9 * seconds / (self._engine.counts.steps - before)

@@ -14,7 +14,7 @@ _LOOK = 0.01
 class Limited:
     """`with Limited(stop, seconds) as limit:` gives `limit.stop`, raised with `stop` or after `seconds`.
 
-    Afterwards `stop` distinguishes a cancelled computation, in which it is set, from one that was merely too slow.
+    Afterwards `stop` tells the two apart: it is set if the computation was cancelled, and not if it was only too slow.
     """
 
     def __init__(self, stop: Stop, seconds: float) -> None:

@@ -1,4 +1,4 @@
-"""Results of `work_precision`: a row for each method and setting, and the references they are compared with."""
+"""Results of `work_precision`: a row for each method and setting, and the references with which they are compared."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from .naive import Lesson
 class Row:
     """One method at one setting: largest displacement error over the largest displacement, seconds, evaluations.
 
-    `value` is the setting as a number. With a `failure` there is neither error nor time. `wall_s` is the processor time
-    of the computing thread, which other work of the machine hardly lengthens.
+    `value` is the setting as a number. A row with a `failure` has neither error nor time. `wall_s` is the processor
+    time of the computing thread, on which other load hardly has an effect.
     """
 
     method: str
@@ -38,15 +38,15 @@ class WorkPrecision(Labelled):
     scene : Scene
         The chain.
     reference, second : str
-        The method whose motion counts as true, and the independent one with which it is compared.
+        The method whose motion counts as exact, and the independent method that checks it.
     agreement : float
-        Largest difference of the two over the largest displacement; NaN while it is not known.
+        Largest difference between the two over the largest displacement; NaN while it is unknown.
     rows : list of Row
         One for each method and setting: `method`, `setting`, `error`, `wall_s` [s], `rhs`, and `failure`, a sentence.
     lesson : Lesson or None
         The force as naive methods compute it.
     disagreement : str
-        A sentence where the second method failed.
+        Why the second method failed; empty if it did not.
 
     Examples
     --------
@@ -64,11 +64,11 @@ class WorkPrecision(Labelled):
     disagreement: str = ""
 
     def cheapest(self, error: float) -> Row | None:
-        """The fastest of granchain's and SciPy's settings that is at least this accurate."""
+        """Return the fastest setting of granchain's and SciPy's methods that is at least this accurate."""
         return cheapest(self.rows, error)
 
     def tables(self) -> tuple[Table, ...]:
-        """One table, `accuracy`: error and time of each method at each setting."""
+        """Return one table, `accuracy`: error and time of each method at each setting."""
         def column(name: str, unit: str, meaning: str, kind: type = float) -> dict[str, Column]:
             values: np.ndarray = np.array([getattr(row, name) for row in self.rows], dtype=kind)
             return {name: Column(values, ("row",), unit, meaning)}
@@ -82,18 +82,18 @@ class WorkPrecision(Labelled):
             **column("failure", "", "why there is neither error nor time; empty where there are", object)}),)
 
     def attributes(self) -> dict[str, Attribute]:
-        """Both references, their agreement, and the provenance."""
+        """Return both references, their agreement, and the provenance."""
         return {**provenance(self.scene, self.reference, None), "reference": self.reference,
                 "second": self.second, "agreement": self.agreement, "disagreement": self.disagreement}
 
     def summary(self) -> list[str]:
-        """The references, and the cheapest ways to three accuracies."""
+        """Return the agreement of the references, and the cheapest setting for each of three accuracies."""
         ways = [f"cheapest to {error:g}: {best.method}, {best.setting}, {1e3 * best.wall_s:.3g} ms"
                 for error in (1e-3, 1e-6, 1e-9) if (best := self.cheapest(error)) is not None]
         return [f"{len(self.rows)} settings; {self.reference} and {self.second} agree to {self.agreement:.1e}", *ways]
 
 
 def cheapest(rows: list[Row], error: float) -> Row | None:
-    """The fastest row that is at least this accurate; failed ones never are."""
+    """Return the fastest row that is at least this accurate; failed rows never are."""
     good = [row for row in rows if not row.failure and row.error <= error]
     return min(good, key=lambda row: row.wall_s) if good else None

@@ -1,6 +1,6 @@
-"""The output force by naive methods: plain steps in (u, v), for comparison with the accurate force.
+"""The output force from naive methods (plain steps in (u, v)), for comparison with the accurate force.
 
-The lesson of the accuracy page: the picture looks like a result, and nothing in it shows that it is wrong.
+This is the lesson of the accuracy page: the picture looks like a result, and nothing in it shows that it is wrong.
 """
 
 from __future__ import annotations
@@ -15,34 +15,34 @@ from ..integrate import METHODS, Engine, MethodSetting, dop853_setting
 from ..integrate.scaling import ScaledChain
 from ..scene import Scene
 
-#: Usual choices of steps in a drive period; the second is shown first.
+#: Usual numbers of steps per drive period; the second is shown first.
 NATURAL_STEPS = (100, 200, 500, 1000, 2000)
-#: Samples a period of the drawn force, a divisor of all these numbers of steps.
+#: Samples per period of the plotted force, a divisor of all these numbers of steps.
 _SAMPLES = 100
-#: Drive periods run from rest. Without a drive it is one time 1/f.
+#: Drive periods run from rest; without a drive, a single time 1/f.
 _RUN = 10
-#: Last drive periods, which are shown: in a 1:3 resonance there is one strong push in three.
+#: Drive periods shown, the last of the run: in a 1:3 resonance, one push in three is strong.
 _SHOWN = 3
-#: Reference.
+#: The reference.
 _TRUE = dop853_setting(1e-11)
 
 
 @dataclass(frozen=True)
 class PlainSteps(MethodSetting):
-    """A fixed-step setting by the number of steps in a drive period."""
+    """A fixed-step setting given by its number of steps per drive period."""
 
     steps: int = 0
 
     def steps_per_period(self, scaled: ScaledChain, samples: int) -> int:
-        """The steps asked for; they must be a multiple of `samples`."""
+        """Return the requested number of steps, which must be a multiple of `samples`."""
         return self.steps
 
 
 @dataclass(frozen=True, eq=False)
 class Naive:
-    """One naive method at one step: the output force it draws [N] and its largest error over the run's largest force.
+    """One naive method at one step: its output force [N], and the largest error over the run's largest force.
 
-    `failure` says why there is none.
+    `failure` says why there is no result.
     """
 
     method: str
@@ -84,6 +84,6 @@ def lesson(scene: Scene, stop: Stop) -> Lesson:
 
 
 def output_force(scene: Scene, setting: MethodSetting, stop: Stop) -> np.ndarray:
-    """Total force on the wall from rest [N], both ends of every sample."""
+    """Return the total force on the wall from rest [N], at both ends of every sample."""
     engine = Engine(scene, setting, _SAMPLES, stop=stop)
     return engine.scaled.scales.forces(engine.record((_RUN if scene.is_driven else 1) * _SAMPLES).force[:, -1])

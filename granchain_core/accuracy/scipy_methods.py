@@ -1,6 +1,6 @@
-"""SciPy's solvers on the same compiled equations, in scaled w-variables.
+"""SciPy's solvers, applied to the same compiled equations in scaled w-variables.
 
-SciPy is imported by the first measurement: the dashboard, which starts without one, answers 0.3 s earlier.
+SciPy is imported by the first measurement. The dashboard starts without one, and so answers 0.3 s earlier.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from ..scene.state import rest
 
 @dataclass(frozen=True)
 class Solver:
-    """One of SciPy's solvers by its name in `scipy.integrate`, with what its documentation claims."""
+    """One of SciPy's solvers, by its name in `scipy.integrate`, with the properties that its documentation claims."""
 
     name: str
     title: str
@@ -44,16 +44,16 @@ SOLVERS: dict[str, Solver] = {
                "Hairer, Nørsett & Wanner 1993, section II.5"),
     )
 }
-#: Least relative tolerance SciPy takes without changing it.
+#: Smallest relative tolerance that SciPy accepts without changing it.
 _LEAST_RTOL = 3e-14
-#: A contact event nearer to a step's start than this fraction of the period is the event that the step started from.
+#: A contact event within this fraction of a period after a step's start is the event at which the step started.
 _SAME_EVENT = 1e-9
 
 
 class ScipyMotion:
-    """The beads' equations as SciPy wants them: a function of time and one flat array (u_1..u_N, w_1..w_N), (2N,).
+    """The beads' equations in the form SciPy needs: a function of time and one flat array (u_1..u_N, w_1..w_N), (2N,).
 
-    All is scaled, and time is counted from the start of the period.
+    All quantities are scaled, and time is measured from the start of the period.
     """
 
     def __init__(self, scaled: ScaledChain, stop: Stop) -> None:
@@ -64,12 +64,12 @@ class ScipyMotion:
         self._whole, self._slope, self._forces = np.zeros(scaled.size), np.zeros(scaled.size), scaled.forces()
 
     def inner(self, y: np.ndarray) -> np.ndarray:
-        """The beads' part (2N,) of a whole state array (2(N + 2),)."""
+        """Return the beads' part (2N,) of a whole state array (2(N + 2),)."""
         row = self._row
         return np.concatenate([y[1 : row - 1], y[row + 1 : 2 * row - 1]])
 
     def __call__(self, t: float, inner: np.ndarray) -> np.ndarray:
-        """Slope (2N,) at time t of the period."""
+        """Return the slope (2N,) at time t of the period."""
         row, full_state = self._row, self._whole
         self.evaluations += 1
         full_state[1 : row - 1], full_state[row + 1 : 2 * row - 1] = inner[: row - 2], inner[row - 2 :]
@@ -77,7 +77,7 @@ class ScipyMotion:
         return self.inner(self._slope)
 
     def overlaps(self, t: float, inner: np.ndarray) -> np.ndarray:
-        """Overlap of every contact (N+1,) in scaled units."""
+        """Return the overlap of every contact (N+1,) in scaled units."""
         slots = self.scaled.slots
         drive = slots.driver.amplitude * np.sin(self.scaled.beta * t)
         bodies = np.concatenate([[drive], inner[: self._row - 2], [0.0]])
@@ -87,10 +87,10 @@ class ScipyMotion:
 
 def solve(scene: Scene, solver: str, tolerance: float, periods: int, samples: int, stop: Stop | None = None,
           located: bool = False) -> tuple[np.ndarray, Counts]:
-    """Scaled displacements (periods · samples + 1, N) from rest at `samples` a period; atol = rtol = tolerance.
+    """Return scaled displacements (periods · samples + 1, N) from rest, `samples` per period; atol = rtol = tolerance.
 
-    Solved period by period, so that the drive phase stays exact; with `located` the solver is also started anew
-    wherever a contact opens or closes, as a careful user would do it. Raises `ComputationError` and `Cancelled`.
+    The motion is solved period by period, so that the drive phase stays exact. With `located`, the solver is also
+    restarted wherever a contact opens or closes, as a careful user would do. Raises `ComputationError` and `Cancelled`.
     """
     scaled = scale_chain(scene)
     motion = ScipyMotion(scaled, Stop() if stop is None else stop)
@@ -100,7 +100,7 @@ def solve(scene: Scene, solver: str, tolerance: float, periods: int, samples: in
     for p in range(periods):
         inner, rows = _period(motion, SOLVERS[solver], tolerance, inner, samples, located)
         out[p * samples + 1 : (p + 1) * samples + 1] = rows
-        if not np.isfinite(inner).all():  # LSODA calls that a success
+        if not np.isfinite(inner).all():  # LSODA reports this as a success
             raise ComputationError(f"SciPy's {solver} failed in drive period {p + 1}: its state is no longer "
                                    f"finite, at tolerance {tolerance:g}.", "not-finite")
     counts = Counts()
@@ -110,7 +110,7 @@ def solve(scene: Scene, solver: str, tolerance: float, periods: int, samples: in
 
 def _period(motion: ScipyMotion, solver: Solver, tolerance: float, inner: np.ndarray, samples: int,
             located: bool) -> tuple[np.ndarray, np.ndarray]:
-    """One drive period from the state `inner` (2N,): the state at its end, and the displacements (samples, N).
+    """Solve one drive period from the state `inner` (2N,); return its last state and the displacements (samples, N).
 
     The start is not a sample. Raises `ComputationError` and `Cancelled`.
     """
@@ -150,9 +150,9 @@ def _period(motion: ScipyMotion, solver: Solver, tolerance: float, inner: np.nda
 
 
 def _first_event(motion: ScipyMotion, dense: Any, stepper: Any, before: np.ndarray) -> float:
-    """Scaled time at which the first contact opens or closes inside the step just taken; infinite where none does.
+    """Return the scaled time at which the first contact opens or closes within the last step; infinite if none does.
 
-    `dense` is the step's interpolant, `stepper` the solver after it, and `before` the state (2N,) where it began.
+    `dense` is the step's interpolant, `stepper` the solver after the step, and `before` the state (2N,) at its start.
     """
     from scipy.optimize import brentq
 

@@ -1,7 +1,7 @@
 """Work and precision: error against time for every method and setting, and the error of the reference.
 
-The reference is dop853 at its finest. A second one shares only the equations with it: SciPy's DOP853,
-restarted wherever a contact opens or closes. The difference of the two is the error with which the reference is known.
+The reference is dop853 at its finest setting. The second reference, SciPy's DOP853 restarted wherever a contact opens
+or closes, shares only the equations with it. The difference between the two measures the error of the reference.
 """
 
 from __future__ import annotations
@@ -24,21 +24,21 @@ from .measurements import Row, WorkPrecision
 from .naive import lesson
 from .scipy_methods import solve
 
-#: Drive periods run from rest; without a drive it is one time 1/f.
+#: Drive periods run from rest; without a drive, a single time 1/f.
 PERIODS = 10
-#: Samples a period at which displacements are compared.
+#: Samples per period at which displacements are compared.
 SAMPLES = 16
-#: The reference, and SciPy's solver with its tolerance that checks it.
+#: The reference, and the SciPy solver and tolerance that check it.
 _REFERENCE = dop853_setting(3e-15)
 _SECOND = ("DOP853", 1e-14)
 #: Time after which a setting is abandoned [s].
 _ROW_LIMIT = 8.0
 #: Time after which a reference is abandoned [s].
 _REFERENCE_LIMIT = 60.0
-#: A setting is repeated for this time [s]; the fastest run counts, so that neither a compiler nor another
-#: process is measured.
+#: A setting is repeated for this time [s]. The fastest run counts, so that neither compiling nor another process is
+#: measured.
 _ENOUGH = 0.05
-#: Most runs of one setting.
+#: Maximum number of runs of one setting.
 _MOST_RUNS = 9
 #: A setting that takes longer than this is run once [s].
 _SLOW = 0.5
@@ -48,7 +48,7 @@ _BRIEF = 0.1
 
 
 class Computed(NamedTuple):
-    """One computation: displacements in scaled units, evaluations, and the seconds it took."""
+    """One computation: displacements in scaled units, evaluations, and seconds."""
 
     displacement: np.ndarray
     rhs: int
@@ -61,12 +61,12 @@ Measure = Callable[[Stop], Computed]
 def work_precision(scene: Scene, stop: Stop | None = None, progress: Callable[[float], None] | None = None,
                    report: Callable[[WorkPrecision], None] | None = None,
                    pause: Callable[[], None] | None = None) -> WorkPrecision:
-    """Work-precision data of one scene: error against time for every method, measured on this machine.
+    """Measure work-precision data of one scene on this machine: error against time for every method.
 
     Parameters
     ----------
     scene : Scene
-        The chain, ten drive periods from rest.
+        The chain; it is run for ten drive periods from rest.
     stop : Stop, optional
         Ends the measurement when another thread sets it.
     progress : callable, optional
@@ -79,7 +79,7 @@ def work_precision(scene: Scene, stop: Stop | None = None, progress: Callable[[f
     Returns
     -------
     WorkPrecision
-        A row for every method and setting, and the reference they are compared with. Its keys in JSON are those of
+        A row for every method and setting, and the references with which they are compared. Its JSON keys are those of
         `granchain accuracy --json`.
 
     Raises
@@ -100,7 +100,7 @@ def work_precision(scene: Scene, stop: Stop | None = None, progress: Callable[[f
     settings = list(measured_settings())
     parts = 2 * len(settings) + 3
     comparison = WorkPrecision(scene, f"dop853 with located events, tolerance {_REFERENCE.tolerance:g}",
-                               f"SciPy DOP853, started anew at contact events, tolerance {_SECOND[1]:g}")
+                               f"SciPy DOP853, restarted at contact events, tolerance {_SECOND[1]:g}")
     for done, _ in enumerate(_measured_parts(comparison, settings, stop), start=1):
         if report is not None:
             report(comparison)
@@ -114,12 +114,12 @@ def work_precision(scene: Scene, stop: Stop | None = None, progress: Callable[[f
 
 
 def _measured_parts(comparison: WorkPrecision, settings: Sequence[MeasuredSetting], stop: Stop) -> Iterator[None]:
-    """Fill in the comparison; yields after each part.
+    """Fill in the comparison, yielding after each part.
 
     The parts are the reference, the lesson, each setting in two rounds, and the second reference.
     """
     scene = comparison.scene
-    compile_methods(scene.evolve(f=max(scene.f, 1000.0)))  # else a method's first row would include compiling
+    compile_methods(scene.evolve(f=max(scene.f, 1000.0)))  # otherwise a method's first row would include compiling
     exact = _within("The reference", stop, _REFERENCE_LIMIT, lambda stop: _ours(scene, _REFERENCE, stop)).displacement
     yield
     comparison.lesson = lesson(scene, stop)
@@ -141,7 +141,7 @@ def _measured_parts(comparison: WorkPrecision, settings: Sequence[MeasuredSettin
 def compile_methods(scene: Scene) -> None:
     """Compile every method's kernels for the scene's structure, or load them from the cache, by a short run."""
     for name in METHODS:
-        with contextlib.suppress(BadInput):  # a method that does not know this chain has rows that say so
+        with contextlib.suppress(BadInput):  # the rows of a method that cannot compute this chain say so
             Engine(scene, MethodSetting(name, tolerance=1e-3), 2).record(2)
 
 
@@ -161,7 +161,7 @@ def _row(scene: Scene, choice: MeasuredSetting, exact: np.ndarray, stop: Stop) -
 
 
 def _faster(before: Row, scene: Scene, choice: MeasuredSetting, exact: np.ndarray, stop: Stop) -> Row:
-    """The better of a brief row and its second measurement; a long one or a failure as it is."""
+    """Return the better of a brief row and its second measurement; a long row or a failure is returned unchanged."""
     if before.failure or before.wall_s > _BRIEF:
         return before
     again = _row(scene, choice, exact, stop)
@@ -169,7 +169,7 @@ def _faster(before: Row, scene: Scene, choice: MeasuredSetting, exact: np.ndarra
 
 
 def _fastest(stop: Stop, measure: Measure) -> Computed:
-    """The run with the least time of several; a slow setting is run once or twice."""
+    """Return the fastest of several runs; a slow setting is run only once or twice."""
     runs: list[Computed] = []
     while len(runs) < _MOST_RUNS:
         runs.append(_within("It", stop, _ROW_LIMIT, measure))
@@ -180,7 +180,7 @@ def _fastest(stop: Stop, measure: Measure) -> Computed:
 
 
 def _within(what: str, stop: Stop, seconds: float, measure: Measure) -> Computed:
-    """Run `measure` with a flag that is also set after `seconds`, which is then a failure and not a cancellation."""
+    """Run `measure` with a flag that is also set after `seconds`; that counts as a failure, not as a cancellation."""
     try:
         with Limited(stop, seconds) as limit:
             return measure(limit.stop)
@@ -195,7 +195,7 @@ def _periods(scene: Scene) -> int:
 
 
 def _ours(scene: Scene, setting: MethodSetting, stop: Stop) -> Computed:
-    """The motion by one of granchain's methods, and the processor time that it took."""
+    """Compute the motion with one of granchain's methods, and its processor time."""
     engine = Engine(scene, setting, SAMPLES, stop=stop)
     began = time.thread_time()
     moved = engine.record(_periods(scene) * SAMPLES).displacement
@@ -203,14 +203,16 @@ def _ours(scene: Scene, setting: MethodSetting, stop: Stop) -> Computed:
 
 
 def _scipys(scene: Scene, solver: str, tolerance: float, stop: Stop, located: bool = False) -> Computed:
-    """The motion by one of SciPy's solvers, and the processor time that it took."""
+    """Compute the motion with one of SciPy's solvers, and its processor time."""
     began = time.thread_time()
     moved, counts = solve(scene, solver, tolerance, _periods(scene), SAMPLES, stop, located)
     return Computed(moved, counts.rhs, time.thread_time() - began)
 
 
 def _distance(moved: np.ndarray, exact: np.ndarray) -> float:
-    """Largest displacement error over the largest displacement; infinite where the method did not reach the end."""
+    """Return the largest displacement error over the largest displacement; infinite if the method did not reach the
+    end.
+    """
     if not np.isfinite(moved).all():
         return float("inf")
     return relative_difference(exact, moved)

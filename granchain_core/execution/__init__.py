@@ -1,1 +1,1 @@
-"""Execution of long computations: processors, child processes, checkpoints, the stop flag, their time."""
+"""Execution of long computations: processors, child processes, checkpoints, stop flag and timing."""

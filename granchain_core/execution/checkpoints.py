@@ -1,8 +1,8 @@
-"""Checkpoints: finished pieces of a long computation on disk, so that a kill loses only unwritten ones.
+"""Checkpoints: finished pieces of a long computation on disk, so that a killed process loses only unwritten pieces.
 
-A folder beside the result, FILE.blocks, holds a head, which says what is computed, and blocks of finished pieces. Every
-file is written under a temporary name, synced and renamed, and carries the SHA-256 of its content: a block that is not
-whole is computed again.
+A folder next to the result, FILE.blocks, contains a head, which identifies the computation, and blocks of finished
+pieces. Every file is written under a temporary name, synced and renamed, and begins with the SHA-256 of its content, so
+that incomplete blocks are detected and computed again.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from typing import Any, Generic, TypeVar
 
 from ..errors import BadInput
 
-#: Pieces in one block at most.
+#: Maximum number of pieces in one block.
 BLOCK = 128
 #: Time after which a smaller block is written [s].
 SECONDS = 0.5
-#: Writing takes at most one over this of the time.
+#: Consecutive blocks are at least this many times their writing time apart.
 _SHARE = 20.0
-#: Ending of a block's file name.
+#: Suffix of a block's file name.
 _SUFFIX = ".block"
 #: Version of the format.
 _VERSION = 1
@@ -34,21 +34,21 @@ Piece = TypeVar("Piece")
 
 
 def folder_of(out: str | Path) -> Path:
-    """The folder of blocks that belongs to a result."""
+    """Return the folder of blocks of a result."""
     return Path(f"{out}.blocks")
 
 
 def digest_of(described: dict[str, Any]) -> str:
-    """Hash of a computation: of everything that changes its result."""
+    """Return the hash of a computation, formed from everything that affects its result."""
     return hashlib.sha256(json.dumps(described, sort_keys=True).encode()).hexdigest()[:16]
 
 
 class Kept(Generic[Piece]):
-    """The folder of one computation, which grows while it is computed; any thread may add to it.
+    """The folder of one computation, which grows as the computation proceeds. Any thread may add to it.
 
-    `kind` is what is computed, in a word; `digest` identifies it and `words` describe it to a person. `pack` turns
-    pieces into the content of a block. The folder is made for the first block. With `newest_only` a block replaces
-    those before it.
+    `kind` names what is computed in one word, `digest` identifies it and `words` describe it to a person. `pack` turns
+    pieces into the content of a block. The folder is created with the first block. With `newest_only`, a block replaces
+    all earlier ones.
     """
 
     def __init__(self, out: str | Path, kind: str, digest: str, words: str,
@@ -66,15 +66,15 @@ class Kept(Generic[Piece]):
         """Check the folder: an unfinished computation in it must be this one and be resumed. Raises `BadInput`."""
         try:
             if not self._head_file.exists():
-                self._clear()  # what has no head cannot be told apart from what belongs to another computation
+                self._clear()  # without a head, blocks may be another computation's
                 return
             if not resume:
-                raise BadInput(f"{self.folder} holds an unfinished {self._kind}; go on with --resume, or delete it.")
+                raise BadInput(f"{self.folder} holds an unfinished {self._kind}; continue with --resume, or delete it.")
             head = self._read(self._head_file.name)
         except OSError as problem:
             raise self._denied(problem) from None
         if head is None:
-            raise BadInput(f"{self._head_file} is damaged; delete {self.folder} to begin again.")
+            raise BadInput(f"{self._head_file} is damaged; delete {self.folder} to start again.")
         header = json.loads(head)
         if (header.get("version"), header.get("digest")) != (_VERSION, self._head["digest"]):
             words = header.get("words", "of another version")
@@ -83,16 +83,16 @@ class Kept(Generic[Piece]):
                            "folder.")
 
     def blocks(self) -> Iterator[bytes]:
-        """The contents of the blocks that are whole, in the order in which they were written."""
+        """Yield the contents of the intact blocks in the order in which they were written."""
         for path in sorted(self.folder.glob(f"*{_SUFFIX}")):
             content = self._read(path.name)
             if content is not None:
                 yield content
 
     def add(self, piece: Piece) -> None:
-        """Add a finished piece; it is written when a block is full, at the latest after `SECONDS`.
+        """Add a finished piece. It is written when a block is full, or after `SECONDS` at the latest.
 
-        Raises `BadInput` where that was impossible.
+        Raises `BadInput` if an earlier write failed.
         """
         with self._lock:
             if self._problem is not None:
@@ -111,11 +111,11 @@ class Kept(Generic[Piece]):
     def _write_later(self) -> None:
         try:
             self.write()
-        except BadInput as problem:  # for the thread that adds the next piece
+        except BadInput as problem:  # raised in the thread that adds the next piece
             self._problem = problem
 
     def write(self) -> None:
-        """Write the pieces added since the last block. Raises `BadInput` where that is impossible."""
+        """Write the pieces added since the last block. Raises `BadInput` if that is impossible."""
         with self._lock:
             self._later = None
             if not self._pieces:
@@ -136,7 +136,7 @@ class Kept(Generic[Piece]):
             self._due = now + max(SECONDS, _SHARE * (now - began))
 
     def remove(self) -> None:
-        """Remove the folder once the result is written: the head last, so that what is left belongs to it."""
+        """Remove the folder once the result is written, the head last, so that any blocks left over are identified."""
         try:
             with self._lock:
                 self._pieces.clear()
@@ -157,7 +157,7 @@ class Kept(Generic[Piece]):
             self._write(self._head_file.name, json.dumps(self._head).encode())
 
     def _clear(self, but: str = "") -> None:
-        """Remove all blocks but one, and files that a killed process was writing."""
+        """Remove all blocks except `but`, and files that a killed process was writing."""
         for path in [*self.folder.glob(f"*{_SUFFIX}"), *self.folder.glob(".*.tmp")]:
             if path.name != but:
                 path.unlink(missing_ok=True)
@@ -179,7 +179,7 @@ class Kept(Generic[Piece]):
         os.close(folder)
 
     def _read(self, name: str) -> bytes | None:
-        """The content of a file, None where its checksum does not fit."""
+        """Return the content of a file; None if its checksum does not match."""
         stored = (self.folder / name).read_bytes()
         digest, content = stored[:32], stored[32:]
         return content if hashlib.sha256(content).digest() == digest else None

@@ -1,7 +1,7 @@
 """Child processes that end with their parent, however it ends.
 
-A process pool's workers wait for work that never comes when their parent is killed. Those started here watch it. They
-ignore Ctrl-C, which a terminal sends to them as well: their parent decides.
+When its parent is killed, a process pool's worker keeps waiting for work that never comes. Workers started here watch
+their parent. They ignore Ctrl-C, which a terminal sends to them as well, because the parent decides when they end.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from multiprocessing import resource_tracker
 
-#: Between two looks at the parent, where there is no pipe that ends with it [s].
+#: Time between two checks of the parent where no pipe closes with it [s].
 _LOOK = 0.1
 
 
 def end_with_parent(parent: int) -> None:
-    """End this process as soon as the process `parent`, which started it, has ended."""
+    """End this process as soon as `parent`, the process that started it, has ended."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_watch, args=(parent,), daemon=True, name="parent").start()
 
@@ -39,7 +39,7 @@ def _watch(parent: int) -> None:
 
 @contextmanager
 def starting() -> Iterator[None]:
-    """Start processes in this block: they begin with Ctrl-C blocked, before they can ignore it."""
+    """Block Ctrl-C while processes are started, which inherit the block until they ignore Ctrl-C themselves."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
@@ -54,9 +54,10 @@ def starting() -> Iterator[None]:
 def _start_tracker() -> None:
     """Start Python's process that removes semaphores when all others have ended.
 
-    Started with the first process, it would unblock the signal. It need not complain where a signal has left it some.
+    If it were started along with the first process, it would unblock the signal. Its warning about semaphores that a
+    signal left behind is suppressed.
     """
-    sys.warnoptions.append("ignore:resource_tracker")  # handed on to the processes that are started
+    sys.warnoptions.append("ignore:resource_tracker")  # inherited by the tracker process
     try:
         resource_tracker.ensure_running()
     finally:
@@ -64,7 +65,7 @@ def _start_tracker() -> None:
 
 
 def pool(workers: int) -> ProcessPoolExecutor:
-    """A pool of such processes; give it its first work inside `starting`."""
+    """Return a pool of such processes; submit its first work inside `starting`."""
     _start_tracker()
     return ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("spawn"), initializer=end_with_parent,
                                initargs=(os.getpid(),))

@@ -6,12 +6,12 @@ import math
 import os
 from pathlib import Path
 
-#: Time that the processes of a container may use in each period, and that period, in microseconds (cgroup v2).
+#: File with the processor time that a container may use per period, and that period, both in microseconds (cgroup v2).
 _QUOTA = Path("/sys/fs/cgroup/cpu.max")
 
 
 def usable_cores() -> int:
-    """Processors for this process: those of its affinity, but no more than the quota of its container, rounded up.
+    """Return how many processors this process may use: those of its affinity, up to its container's quota, rounded up.
 
     At least 1.
     """
@@ -21,7 +21,7 @@ def usable_cores() -> int:
 
 
 def _quota() -> int | None:
-    """Processors that the container's quota allows; None where there is no quota."""
+    """Return the number of processors that the container's quota allows; None without a quota."""
     try:
         most, period = _QUOTA.read_text(encoding="ascii").split()
         return None if most == "max" else math.ceil(int(most) / int(period))

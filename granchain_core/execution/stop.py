@@ -1,4 +1,4 @@
-"""`Stop`: ends a computation before it is done."""
+"""`Stop`, which ends a computation before it is done."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from ..errors import Cancelled
 
 
 class Stop:
-    """Asks a computation in another thread to end; it then raises `Cancelled`, or returns what is finished.
+    """Asks a computation in another thread to end, which then raises `Cancelled` or returns its finished part.
 
     Attributes
     ----------
@@ -31,19 +31,19 @@ class Stop:
         self.flag = np.zeros(1, dtype=np.uint8)
 
     def set(self) -> None:
-        """Ask for the end; from any thread, and for good."""
+        """Ask the computation to end. May be called from any thread, and cannot be undone."""
         self.flag[0] = 1
 
     def pause(self) -> None:
-        """Called between parts of a computation, some hundredths of a second apart, by the thread that computes.
+        """Called by the computing thread between parts of a computation, a few hundredths of a second apart.
 
-        A hook: it does nothing here, and the server's flag gives up its turn in it.
+        This hook does nothing here; the server's stop flag overrides it to give up its turn.
         """
 
     def __bool__(self) -> bool:
         return bool(self.flag[0])
 
     def check(self) -> None:
-        """Raise `Cancelled` if the end has been asked for."""
+        """Raise `Cancelled` if the computation has been asked to end."""
         if self.flag[0]:
             raise Cancelled

@@ -1,4 +1,4 @@
-"""The time of a computation without that of compiling kernels, which happens once on a machine."""
+"""Timing of a computation without the compilation of kernels, which happens once per machine."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from numba.core import event
 
 
 class CompilerClock(event.Listener):
-    """Seconds that each thread has spent in Numba's compiler, waiting for it, or loading what it compiled before."""
+    """Counts the seconds that each thread has spent in Numba's compiler, waiting for it, or loading cached code."""
 
     def __init__(self, clock: Callable[[], float] = time.perf_counter) -> None:
         self._clock, self._own = clock, threading.local()
@@ -21,13 +21,13 @@ class CompilerClock(event.Listener):
         return getattr(self._own, "seconds", 0.0)
 
     def on_start(self, event: event.Event) -> None:
-        """The compiler starts; kernels that call others start it again meanwhile."""
+        """Note that the compiler starts; kernels that call other kernels start it again before it ends."""
         self._own.depth = getattr(self._own, "depth", 0) + 1
         if self._own.depth == 1:
             self._own.began = self._clock()
 
     def on_end(self, event: event.Event) -> None:
-        """The compiler is done."""
+        """Add the time if the outermost call of the compiler ends."""
         self._own.depth -= 1
         if self._own.depth == 0:
             self._own.seconds = self.seconds + self._clock() - self._own.began
@@ -38,7 +38,7 @@ event.register("numba:compiler_lock", COMPILER_CLOCK)
 
 
 class Stopwatch:
-    """Time of a computation in this thread, without that of compiling kernels at their first use."""
+    """Measures the time of a computation in this thread, without the compilation of kernels at their first use."""
 
     def __init__(self, clock: Callable[[], float] = time.perf_counter,
                  compiler: CompilerClock = COMPILER_CLOCK) -> None:
@@ -47,5 +47,5 @@ class Stopwatch:
 
     @property
     def seconds(self) -> float:
-        """Seconds since the stopwatch was made, without those of the compiler."""
+        """Seconds since the stopwatch was created, without those of the compiler."""
         return self._clock() - self._began - (self._compiler.seconds - self._compiled)

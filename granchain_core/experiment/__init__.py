@@ -1,4 +1,4 @@
-"""Measured data: a user's tables and series (docs/data.md), and the peaks and valleys that the paper states."""
+"""Measured data: the user's tables and series (docs/data.md), and the peaks and valleys stated in the paper."""
 
 from .columns import Convention
 from .compare import Difference, compared

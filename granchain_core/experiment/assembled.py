@@ -1,4 +1,4 @@
-"""From columns in SI to a measured curve, shaker amplitudes or a time series, checked row by row."""
+"""Assembly of columns in SI units into a measured curve, shaker amplitudes or a time series, checked row by row."""
 
 from __future__ import annotations
 
@@ -15,31 +15,31 @@ from .series import Series, Shaker
 
 _MOVES = ("velocity", "displacement", "acceleration")
 _IN_TIME = ("velocity", "displacement", "input_force", "output_force")
-#: Fewest samples of a series.
+#: Minimum number of samples in a series.
 _FEWEST = 8
 
 
 @dataclass(frozen=True)
 class Columns:
-    """Values in SI by quantity, each (columns, rows); the line of every row; the units that the file had."""
+    """Values in SI units by quantity, each (columns, rows), with the line of every row and the file's own units."""
 
     values: dict[str, np.ndarray]
     lines: Sequence[int]
     units: dict[str, str]
 
     def has(self, *names: str) -> bool:
-        """Whether all of these are there."""
+        """Return whether all of these quantities are present."""
         return all(name in self.values for name in names)
 
     def one(self, name: str) -> np.ndarray:
-        """The only column of a quantity."""
+        """Return the only column of a quantity."""
         columns = self.values[name]
         if len(columns) != 1:
             raise BadInput(f"{len(columns)} columns hold the {name.replace('_', ' ')}; name one of them.")
         return np.asarray(columns[0])
 
     def check(self, wrong: np.ndarray, sentence: str, values: np.ndarray | None = None) -> None:
-        """Refuse the first row in which something is wrong."""
+        """Raise `BadInput` for the first row in which `wrong` is true."""
         bad = np.flatnonzero(wrong)
         if len(bad):
             value = f" {values[bad[0]]:g}" if values is not None else ""
@@ -47,7 +47,7 @@ class Columns:
 
 
 def kinds_of(quantities: Sequence[str]) -> list[str]:
-    """Kinds of measurement that a file with these quantities can hold, the likeliest first."""
+    """Return the kinds of measurement that a file with these quantities can contain, the likeliest first."""
     present = set(quantities)
     kinds = []
     if "frequency" in present and "time" not in present:
@@ -59,7 +59,7 @@ def kinds_of(quantities: Sequence[str]) -> list[str]:
 
 
 def assembled(columns: Columns, kind: str, layout: str, source: str, note: str) -> Measured | Series | Shaker:
-    """The measurement of a kind. Raises `BadInput` naming the line."""
+    """Return the measurement of the given kind. Raises `BadInput` with the line number."""
     about = {"source": source, "note": note, "units": columns.units}
     named = ", ".join(f"{name.replace('_', ' ')} in {unit}" for name, unit in columns.units.items())
     layout = f"{named}; {layout}"

@@ -1,4 +1,4 @@
-"""The quantity and unit of each column of a file: from its titles, a reader's convention or the user's answers."""
+"""The quantity and unit of each column of a file, from its titles, a reader's convention or the user's answers."""
 
 from __future__ import annotations
 
@@ -15,34 +15,34 @@ from .question import Answers, Guess, Question, Unclear
 from .series import Series, Shaker
 from .units import QUANTITIES, UNITS, VOLTS, bracketed_unit, factor_of
 
-#: A curve whose header names no unit is in Hz and N, as README says. The unit is asked for where all frequencies would
-#: be below this [Hz], since they may be in kHz,
+#: A curve whose header names no unit is in Hz and N (see README). The user is asked for the unit if all frequencies
+#: would be below this [Hz], since they may be in kHz,
 _TOO_SLOW = 5.0
-#: or where one force would exceed this [N].
+#: or if a force would exceed this [N].
 _TOO_STRONG = 1e4
 _WORDS = {"curve": "a curve", "shaker": "shaker amplitudes", "series": "a series"}
 _NEEDS = {"curve": "a curve needs frequency and force",
           "shaker": "shaker amplitudes need frequency and displacement, velocity or acceleration",
           "series": "a series needs time and velocity, displacement, input force or output force"}
 
-#: Columns by quantity: (place from 0, unit or sensitivity).
+#: Columns by quantity: (index from 0, unit or sensitivity).
 Chosen = dict[str, list[tuple[int, str]]]
 
 
 @dataclass(frozen=True)
 class Convention:
-    """Assumptions of a reader where a file says nothing.
+    """Assumptions of a reader for anything that a file does not state.
 
     Attributes
     ----------
     untitled : tuple of str
-        What the columns of a file without titles hold, from the first on; a file may end earlier.
+        Quantities of the columns of a file without titles, from the first on. A file may have fewer columns.
     units : dict
-        The unit of a quantity whose title has none.
+        The unit of a quantity whose title gives none.
     insisted : tuple of str
-        Quantities whose titles may not name a unit other than the one in `units`.
+        Quantities whose titles may not give a unit other than the one in `units`.
     same : dict
-        Quantities that this reader takes for another one, such as a force for the input force.
+        Quantities that this reader takes to be another one, for example a force to be the input force.
     """
 
     untitled: tuple[str, ...] = ()
@@ -56,20 +56,20 @@ NO_CONVENTION = Convention()
 
 @dataclass(frozen=True)
 class Asked:
-    """The columns of a file with what is known of them, its first rows, and whether they have titles."""
+    """The columns of a file as far as they are known, its first rows, and whether the columns have titles."""
 
     guesses: Sequence[Guess]
     rows: tuple[tuple[int, tuple[str, ...]], ...]
     titled: bool
 
     def ask(self, reason: str) -> Unclear:
-        """The question for its columns."""
+        """Return the question about these columns."""
         return Unclear(Question(reason, ("columns",), tuple(self.guesses), self.rows))
 
 
 def chosen_columns(question: Asked, answers: Answers, wanted: Sequence[str], numeric: Sequence[int],
                    convention: Convention = NO_CONVENTION) -> Chosen:
-    """The columns that are read. Raises `Unclear` where titles, answers and convention do not settle it."""
+    """Return the columns to be read. Raises `Unclear` if titles, answers and convention leave them open."""
     if answers.columns:
         return answered(question, answers)
     if not question.titled and 2 <= len(question.guesses) == len(numeric) <= len(convention.untitled):
@@ -104,7 +104,7 @@ def chosen_columns(question: Asked, answers: Answers, wanted: Sequence[str], num
 
 
 def _needed(kind: str, chosen: Chosen) -> tuple[str, ...]:
-    """The quantities that a kind uses of those that there are."""
+    """Return those of the available quantities that this kind of measurement uses."""
     if kind == "curve":
         return ("frequency", "force" if "force" in chosen else "output_force", "error")
     if kind == "shaker":
@@ -121,7 +121,7 @@ def _check_places(name: str, places: list[tuple[int, str]], kind: str, question:
     for place, unit in places:
         title = question.guesses[place].title
         if unit in VOLTS:
-            raise question.ask(f"Column {title!r} is a voltage; its sensor's sensitivity is needed, as 2.248V/kN.")
+            raise question.ask(f"Column {title!r} is a voltage; its sensor's sensitivity is needed, e.g. 2.248V/kN.")
         strange = bracketed_unit(title)
         if not unit and strange:
             raise question.ask(f"The unit {strange[:20]!r} of column {title[:40]!r} is not known.")
@@ -138,7 +138,7 @@ def _missing(question: Asked, wanted: Sequence[str]) -> str:
 
 
 def answered(question: Asked, answers: Answers) -> Chosen:
-    """The columns that a person has named."""
+    """Return the columns that the user has named."""
     chosen: Chosen = {}
     for quantity, places in answers.columns.items():
         for number, unit in places:
@@ -152,7 +152,7 @@ def answered(question: Asked, answers: Answers) -> Chosen:
 
 def in_si(values: dict[str, np.ndarray], chosen: Chosen, question: Asked, lines: Sequence[int], layout: str,
           wanted: Sequence[str], source: str, note: str, asked_for: bool) -> Series | Shaker | Measured:
-    """The measurement of columns as they stand in the file."""
+    """Convert the columns from the file's units and assemble the measurement."""
     scaled, units = {}, {}
     for quantity, places in chosen.items():
         factors = []
@@ -176,7 +176,7 @@ def in_si(values: dict[str, np.ndarray], chosen: Chosen, question: Asked, lines:
 
 
 def _check_plausible(scaled: dict[str, np.ndarray], chosen: Chosen, question: Asked) -> None:
-    """Ask for units that no title names where Hz and N would be strange."""
+    """Ask for units that no title gives if Hz and N would be implausible."""
     for quantity, strange in (("frequency", f"all would be below {_TOO_SLOW:g} Hz"),
                               ("force", f"one would exceed {_TOO_STRONG:g} N")):
         if quantity not in chosen or chosen[quantity][0][1]:

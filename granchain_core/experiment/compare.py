@@ -1,4 +1,4 @@
-"""The difference between a measured and a computed curve, in newtons and, if known, in units of the errors."""
+"""The difference between a measured and a computed curve, in newtons and, if errors are stated, in units of these."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .misfit import Misfit, model_minus_measured
 class Difference:
     """Model − measured at every measured frequency [N]; NaN outside the computed curve.
 
-    `model` is the computed force there [N], on straight lines between its points.
+    `model` is the computed force at these frequencies [N], interpolated linearly.
     """
 
     measured: Measured
@@ -27,18 +27,18 @@ class Difference:
 
     @property
     def compared(self) -> np.ndarray:
-        """Points at which there is a model value."""
+        """Boolean mask of the points that have a model value."""
         return np.isfinite(self.model)
 
     @property
     def misfit(self) -> Misfit | None:
-        """The misfit at these frequencies; None where there are none."""
+        """The misfit at these frequencies; None if there are none."""
         compared = self.compared
         return Misfit.of(self.model[compared], self.measured.force[compared]) if compared.any() else None
 
     @property
     def sentence(self) -> str:
-        """The misfit in words, with its unit."""
+        """Return the misfit in words, with its unit."""
         compared, misfit = self.compared, self.misfit
         if misfit is None:
             return "No measured frequency lies on the computed curve."

@@ -1,11 +1,10 @@
 """The difference between the measured and the computed forces of a motion over time, in newtons.
 
 Equation   d(t_i) = F_model(t_i) − F_measured(t_i) at every measured time t_i of the motion,   rms = √⟨d²⟩
-           With sensors F_model is what they make of the model's force: plus m_tip ü_0, after their low-pass
-           (sensors.py)
-Note       Both clocks begin at the first sample, so nothing is moved in time. Nothing is subtracted either: a constant
-           offset of a sensor is a part of rms and largest difference, and stands alone in the mean. Without sensors
-           the model's force is not filtered, so what the real sensors do to a force is a part of the difference.
+           With sensors, F_model is the force that they would record: plus m_tip ü_0, after their low-pass (sensors.py)
+Note       Both clocks start at the first sample, so no record is shifted in time. Nothing is subtracted either: a
+           sensor's constant offset contributes to rms and largest difference, and shows separately in the mean. Without
+           sensors, the model's force is not filtered, so the effect of the real sensors is a part of the difference.
 """
 
 from __future__ import annotations
@@ -20,7 +19,7 @@ from .misfit import Misfit
 from .sensors import Sensors
 from .series import Series
 
-#: The forces that a series may have.
+#: The forces that a series may contain.
 FORCES = ("input_force", "output_force")
 
 
@@ -42,14 +41,14 @@ class Motion(Protocol):
 
 @dataclass(frozen=True)
 class ForceDifference(Misfit):
-    """Model − measured of one force over the measured times of a motion: a `Misfit` with its circumstances.
+    """Model − measured of one force over the measured times of a motion: a `Misfit` with details of the comparison.
 
     Attributes
     ----------
     force : str
         "input_force" or "output_force".
     compared, samples : int
-        Measured times of the motion, and all measured times.
+        Number of measured times within the motion, and of all measured times.
     at : float
         Time of the largest difference [s].
     word : str
@@ -64,29 +63,29 @@ class ForceDifference(Misfit):
 
     @property
     def sentence(self) -> str:
-        """The difference in words, with its unit."""
+        """Return the difference in words, with its unit."""
         return (f"{self.force.replace('_', ' ')}, model − {self.word} at {self.compared} of {self.samples} samples: "
                 f"{self.words(f'{self.at:.5g} s')}")
 
 
 def compared_forces(measured: Series, motion: Motion, sensors: Sensors | None = None) -> dict[str, ForceDifference]:
-    """Compare the forces of a series with those of a motion whose clock begins at the first sample.
+    """Compare the forces of a series with those of a motion whose clock starts at the first sample.
 
     Parameters
     ----------
     measured : Series
-        A series with an input force, an output force or both. It may be sampled in another way than the motion, and be
-        shorter or longer: each sample between the first and the last time of the motion counts.
+        A series with an input force, an output force or both. Its sampling may differ from the motion's, and it may be
+        shorter or longer: every sample between the first and the last time of the motion counts.
     motion : Driven or Run
-        The computed motion; between its times its forces are taken as straight lines.
+        The computed motion; its forces are interpolated linearly between its times.
     sensors : Sensors, optional
-        The sensors with which the forces were measured: their bandwidth and their tip mass are applied to the model's
-        forces. Noise and rate do not matter. Perfect sensors if not given.
+        The sensors with which the forces were measured. Their bandwidth and tip mass are applied to the model's forces;
+        noise and rate have no effect. The default is perfect sensors.
 
     Returns
     -------
     dict
-        A `ForceDifference` for each measured force, by its name; empty if no force was measured.
+        A `ForceDifference` for each measured force, by name; empty if no force was measured.
 
     Raises
     ------
@@ -122,7 +121,7 @@ def compared_forces(measured: Series, motion: Motion, sensors: Sensors | None = 
 
 
 def _acceleration(motion: Motion) -> np.ndarray:
-    """The driver's acceleration (T,) [m/s²] at the times of a motion that has a driver."""
+    """Return the driver's acceleration (T,) [m/s²] at the times of the motion, which must have a driver."""
     moved = getattr(motion, "drive_displacement", None)
     if moved is None:
         raise BadInput("A tip mass moves with the driver, and this motion has none.")

@@ -18,19 +18,19 @@ from .grid import Row
 
 #: The mark of a tar archive (POSIX.1-1988, ustar).
 _TAR_MARK = b"ustar"
-#: Place of the mark in the header [bytes].
+#: Offset of the mark in the header [bytes].
 _TAR_PLACE = 257
-#: Largest project within an archive [bytes]: an archive states sizes that its content need not have.
+#: Largest project within an archive [bytes], because the sizes that an archive states need not be true.
 _MOST_PROJECT = 20_000_000
 
 
 def is_project(content: bytes) -> bool:
-    """Whether a file begins as a JSON object or as an archive."""
+    """Return whether a file begins like a JSON object or an archive."""
     return content[:200].lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"{") or _is_archive(content)
 
 
 def is_two_headed(rows: list[Row]) -> bool:
-    """Whether a table has the digitiser's two header rows: names of datasets, and X, Y for each."""
+    """Return whether a table has the digitiser's two header rows: the datasets' names, and X, Y for each."""
     if len(rows) < 3:
         return False
     second = [one.upper() for one in rows[1][1] if one]
@@ -38,21 +38,21 @@ def is_two_headed(rows: list[Row]) -> bool:
 
 
 def datasets_in(content: bytes) -> dict[str, list[tuple[float, float]]]:
-    """The points (x, y) of every dataset by name. Raises `BadInput`."""
+    """Return the points (x, y) of every dataset by name. Raises `BadInput`."""
     try:
         project = json.loads(_archived(content) if _is_archive(content) else content.decode("utf-8-sig"))
     except (ValueError, RecursionError) as problem:
         reason = " ".join(str(problem).split())[:100]
         raise BadInput(f"The file looks like JSON but cannot be parsed: {reason}.") from None
     if not isinstance(project, dict):
-        raise BadInput("The file is JSON, but no project of WebPlotDigitizer.")
+        raise BadInput("The file is JSON, but not a WebPlotDigitizer project.")
     if "datasetColl" in project:
         return _checked(_listed(project, "datasetColl"), _types(_listed(project, "axesColl")))
     old = project.get("wpd")
     if isinstance(old, dict) and "dataSeries" in old:
         kind = old.get("axesType")
         return _checked(_listed(old, "dataSeries"), {None: kind if isinstance(kind, str) else "XYAxes"})
-    raise BadInput("The file is JSON, but no project of WebPlotDigitizer: it has no datasetColl.")
+    raise BadInput("The file is JSON, but not a WebPlotDigitizer project: it has no datasetColl.")
 
 
 def _is_archive(content: bytes) -> bool:
@@ -60,7 +60,7 @@ def _is_archive(content: bytes) -> bool:
 
 
 def _archived(content: bytes) -> bytes:
-    """The wpd.json in an archive."""
+    """Return the content of wpd.json in an archive."""
     try:
         with tarfile.open(fileobj=io.BytesIO(content), mode="r:") as archive:
             for member in archive:
@@ -69,13 +69,13 @@ def _archived(content: bytes) -> bytes:
                     return file.read() if file else b""
     except (tarfile.TarError, OSError, EOFError) as problem:
         raise BadInput(f"The file is a damaged archive: {problem}.") from None
-    raise BadInput("The file is an archive without a wpd.json, so no project of WebPlotDigitizer.")
+    raise BadInput("The file is an archive without a wpd.json, so it is not a WebPlotDigitizer project.")
 
 
 def _listed(project: dict[str, Any], name: str) -> list[dict[str, Any]]:
     listed = project.get(name, [])
     if not isinstance(listed, list) or not all(isinstance(one, dict) for one in listed):
-        raise BadInput(f"In the project {name} is not a list of objects.")
+        raise BadInput(f"In the project, {name} is not a list of objects.")
     return listed
 
 
@@ -103,6 +103,6 @@ def _checked(datasets: list[dict[str, Any]], types: dict[Any, Any]) -> dict[str,
 def _point(name: str, number: int, value: Any) -> tuple[float, float]:
     if not isinstance(value, list) or len(value) < 2 or not all(
             isinstance(one, (int, float)) and not isinstance(one, bool) and math.isfinite(one) for one in value[:2]):
-        raise BadInput(f"Point {number} of dataset {name!r} has no two finite numbers as its value; calibrate the axes "
-                       "and save the project again.")
+        raise BadInput(f"Point {number} of dataset {name!r} does not have two finite numbers as its value; calibrate "
+                       "the axes and save the project again.")
     return float(value[0]), float(value[1])

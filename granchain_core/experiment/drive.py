@@ -1,4 +1,4 @@
-"""The drive amplitude over the frequency, from a file of shaker amplitudes or a formula."""
+"""The drive amplitude over the frequency, from a file of shaker amplitudes or from a formula."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from .series import Shaker
 
 
 def read_amplitude(text: str, answers: Answers | None = None) -> Amplitude:
-    """The drive amplitude that `text` names: FILE, or a formula as constant-velocity=3e-3, in SI.
+    """Return the drive amplitude given by `text`: FILE, or a formula in SI units, for example constant-velocity=3e-3.
 
-    Raises `Unclear` for what has to be asked of a file, and `BadInput`.
+    Raises `Unclear` if the file is ambiguous, and `BadInput`.
     """
     name, equals, value = text.partition("=")
     if equals and name in FORMULAS:

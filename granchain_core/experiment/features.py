@@ -11,7 +11,7 @@ from ..scene import ASSETS
 
 @dataclass(frozen=True)
 class Feature:
-    """One stated feature: frequency [Hz], kind, number of repeated tests, where the text says so."""
+    """One stated feature: frequency [Hz], kind, number of repeated tests, and where the text states it."""
 
     frequency: float
     kind: str
@@ -21,12 +21,12 @@ class Feature:
 
     @property
     def is_resonance(self) -> bool:
-        """Whether the extremum is a peak (and not a valley)."""
+        """Whether the extremum is a peak (rather than a valley)."""
         return "anti" not in self.kind
 
 
 @functools.cache
 def stated_features() -> tuple[Feature, ...]:
-    """All features in assets/experiment/zhang-2016.toml, in ascending frequency."""
+    """Return all features in assets/experiment/zhang-2016.toml, in ascending frequency."""
     data = tomllib.loads((ASSETS / "experiment" / "zhang-2016.toml").read_text(encoding="utf-8"))
     return tuple(Feature(**f) for f in sorted(data["feature"], key=lambda f: f["frequency"]))

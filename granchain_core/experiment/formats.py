@@ -1,4 +1,4 @@
-"""The formats of measured data: how a file is recognised, and what reads it. docs/data.md has the same table."""
+"""The formats of measured data: how a file is recognised and read. docs/data.md has the same table."""
 
 from __future__ import annotations
 
@@ -28,18 +28,17 @@ class Reading:
     Attributes
     ----------
     answers : Answers
-        What a person has said of the file.
+        The user's answers about the file.
     wanted : sequence of str
         The kinds of measurement that the reader can use.
     source : str
-        What the file is called.
+        Name of the file.
     most_bytes, most_rows : int
-        The largest content, and the most lines of a text or numbers of a row of HDF5 or points of a dataset, that are
-        read.
+        Limits on the size of the content, and on lines of a text, numbers in a row of HDF5 or points of a dataset.
     convention : Convention
-        What the reader takes for granted.
+        The reader's assumptions.
     path : Path or None
-        Where the file is. Then the content that stands beside this may be only its beginning.
+        Location of the file. If it is given, the content passed along may be only the beginning of the file.
     """
 
     answers: Answers
@@ -60,11 +59,11 @@ class Format:
     name : str
         As in the table of docs/data.md.
     endings : tuple of str
-        How the names of such files end; the dashboard offers them. A file is recognised by its content alone.
+        Suffixes of such files, which the dashboard's file dialog offers. A file is recognised only by its content.
     recognises : callable
-        Whether a content (bytes) has this format.
+        Returns whether a content (bytes) has this format.
     read : callable
-        The measurement in a content, read as a `Reading` says. Raises `Unclear` and `BadInput`.
+        Returns the measurement in a content, read according to a `Reading`. Raises `Unclear` and `BadInput`.
     """
 
     name: str
@@ -74,7 +73,7 @@ class Format:
 
 
 def format_of(content: bytes) -> Format:
-    """The format of a file with this content: the first of the table that recognises it."""
+    """Return the format of a file with this content: the first in the table that recognises it."""
     return next(one for one in FORMATS if one.recognises(content))
 
 
@@ -101,7 +100,7 @@ def _read_text(content: bytes, reading: Reading) -> Series | Shaker | Measured:
     return read_text_table(grid, reading.answers, reading.wanted, reading.source, reading.convention)
 
 
-#: Text comes last, since it refuses what no format recognises and says what that is.
+#: Text comes last, because it refuses any content that no format recognises, and says what kind of file it is.
 TEXT = Format("table in text", (".csv", ".tsv", ".txt", ".dat"), lambda content: True, _read_text)
 FORMATS = (
     Format("HDF5 or netCDF-4", (".h5", ".hdf5", ".nc"), lambda content: content.startswith(SIGNATURE), _read_labelled),
@@ -112,7 +111,7 @@ FORMATS = (
 
 def _digitised(datasets: dict[str, list[tuple[float, float]]], reading: Reading,
                what: str) -> Series | Shaker | Measured:
-    """One dataset of x and y, whose quantities and units a digitiser does not know."""
+    """Read one dataset of x and y; the digitiser does not know their quantities and units."""
     answers, names = reading.answers, tuple(datasets)
     name = answers.dataset or (names[0] if len(names) == 1 else "")
     rows = [(i, (f"{x:.9g}", f"{y:.9g}")) for i, (x, y) in enumerate(datasets.get(name, datasets[names[0]]), 1)]
@@ -136,7 +135,7 @@ def _digitised(datasets: dict[str, list[tuple[float, float]]], reading: Reading,
 
 
 def _pairs(rows: list[Row], decimal: str) -> dict[str, list[tuple[float, float]]]:
-    """The datasets of a table with a row of names over pairs of X and Y; columns may end early."""
+    """Return the datasets of a table with a row of names above pairs of X and Y; columns may differ in length."""
     points_by_name: dict[str, list[tuple[float, float]]] = {}
     names = rows[0][1]
     for place in range(0, len(rows[1][1]) - 1, 2):

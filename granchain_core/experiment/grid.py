@@ -1,6 +1,6 @@
-"""From the bytes of a text file to numbered rows of fields: encoding, line ends, separator, comments.
+"""Parsing of a text file's bytes into numbered rows of fields: encoding, line ends, separator, comments.
 
-Nothing is decided about numbers but whether a field looks like one.
+Numbers are not parsed here; the module only decides whether a field looks like one.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ Row = tuple[int, list[str]]
 _BOMS = ((codecs.BOM_UTF8, "utf-8-sig", "UTF-8"), (codecs.BOM_UTF32_LE, "utf-32", "UTF-32"),
          (codecs.BOM_UTF32_BE, "utf-32", "UTF-32"), (codecs.BOM_UTF16_LE, "utf-16", "UTF-16"),
          (codecs.BOM_UTF16_BE, "utf-16", "UTF-16"))
-#: A number in any dialect: digits with points, commas, apostrophes and spaces among them, and an exponent.
+#: A number in any notation: digits mixed with points, commas, apostrophes and spaces, and an exponent.
 LIKE_A_NUMBER = re.compile(r"[+-]?(\d[\d.,'’ ]*|[.,]\d+)([eEdD][+-]?\d+)?", re.ASCII)
-#: Error values of spreadsheets, which begin with the sign of comments.
+#: Error values of spreadsheets, which begin with the comment character.
 _EXCEL_ERRORS = ("#DIV/0!", "#N/A", "#NAME?", "#NULL!", "#NUM!", "#REF!", "#VALUE!", "#WERT!", "#ZAHL!", "#NV")
 _COMMENT = ("#", "%", "//")
-#: First bytes of files that are no tables, and what to do with such a file.
+#: First bytes of files that are not tables, and what to do with such a file.
 _FOREIGN = ((b"PK\x03\x04", "is an Excel workbook (or another ZIP file); save the sheet as CSV"),
             (b"\xd0\xcf\x11\xe0", "is an old Excel workbook; save the sheet as CSV"),
             (b"CDF\x01", "is a netCDF file of the classic kind; convert it with nccopy -k netCDF-4"),
@@ -32,13 +32,13 @@ _FOREIGN = ((b"PK\x03\x04", "is an Excel workbook (or another ZIP file); save th
             (b"\x89PNG", "is a picture; read it with a digitiser such as WebPlotDigitizer"),
             (b"\xff\xd8\xff", "is a picture; read it with a digitiser such as WebPlotDigitizer"),
             (b"\x1f\x8b", "is compressed; unpack it first"))
-#: Rows that are looked at to find the separator.
+#: Number of rows examined to find the separator.
 _LOOKED_AT = 60
 
 
 @dataclass(frozen=True)
 class TextGrid:
-    """Rows of fields with their lines, the comments, and how the text was taken apart."""
+    """Rows of fields with their line numbers, the comments, and how the text was split."""
 
     rows: list[Row]
     comments: list[str]
@@ -47,13 +47,13 @@ class TextGrid:
 
 
 def check_size(content: bytes, most_bytes: int) -> None:
-    """Refuse a content that is too large; raises `BadInput`."""
+    """Raise `BadInput` if the content is too large."""
     if len(content) > most_bytes:
         raise BadInput(f"The file has {len(content)} bytes; at most {most_bytes} are read.")
 
 
 def grid_of(content: bytes, most_bytes: int, most_rows: int, separator: str | None = None) -> TextGrid:
-    """The fields of a text. Raises `BadInput`."""
+    """Return the fields of a text. Raises `BadInput`."""
     check_size(content, most_bytes)
     text, encoding = _decoded(content)
     lines = re.split(r"\r\n|\r|\n", text)
@@ -80,7 +80,7 @@ def grid_of(content: bytes, most_bytes: int, most_rows: int, separator: str | No
 
 
 def _decoded(content: bytes) -> tuple[str, str]:
-    """The text and the name of its encoding. Digits are the same bytes in all encodings of one byte a letter."""
+    """Return the text and the name of its encoding. Digits are the same bytes in all single-byte encodings."""
     for start, why in _FOREIGN:
         if content.startswith(start):
             raise BadInput(f"The file {why}.")
@@ -116,7 +116,7 @@ def _strictly(content: bytes, codec: str, name: str) -> str:
 
 
 def _separator(lines: list[tuple[int, str]]) -> str:
-    """The mark that divides the rows into equally many fields, of which at least two look like numbers."""
+    """Return the separator that splits the rows into equally many fields, at least two of which look like numbers."""
     looked = lines[:_LOOKED_AT]
     best: tuple[float, str] = (0.0, "")
     for mark in (";", "\t", "|", ",", " "):
@@ -130,7 +130,7 @@ def _separator(lines: list[tuple[int, str]]) -> str:
             best = (share, mark)
     if best[1]:
         return best[1]
-    for mark in (";", "\t", "|", ","):  # nothing is numbers: the first row at least has columns
+    for mark in (";", "\t", "|", ","):  # no field is a number, but the first row has columns
         if mark in looked[0][1]:
             return mark
     raise BadInput(f"Line {looked[0][0]}, {looked[0][1].strip()[:40]!r}, has no column separator; use a comma, a "
@@ -138,12 +138,12 @@ def _separator(lines: list[tuple[int, str]]) -> str:
 
 
 def _numbers(fields: list[str], mark: str) -> int:
-    """Number of fields that look like numbers; one that holds another separator than a decimal comma does not."""
+    """Count the fields that look like numbers; one that contains a separator other than a decimal comma does not."""
     return sum(bool(LIKE_A_NUMBER.fullmatch(one)) and not re.search(r"\d \d(?!\d\d)", one) for one in fields)
 
 
 def _split(lines: list[tuple[int, str]], mark: str, strict: bool = True) -> Iterator[Row]:
-    """The fields of every line; where quotation marks do not fit, `strict` refuses the line."""
+    """Yield the fields of every line; with `strict`, a line with unbalanced quotation marks is refused."""
     if mark == " ":
         for number, line in lines:
             yield number, [one.strip('"') for one in re.findall(r'"[^"]*"|\S+', line)]

@@ -19,9 +19,9 @@ from .units import heading, unit_named
 
 def read_labelled(path: str | Path, answers: Answers, wanted: Sequence[str], source: str,
                   most_rows: int = MOST_ROWS) -> Series | Shaker | Measured:
-    """The measurement in a file. Columns are its rows of equal length; of several lengths those with an axis count.
+    """Return the measurement in a file. Its columns are rows of equal length; of several lengths, the one with an axis.
 
-    HDF5 parses the file in a child process: the dashboard gets it from a visitor.
+    HDF5 parses the file in a child process, because in the dashboard it comes from a visitor.
 
     Raises `Unclear` and `BadInput`.
     """
@@ -50,7 +50,7 @@ def read_labelled(path: str | Path, answers: Answers, wanted: Sequence[str], sou
 
 
 def _rows(file: File, most_rows: int) -> tuple[dict[str, Stored], str]:
-    """The rows of numbers in a file, and why others are not read."""
+    """Return the rows of numbers in a file, and why others are not read."""
     datasets, refused = {}, ""
     for name in file.names():
         try:
@@ -68,7 +68,7 @@ def _rows(file: File, most_rows: int) -> tuple[dict[str, Stored], str]:
 
 
 def _group(stored: dict[str, Stored]) -> list[str]:
-    """Rows of one group and one length: those with an axis (frequency or time) first, then the most."""
+    """Return the rows of one group and length, preferably with an axis (frequency or time), otherwise the most rows."""
     groups: dict[tuple[str, int], list[str]] = {}
     for name, one in stored.items():
         groups.setdefault((name.rpartition("/")[0], one.shape[0]), []).append(name)
@@ -78,7 +78,7 @@ def _group(stored: dict[str, Stored]) -> list[str]:
 
 
 def _guess(place: int, name: str, units: str | None) -> Guess:
-    """Quantity and unit of a row by its name and its attribute `units`."""
+    """Guess the quantity and unit of a row from its name and its attribute `units`."""
     bare = name.rpartition("/")[2]
     if not units:
         quantity, unit, _ = heading(bare)
@@ -89,7 +89,7 @@ def _guess(place: int, name: str, units: str | None) -> Guess:
 
 
 def _note(file: File) -> str:
-    """The file's description of itself, in the attributes that the CF conventions name."""
+    """Return the file's description of itself, from the attributes of the CF conventions."""
     notes = []
     for name in ("title", "source", "comment", "history"):
         try:

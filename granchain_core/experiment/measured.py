@@ -1,4 +1,4 @@
-"""A measured resonance curve, and the mark that tells data of a virtual experiment from measured ones."""
+"""A measured resonance curve, and the mark that distinguishes data of a virtual experiment from measured data."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ import numpy as np
 
 #: Largest file with a measurement [bytes].
 MOST_BYTES = 50_000_000
-#: Most rows of a measured table.
+#: Largest number of rows in a measured table.
 MOST_ROWS = 1_000_000
-#: The words at the beginning of the note of data that were computed (granchain_core/virtual_experiment).
+#: First words of the note of computed data (granchain_core/virtual_experiment).
 VIRTUAL = "virtual experiment"
 
 
@@ -21,17 +21,17 @@ class Noted:
 
     @property
     def virtual(self) -> bool:
-        """Whether the data come from a virtual experiment; nothing was measured."""
+        """Whether the data come from a virtual experiment, in which nothing was measured."""
         return self.note.startswith(VIRTUAL)
 
     @property
     def word(self) -> str:
-        """Name of the data in keys of pictures: "measured", or "virtual experiment"."""
+        """Name of the data in the legends of pictures: "measured" or "virtual experiment"."""
         return VIRTUAL if self.virtual else "measured"
 
 
 def note_of(own: str, given: str) -> str:
-    """The note of data: the reader's, if `given`, in place of the file's `own` comments, unless these say virtual."""
+    """Return the note of data: the reader's if `given`, otherwise the file's `own`; both if the latter says virtual."""
     return f"{own}; {given}" if given and own.startswith(VIRTUAL) else given or own
 
 
@@ -39,9 +39,10 @@ def note_of(own: str, given: str) -> str:
 class Measured(Noted):
     """Measured points in ascending frequency [Hz]: force [N], error [N] or None; `understood` describes the file.
 
-    Where a frequency was measured several times, `force` is the mean, `low` and `high` are the extremes [N], `repeats`
-    is how many there were and `scatter` their standard deviation [N]; None where a reader does not look for repeats.
-    `units` are those of the file by quantity; `source` and `note` are its reader's and the file's own comments.
+    If a frequency was measured several times, `force` is the mean, `low` and `high` are the extremes [N], `repeats` is
+    the number of measurements and `scatter` their standard deviation [N]; all None if the reader does not look for
+    repeats. `units` are those of the file by quantity. `source` and `note` are the reader's and the file's own
+    comments.
     """
 
     frequency: np.ndarray
@@ -58,7 +59,7 @@ class Measured(Noted):
 
     @property
     def bars(self) -> tuple[np.ndarray, np.ndarray]:
-        """Lower and upper ends of error bars [N]: the error or, without one, the extremes of the repeats."""
+        """Return both ends of the error bars [N], from the error or, without one, from the extremes of the repeats."""
         if self.error is None and self.low is not None and self.high is not None:
             return self.low, self.high
         error = np.zeros(len(self.force)) if self.error is None else self.error

@@ -1,8 +1,8 @@
-"""The difference of a computed quantity from a measured one, as one set of numbers and one set of words.
+"""The difference between a computed and a measured quantity, with one definition of its numbers and their wording.
 
 Equation   d = model − measured,   rms = √⟨d²⟩,   relative = rms / √⟨measured²⟩
-Note       Signed as everywhere: positive where the model is larger. Where the measured quantity is 0 throughout there
-           is no relative difference.
+Note       The sign is the same everywhere: positive where the model is larger. If the measured quantity is 0
+           throughout, there is no relative difference.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import numpy as np
 
 
 def model_minus_measured(model: np.ndarray, measured: np.ndarray) -> np.ndarray:
-    """A residual as it is signed everywhere: positive where the model is larger."""
+    """Return the residual with the sign used everywhere: positive where the model is larger."""
     return np.asarray(model - measured)
 
 
@@ -30,7 +30,7 @@ class Misfit:
     signed : float
         The difference that has the largest modulus [N].
     index : int
-        Which datum has it.
+        Index of this datum.
     """
 
     rms: float
@@ -42,7 +42,7 @@ class Misfit:
 
     @classmethod
     def of(cls, model: np.ndarray, measured: np.ndarray) -> Misfit:
-        """The misfit of forces [N] that are all finite; at least one."""
+        """Return the misfit of at least one pair of forces [N], all finite."""
         gaps = model_minus_measured(model, measured)
         rms, size = (float(np.sqrt(np.mean(one**2))) for one in (gaps, measured))
         index = int(np.argmax(np.abs(gaps)))
@@ -50,7 +50,7 @@ class Misfit:
         return Misfit(rms, abs(signed), float(gaps.mean()), rms / size if size > 0.0 else None, signed, index)
 
     def words(self, place: str = "") -> str:
-        """The numbers in words; `place` says where the largest difference is."""
+        """Return the numbers in words; `place` says where the largest difference is."""
         share = "" if self.relative is None else f" ({100.0 * self.relative:.3g} %)"
         return (f"rms {self.rms:.3g} N{share}, mean {self.mean:+.3g} N, largest {self.signed:+.3g} N"
                 f"{f' at {place}' if place else ''}")

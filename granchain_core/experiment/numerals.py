@@ -1,7 +1,7 @@
-"""Numbers as spreadsheets write them: decimal point or comma, thousands separated by the other mark, ' or a space.
+"""Numbers as spreadsheets write them: decimal point or comma; thousands separated by the other mark, ' or a space.
 
-A file has one decimal mark. Which one is certain where only one reading fits every number and no number stands for
-another under the other reading; else it is asked.
+A file has one decimal mark. It is certain if only one reading fits every number and no number has a different value
+under the other reading. Otherwise the user is asked.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ _READ_AS = {
     "comma": re.compile(_WHOLE.replace("MARKS", "[. '’]") + rf"(?:,\d*)?{_EXPONENT}", re.ASCII),
 }
 _OTHER = {"point": ",", "comma": "."}
-#: A group of thousands beside nothing that shows that it is one.
+#: A number whose mark may separate thousands or decimals, with nothing to show which.
 _BARE_GROUP = re.compile(r"[+-]?[1-9]\d{0,2}[.,]\d{3}", re.ASCII)
 
 
 def number_as(field: str, decimal: str) -> float | None:
-    """The finite number that a field is with this decimal mark; None for anything else."""
+    """Return the finite number in a field, read with this decimal mark; None for anything else."""
     if not _READ_AS[decimal].fullmatch(field):
         return None
     plain = re.sub(rf"[{re.escape(_OTHER[decimal])} '’]", "", field).replace(",", ".")
@@ -33,9 +33,9 @@ def number_as(field: str, decimal: str) -> float | None:
 
 
 def decimal_mark(fields: Iterable[tuple[int, str]]) -> str | None:
-    """The decimal mark of numbers with their lines, None where it has to be asked.
+    """Return the decimal mark of numbers given with their lines; None if the user has to be asked.
 
-    Raises `BadInput` where neither reading fits all of them.
+    Raises `BadInput` if neither reading fits all of them.
     """
     marked = [(line, field) for line, field in fields
               if ("." in field or "," in field) and LIKE_A_NUMBER.fullmatch(field)]

@@ -10,7 +10,7 @@ from ..inputs.checks import unknown_name
 from ..inputs.text import whole_in
 from .units import QUANTITIES, SHORT, UNITS, VOLTS, factor_of
 
-#: Words for the marks between columns and before decimals.
+#: Words for the separators of columns and for the decimal marks.
 SEPARATORS = {"semicolon": ";", "tab": "\t", "comma": ",", "bar": "|", "space": " "}
 DECIMALS = ("point", "comma")
 _FIRST_ROWS = 5
@@ -18,10 +18,10 @@ _FIRST_ROWS = 5
 
 @dataclass(frozen=True)
 class Answers:
-    """A person's answers about a file.
+    """The user's answers about a file.
 
-    `columns` has for every quantity the columns that hold it, numbered from 1, with a unit or a sensitivity each;
-    columns that are not named are left out. `dataset` names one of a digitiser's.
+    `columns` maps every quantity to its columns, numbered from 1, each with a unit or a sensitivity; columns that are
+    not named are left out. `dataset` is the name of one of a digitiser's datasets.
     """
 
     columns: dict[str, tuple[tuple[int, str], ...]] = field(default_factory=dict)
@@ -34,7 +34,7 @@ class Answers:
 
 @dataclass(frozen=True)
 class Guess:
-    """A column: its number from 1, its title, and what it may hold (None where nothing is known)."""
+    """A column: its number from 1, its title, and its likely quantity and unit (None if unknown)."""
 
     number: int
     title: str
@@ -43,7 +43,7 @@ class Guess:
 
     @property
     def likely_unit(self) -> str:
-        """The unit or, where none is known, the SI unit of the quantity; for a voltage a sensitivity as an example."""
+        """The unit or, if it is unknown, the SI unit of the quantity; for a voltage, a sensitivity as an example."""
         usual = next(iter(UNITS[QUANTITIES[self.quantity or "frequency"]]))
         if self.unit in VOLTS:
             return f"2.248{self.unit}/{usual}"
@@ -62,7 +62,7 @@ class Question:
 
     @property
     def options(self) -> str:
-        """The options of a command line that would answer it."""
+        """The command-line options that would answer the question."""
         options = []
         if "dataset" in self.about:
             options.append(f"--dataset '{self.datasets[0]}'")
@@ -75,7 +75,7 @@ class Question:
 
     @property
     def table(self) -> str:
-        """The first rows with their lines and the columns' numbers, for a terminal."""
+        """Return the first rows with their line numbers and the columns' numbers, for a terminal."""
         head = [f"{one.number}: {one.title or '?'}"[:24] for one in self.columns]
         cells = [[f"line {line}", *(field[:24] for field in fields)] for line, fields in self.rows]
         rows = ([["", *head]] if head else []) + cells
@@ -84,7 +84,7 @@ class Question:
 
 
 class Unclear(BadInput):
-    """A file that can be read in more than one way; `question` has its first rows and what is asked.
+    """A file that can be read in more than one way; `question` has its first rows and the question for the user.
 
     Examples
     --------
@@ -97,20 +97,20 @@ class Unclear(BadInput):
     """
 
     def __init__(self, question: Question) -> None:
-        super().__init__(f"{question.reason} Say it by {question.options}.")
+        super().__init__(f"{question.reason} Specify it with {question.options}.")
         self.question = question
 
 
 def first_rows(rows: Sequence[tuple[int, Sequence[str]]]) -> tuple[tuple[int, tuple[str, ...]], ...]:
-    """The rows that a question shows."""
+    """Return the rows that a question shows."""
     return tuple((number, tuple(fields)) for number, fields in rows[:_FIRST_ROWS])
 
 
 def answers_of(columns: Sequence[str] = (), decimal: str | None = None, separator: str | None = None,
                dataset: str | None = None, source: str = "", note: str = "") -> Answers:
-    """Answers from words: columns as QUANTITY=COLUMN:UNIT, for example f=1:kHz or force=2:2.248V/kN.
+    """Parse answers: columns as QUANTITY=COLUMN:UNIT, for example f=1:kHz or force=2:2.248V/kN.
 
-    Raises `BadInput` for what is not one.
+    Raises `BadInput` for anything else.
     """
     columns_by_quantity: dict[str, tuple[tuple[int, str], ...]] = {}
     for text in columns:

@@ -1,6 +1,6 @@
-"""The reader of measured tables: it asks about ambiguous columns, units and numbers, and names the line of an error.
+"""The reader of measured tables, which asks about ambiguous columns, units and numbers, and gives the line of an error.
 
-`FORMATS` in formats.py has the formats that it knows.
+`FORMATS` in formats.py lists the formats that it knows.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ TABLE_KINDS = ("curve", "shaker", "series")
 
 def read_experiment(path: str | Path, answers: Answers | None = None,
                     wanted: Sequence[str] = TABLE_KINDS) -> Series | Shaker | Measured:
-    """The series, shaker amplitudes or resonance curve in a file.
+    """Return the series, shaker amplitudes or resonance curve in a file.
 
-    Raises `Unclear` for what has to be asked, and `BadInput` naming the line.
+    Raises `Unclear` if the user has to be asked, and `BadInput` with the line number.
     """
     path = Path(path)
     content = content_of(path)
@@ -40,17 +40,17 @@ def read_experiment(path: str | Path, answers: Answers | None = None,
 def read_data(content: bytes, answers: Answers | None = None, wanted: Sequence[str] = TABLE_KINDS,
               source: str = "", most_bytes: int = MOST_BYTES, most_rows: int = MOST_ROWS,
               convention: Convention = NO_CONVENTION) -> Series | Shaker | Measured:
-    """The measurement in the bytes of a file; `wanted` are the kinds that its reader can use.
+    """Return the measurement in the bytes of a file; `wanted` lists the kinds of measurement that the caller can use.
 
-    `most_rows` holds for every format, `convention` for tables in text. Raises `Unclear` for what has to
-    be asked, and `BadInput` naming the line.
+    `most_rows` applies to every format, `convention` only to text tables. Raises `Unclear` if the user has to be asked,
+    and `BadInput` with the line number.
     """
     reading = Reading(answers or Answers(), wanted, source, most_bytes, most_rows, convention)
     return format_of(content).read(content, reading)
 
 
 def content_of(path: Path) -> bytes:
-    """The first bytes of a file, one more than is allowed. Raises `BadInput` where it cannot be read."""
+    """Return the first bytes of a file, one more than is allowed. Raises `BadInput` if it cannot be read."""
     try:
         with open(path, "rb") as file:
             return file.read(MOST_BYTES + 1)

@@ -1,15 +1,15 @@
-"""Models of a rig's sensors: inertia of a tip, limited bandwidth, noise.
+"""Model of a rig's sensors: tip inertia, limited bandwidth, noise.
 
 Equation   F_in = F_0 + m_tip ü_0: the input sensor sits between the shaker and a tip of mass m_tip that touches bead 1
            H(f) = 1 / (1 + √2 i f/f_c − (f/f_c)²),   |H(f)|² = 1 / (1 + (f/f_c)⁴): Butterworth's low-pass of order 2
            y = 2 Re r z,   ż = p z + F,   p = 2π f_c (−1 + i)/√2,   r = (2π f_c)² / (p − p̄): the same over time
            normal noise, independent from sample to sample
 Source     Butterworth 1930; the rig: Zhang et al. 2016, figure 4
-Note       The low-pass is that of an analogue filter, for both forces. A force is known at nodes and is a straight line
-           between them, jumps included; for such a force z is advanced without error from node to node, at any
-           spacing. What is left is the error of the straight lines: a line at f of a force with f_s nodes a second has
-           an amplitude that is too small by (π f/f_s)²/3. The output sensor stands at the wall and does not move: its
-           mass adds nothing. A wall that yields is the scene's knob `wall`.
+Note       The low-pass is an analogue filter, the same for both forces. A force is given at nodes and is piecewise
+           linear, with jumps allowed. For such a force, z is advanced without error from node to node, at any spacing.
+           The only error left is that of linear interpolation: for a force with f_s nodes per second, the amplitude of
+           a line at f is too small by the fraction (π f/f_s)²/3. The output sensor is at the wall and does not move, so
+           its mass has no effect. A wall that yields is the scene's knob `wall`.
 """
 
 from __future__ import annotations
@@ -24,31 +24,31 @@ import numpy as np
 from ..errors import BadInput
 from ..inputs.checks import check_range
 
-#: Nodes of a force per time 1/f_c that the low-pass needs: straight lines between them make a line of the force at f_c
-#: too small by (π/128)²/3, which is 0.02 %.
+#: Nodes of a force per time 1/f_c that the low-pass needs: linear interpolation makes a line of the force at f_c too
+#: small by (π/128)²/3, which is 0.02 %.
 SAMPLES_PER_BANDWIDTH = 128
-#: Times 1/(2π f_c) after which the filter has forgotten how it began, to 1e-6.
+#: Times 1/(2π f_c) after which the filter has forgotten its initial state, to 1e-6.
 _FORGOTTEN = 20.0
-#: Exponents below which the second integral of the exponential is a series, since its formula cancels.
+#: Exponents below which the second integral of the exponential is computed as a series, since its formula cancels.
 _SMALL = 1e-3
 
 
 @dataclass(frozen=True)
 class Sensors:
-    """The sensors of a rig, in SI; by default perfect ones.
+    """The sensors of a rig, in SI units; perfect by default.
 
     Attributes
     ----------
     noise : float
         Standard deviation of a sample of either force [N].
     velocity_noise : float
-        That of a sample of the driver's velocity [m/s].
+        Standard deviation of a sample of the driver's velocity [m/s].
     bandwidth : float
         Frequency f_c at which a force is recorded with 1/√2 of its amplitude [Hz].
     tip_mass : float
         Mass that moves with the driver in front of the input sensor [kg].
     rate : float
-        Samples a second [Hz].
+        Samples per second [Hz].
 
     Examples
     --------
@@ -74,7 +74,7 @@ class Sensors:
 
     @property
     def words(self) -> str:
-        """The imperfections of the sensors, and their rate."""
+        """Description of the sensors' imperfections and rate."""
         parts = [(f"noise {self.noise:g} N", self.noise > 0.0),
                  (f"velocity noise {self.velocity_noise:g} m/s", self.velocity_noise > 0.0),
                  (f"bandwidth {self.bandwidth:g} Hz", math.isfinite(self.bandwidth)),
@@ -89,21 +89,21 @@ class Sensors:
 
     @property
     def lead_in(self) -> float:
-        """Time that a record has to begin earlier [s], so that the filter's own beginning is not in it."""
+        """Time by which a record has to start earlier [s], so that it does not contain the filter's own transient."""
         return _FORGOTTEN / (2.0 * math.pi * self.bandwidth)
 
     @property
     def shortest_pulse(self) -> float:
-        """Duration of the low-pass's answer to an impulse, up to its first zero [s]: no recorded pulse is shorter."""
+        """Duration of the low-pass's impulse response, up to its first zero [s]: no recorded pulse is shorter."""
         return 1.0 / (math.sqrt(2.0) * self.bandwidth)
 
     def response(self, frequency: float) -> complex:
-        """H(f): what the low-pass makes of a sine of frequency f [Hz], amplitude and phase."""
+        """Return H(f), the low-pass's complex gain (amplitude and phase) for a sine of frequency f [Hz]."""
         part = frequency / self.bandwidth
         return 1.0 / complex(1.0 - part * part, math.sqrt(2.0) * part)
 
     def passed(self, time: np.ndarray, force: np.ndarray, at: np.ndarray, periodic: bool = False) -> np.ndarray:
-        """A force after the low-pass, at the times `at` [s] from the first node on.
+        """Return a force after the low-pass, at the times `at` [s] from the first node on.
 
         Parameters
         ----------
@@ -128,7 +128,7 @@ class Sensors:
         kept, first, second = _integrals(pole, steps)
         added = steps * (force[:-1] * (first - second) + force[1:] * second)
         begin = -force[0] / pole
-        if periodic:  # z comes back after a period: it is the sum of what a period adds and what is kept of itself
+        if periodic:  # z repeats after a period: it equals what a period adds plus the part of itself that is kept
             once = _advanced(0.0, kept, added)[-1]
             begin = once / (1.0 - cmath.exp(pole * length))
         state = _advanced(begin, kept, added)
@@ -140,13 +140,15 @@ class Sensors:
 
 
 def _advanced(begin: complex, kept: np.ndarray, added: np.ndarray) -> np.ndarray:
-    """The states (T,) of z ← kept · z + added from `begin` on."""
+    """Return the states (T,) of z ← kept · z + added, starting at `begin`."""
     return np.array(list(accumulate(zip(kept.tolist(), added.tolist(), strict=True),
                                     lambda z, one: one[0] * z + one[1], initial=complex(begin))))
 
 
 def _integrals(pole: complex, step: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """e^q, (e^q − 1)/q and (e^q − 1 − q)/q² for q = pole · step: over a step h, z gains h (F_0 (φ₁ − φ₂) + F_1 φ₂)."""
+    """Return e^q, φ₁ = (e^q − 1)/q and φ₂ = (e^q − 1 − q)/q² for q = pole · step: over a step h, z gains h (F_0 (φ₁ −
+    φ₂) + F_1 φ₂).
+    """
     q = pole * step
     small = np.abs(q) < _SMALL
     safe = np.where(small, 1.0, q)

@@ -13,11 +13,11 @@ from .measured import Noted
 
 @dataclass(frozen=True, eq=False)
 class Series(Noted):
-    """A measured time series: time (T,) [s] from 0 and, where measured, velocity [m/s] and forces [N], else None.
+    """A measured time series: time (T,) [s] from 0, velocity [m/s] and forces [N]; None for those not measured.
 
-    `displacement` is the shaker's [m]. `units` are those of the file by quantity, `lines` (T,) its line of every sample
-    where it is a text, and `began` the time of the first sample in it [s]. `left_out` are the titles of columns of a
-    text that were not read.
+    `displacement` is the shaker's [m]. `units` are those of the file by quantity, and `began` is the time of the first
+    sample in the file [s]. For text files, `lines` (T,) has the line number of every sample, and `left_out` the titles
+    of columns that were not read.
     """
 
     time: np.ndarray

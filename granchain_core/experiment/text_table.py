@@ -1,4 +1,4 @@
-"""A table of text taken apart: lines before the header, titles, units and numbers."""
+"""Text tables: their lines before the header, titles, units and numbers."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _SEPARATED = {";": "semicolons", "\t": "tabs", ",": "commas", "|": "bars", " ": 
 
 @dataclass(frozen=True)
 class _Parts:
-    """A grid taken apart: lines before the header, titles (empty without a header), units row, data rows."""
+    """Parts of a grid: lines before the header, titles (empty without a header), units row, data rows."""
 
     preface: list[str]
     titles: list[str]
@@ -40,7 +40,7 @@ def _parted(grid: TextGrid) -> _Parts:
         numbers = next((i for i, (_, one) in enumerate(rows) if _has_number(one)), None)
         where = f"Line {rows[numbers][0]}" if numbers is not None else f"Line {rows[-1][0]}"
         raise BadInput(f"{where}: there are no two numbers side by side; expected frequency and force, or time and "
-                       "what was measured at it.")
+                       "a measured quantity.")
     head, data = rows[:begin], rows[begin:]
     units: list[str] = []
     titles: list[str] = []
@@ -53,13 +53,13 @@ def _parted(grid: TextGrid) -> _Parts:
         head = head[:-1]
     elif head and len(head[-1][1]) > 1 and any(heading(one)[0] for one in head[-1][1]):
         raise BadInput(f"Line {head[-1][0]} has {len(head[-1][1])} titles over the {width} columns of line "
-                       f"{data[0][0]}; decimal commas need another mark between columns, and words none.")
+                       f"{data[0][0]}; separate columns by a mark that occurs in no number or title.")
     preface = [" ".join(one for one in fields if one) for _, fields in head]
     return _Parts(preface, titles, units, _trimmed(data, width), line)
 
 
 def _width(rows: list[Row]) -> int:
-    """Number of fields that most rows with two numbers have."""
+    """Return the number of fields that most rows with two numbers have."""
     numeric = [len(fields) for _, fields in rows if _is_data(fields)]
     return max(set(numeric), key=numeric.count) if numeric else 0
 
@@ -69,19 +69,19 @@ def _is_data(fields: list[str]) -> bool:
 
 
 def _has_number(fields: list[str]) -> bool:
-    """Whether the fields may be a row of data in which something else than a number stands."""
+    """Return whether the fields may be a row of data in which one entry is not a number."""
     return any(LIKE_A_NUMBER.fullmatch(one) for one in fields)
 
 
 def _is_units(fields: list[str], width: int) -> bool:
-    """Whether a row holds nothing but units, in brackets or not, at least one of which is known."""
+    """Return whether a row contains only units, in brackets or not, at least one of which is known."""
     bare = [one.strip("[]() ") for one in fields]
     known, filled = sum(unit_named(one) is not None for one in bare), sum(bool(one) for one in bare)
     return len(fields) == width and (known >= 2 or known == filled == 1)
 
 
 def _header(fields: list[str], width: int) -> list[str]:
-    """The titles of the columns; words that spaces divided are joined with their units; empty if it is not a header."""
+    """Return the titles of the columns, rejoining units that a space separated; empty if this is not a header."""
     if len(fields) != width:
         joined: list[str] = []
         for title in fields:
@@ -100,7 +100,7 @@ def _wide(fields: list[str], width: int) -> list[str]:
 
 
 def _trimmed(data: list[Row], width: int) -> list[Row]:
-    """Rows without empty fields at their ends beyond the width, refusing rows that are too short or too long."""
+    """Remove empty fields beyond the width at the ends of rows; refuse rows that are too short or too long."""
     rows = []
     for number, fields in data:
         while len(fields) > width and not fields[-1]:
@@ -113,7 +113,7 @@ def _trimmed(data: list[Row], width: int) -> list[Row]:
 
 def read_text_table(grid: TextGrid, answers: Answers, wanted: Sequence[str], source: str,
                     convention: Convention = NO_CONVENTION) -> Series | Shaker | Measured:
-    """The measurement in a grid."""
+    """Return the measurement in a grid."""
     parts = _parted(grid)
     width = len(parts.data[0][1])
     guesses = [_guess(i, parts) for i in range(width)]
@@ -127,7 +127,7 @@ def read_text_table(grid: TextGrid, answers: Answers, wanted: Sequence[str], sou
     used = sorted({place for places in chosen.values() for place, _ in places})
     fields = [(number, row[place]) for number, row in parts.data for place in used]
     if grid.separator == "," and not any("," in field for _, field in fields):
-        decimal = answers.decimal or "point"  # who divides columns by commas does not write decimals with them
+        decimal = answers.decimal or "point"  # a comma cannot separate both columns and decimals
     else:
         decimal = decimal_of(fields, answers, question.rows, guesses)
     values: dict[str, np.ndarray] = {}
@@ -145,7 +145,7 @@ def read_text_table(grid: TextGrid, answers: Answers, wanted: Sequence[str], sou
 
 
 def _guess(place: int, parts: _Parts) -> Guess:
-    """Quantity and unit of a column by its title and the units row."""
+    """Guess the quantity and unit of a column from its title and the units row."""
     title = parts.titles[place] if parts.titles else ""
     quantity, unit, _ = heading(title) if title else (None, None, "")
     below = parts.units[place] if parts.units else ""
@@ -160,7 +160,7 @@ def _guess(place: int, parts: _Parts) -> Guess:
 
 def decimal_of(fields: list[tuple[int, str]], answers: Answers, rows: Sequence[tuple[int, tuple[str, ...]]] = (),
                guesses: Sequence[Guess] = ()) -> str:
-    """The decimal mark that fields with their lines have, or that was answered. Raises `Unclear` and `BadInput`."""
+    """Return the decimal mark of fields with their lines, or the user's answer. Raises `Unclear` and `BadInput`."""
     if answers.decimal is not None:
         return answers.decimal
     decimal = decimal_mark(fields)
@@ -179,7 +179,7 @@ def _shown(value: float | None) -> str:
 
 
 def number_of(line: int, field: str, decimal: str) -> float:
-    """The number of a field. Raises `BadInput` with its line."""
+    """Return the number in a field. Raises `BadInput` with its line."""
     value = number_as(field, decimal)
     if value is None:
         why = ("is empty where a number is expected" if not field else

@@ -1,4 +1,4 @@
-"""Quantities of a measurement, their units in SI, and the words of headers that name them."""
+"""Quantities of a measurement, their units in SI, and the words that denote them in headers."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ..inputs.text import number_in
 _GRAVITY = 9.80665
 #: Pound-force [N]: 0.45359237 kg times standard gravity.
 _POUND = 4.4482216152605
-#: Units by dimension, the SI unit first: factor to SI.
+#: Units by dimension, the SI unit first, with the factor to SI.
 UNITS: dict[str, dict[str, float]] = {
     "frequency": {"Hz": 1.0, "kHz": 1e3, "MHz": 1e6, "rad/s": 1.0 / (2.0 * math.pi), "rpm": 1.0 / 60.0},
     "time": {"s": 1.0, "ms": 1e-3, "µs": 1e-6},
@@ -22,7 +22,7 @@ UNITS: dict[str, dict[str, float]] = {
 }
 #: Units of voltage: a column in volts needs the sensitivity of its sensor.
 VOLTS = {"V": 1.0, "mV": 1e-3}
-#: Quantities of a file and the dimension of each. A curve's force is the largest output force.
+#: Quantities in a file, with the dimension of each. A curve's force is the largest output force.
 QUANTITIES = {"frequency": "frequency", "force": "force", "error": "force", "time": "time", "velocity": "velocity",
               "displacement": "displacement", "acceleration": "acceleration", "input_force": "force",
               "output_force": "force"}
@@ -42,7 +42,7 @@ _NAMES = {
     "input_force": "input_force in_force force_in f_in fin max_input_force",
     "output_force": "output_force out_force force_out f_out fout",
 }
-#: Names of quantities where the unit is one of force; of a shaker, input and output may be anything else.
+#: Names of quantities if the unit is one of force; in a shaker's file, "input" and "output" may mean anything else.
 _OF_FORCE = {"input": "input_force", "in": "input_force", "output": "output_force", "out": "output_force"}
 _QUANTITY = {name: quantity for quantity, names in _NAMES.items() for name in names.split()}
 _ALIASES = {
@@ -57,9 +57,9 @@ _SENSITIVITY = re.compile(r"([0-9.eE+-]+)\s*(m?V)\s*/\s*(.+)")
 
 
 def unit_named(text: str) -> str | None:
-    """The unit that a text means, in the spelling of `UNITS` or `VOLTS`; None where it is none of them.
+    """Return the unit that a text denotes, spelled as in `UNITS` or `VOLTS`; None if it is none of them.
 
-    Capitals count: mN is not MN, and a unit that is not known is never taken for its neighbour.
+    Case matters: mN is not MN, and an unknown unit is never taken for a similar one.
     """
     plain = re.sub(r"[\s·*]", "", text.replace("μ", "µ").replace("⁻¹", "-1").replace("⁻²", "-2").replace("^2", "2"))
     plain = plain.strip(".")
@@ -68,14 +68,14 @@ def unit_named(text: str) -> str | None:
 
 
 def dimension_of(unit: str) -> str:
-    """The dimension of a unit, "voltage" for volts."""
+    """Return the dimension of a unit, "voltage" for volts."""
     return next((name for name, units in UNITS.items() if unit in units), "voltage")
 
 
 def factor_of(quantity: str, unit: str, column: str | None = None) -> float | None:
-    """Factor that takes a column's numbers to SI; None where `unit` is no unit of the quantity.
+    """Return the factor that converts a column's numbers to SI; None if `unit` is not a unit of the quantity.
 
-    A sensitivity as 2.248V/kN is a unit as well: of a column in volts, or in `column` where its header says mV.
+    A sensitivity such as 2.248V/kN is accepted as a unit too, for a column in volts or in the unit `column` (e.g. mV).
     """
     factor = UNITS[QUANTITIES[quantity]].get(unit_named(unit) or "")
     sensitivity = _SENSITIVITY.fullmatch(unit.strip())
@@ -89,7 +89,7 @@ def factor_of(quantity: str, unit: str, column: str | None = None) -> float | No
 
 
 def heading(title: str) -> tuple[str | None, str | None, str]:
-    """Quantity and unit of a column by its title, None where the title does not say them, and its bare name.
+    """Return a column's quantity and unit from its title (None if the title does not give them), and its bare name.
 
     Understood: "Frequency (kHz)", "F [mN]", "f / Hz", "force, N", "time_ms", "velocity in mm/s", "Hz".
     """
@@ -110,7 +110,7 @@ def heading(title: str) -> tuple[str | None, str | None, str]:
 
 
 def bracketed_unit(title: str) -> str | None:
-    """The text in brackets at the end of a title, whether or not it is a unit that is known."""
+    """Return the text in brackets at the end of a title, whether or not it is a known unit."""
     match = re.fullmatch(r".*[(\[]\s*([^()\[\]]+?)\s*[)\]]\s*", title.strip())
     return match[1] if match else None
 
@@ -120,7 +120,7 @@ def _word(text: str) -> str:
 
 
 def _quantity(name: str, unit: str | None) -> str | None:
-    """The quantity of a name; a unit of another dimension decides between f and F, or contradicts it."""
+    """Return the quantity that a name denotes; a unit's dimension decides between f and F, or contradicts the name."""
     bare = name.strip()
     dimension = None if unit is None else dimension_of(unit)
     if bare in ("f", "F"):

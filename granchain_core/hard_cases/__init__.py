@@ -1,4 +1,4 @@
-"""The hard cases, in which solvers of granular chains fail silently: measurements, their limits and oracles."""
+"""The hard cases, in which solvers of granular chains fail silently, with measurements, limits and oracles."""
 
 from .case import Case, Check, Measurement, Picture, Trace, run_case
 from .table import CASES

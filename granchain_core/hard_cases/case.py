@@ -14,7 +14,7 @@ from ..errors import BadInput, ComputationError
 
 @dataclass(frozen=True)
 class Measurement:
-    """One number that must not be above its limit; NaN is above every limit. `note` is the finding in words."""
+    """One number that must not exceed its limit; NaN exceeds every limit. `note` states the finding in words."""
 
     name: str
     value: float
@@ -24,7 +24,7 @@ class Measurement:
 
 @dataclass(frozen=True, eq=False)
 class Trace:
-    """One line of a picture: its label and its values over the picture's x."""
+    """One curve of a picture: its label, and its values over the picture's x."""
 
     label: str
     values: np.ndarray
@@ -44,8 +44,8 @@ class Picture:
 class Case:
     """One hard case.
 
-    `measure(quick)` takes the measurements, with smaller counts if `quick`; `picture()` returns the lines drawn next to
-    them. `hard` and `naive` are one line each for a student: what is hard, and what a naive solver does there.
+    `measure(quick)` returns the measurements, with smaller counts if `quick`; `picture()` returns the curves shown next
+    to them. `hard` and `naive` are one line each for a student: what is hard, and what a naive solver does.
     """
 
     name: str
@@ -58,9 +58,9 @@ class Case:
 
 @dataclass(frozen=True)
 class Check:
-    """One measurement of a case with its verdict; `seconds` is the whole case's time, on its first row only.
+    """One measurement of a case with its verdict; `seconds` is the time of the whole case, given only in its first row.
 
-    `case` and `measurement` are their names.
+    `case` and `measurement` are the names of the two.
     """
 
     case: str
@@ -76,12 +76,12 @@ class Check:
 
     @property
     def title(self) -> str:
-        """Case and measurement, as the command line's JSON names the row."""
+        """Case and measurement: the row's name in the command line's JSON."""
         return f"{self.case}: {self.measurement}"
 
 
 def run_case(case: Case, quick: bool) -> list[Check]:
-    """Measure one case; a computation that fails or is refused is a row that did not pass, with its sentence."""
+    """Measure one case. A computation that fails or is refused becomes a failed row with the error message."""
     began = time.perf_counter()
     try:
         measurements = list(case.measure(quick))

@@ -1,4 +1,4 @@
-"""Chains that scenes cannot describe, for the hard cases: without a driver, with free ends, in scaled units."""
+"""Chains for the hard cases that scenes cannot describe: without a driver or with free ends, in scaled units."""
 
 from __future__ import annotations
 
@@ -22,17 +22,17 @@ from ..scene.state import State
 
 
 def contact_time(speed: float, reduced_mass: float = 0.5, stiffness: float = 1.0) -> float:
-    """Duration of a loss-free Hertz collision."""
+    """Return the duration of a loss-free Hertz collision."""
     return HERTZ_DURATION * (reduced_mass / stiffness) ** 0.4 * speed**-0.2
 
 
 class Bench:
-    """Equal or unequal beads between a driver and a wall that stand still, K = m = 1, carried by `method`.
+    """Equal or unequal beads between a driver and a wall, both at rest, integrated by `method`; K = m = 1.
 
-    `ends` are the stiffnesses of the first and the last contact: with a first one of 0 there is no driver at all, a
-    last one of 0 leaves that end free as long as `law`, which acts in every contact, has no strength.
-    `time` is the length of one record of `samples` samples; displacements start at zero. With `static` the contacts
-    have these overlaps at rest (negative ones are gaps).
+    `ends` are the stiffnesses of the first and the last contact. If the first is 0, there is no driver; if the last is
+    0, that end is free as long as the damping law `law`, which acts in every contact, has no strength. `time` is the
+    length of one record of `samples` samples; displacements start at zero. `static` gives the overlaps of the contacts
+    at rest (negative values are gaps).
     """
 
     def __init__(self, beads: int, time: float, samples: int, law: Any = None, ends: tuple[float, float] = (1.0, 1.0),
@@ -60,26 +60,26 @@ class Bench:
         self.time = np.linspace(0.0, time, samples + 1)
 
     def throw(self, velocity: Sequence[float] | np.ndarray, displacement: np.ndarray | None = None) -> None:
-        """Start with these scaled velocities, from zero displacement or the one given."""
+        """Start with these scaled velocities, from the given displacement or from zero."""
         scales = self.engine.scaled.scales
         start = np.zeros(len(self.masses)) if displacement is None else displacement
         self.engine.start(State(start * scales.length, np.array(velocity, dtype=float) * scales.velocity))
 
     def record(self, times: int = 1) -> Samples:
-        """Samples of `times` records in a row, scaled."""
+        """Return the scaled samples of `times` consecutive records."""
         return self.engine.record(self.samples * times)
 
     def overlaps(self, displacement: np.ndarray) -> np.ndarray:
-        """Overlap of every contact (T, N+1); negative where there is a gap."""
+        """Return the overlap of every contact (T, N+1); negative where there is a gap."""
         ends = np.zeros((len(displacement), 1))
         bodies = np.hstack([ends, displacement, ends])
         return bodies[:, :-1] - bodies[:, 1:] + self.static
 
     def energy(self, kept: Samples) -> np.ndarray:
-        """Kinetic and contact energy at every sample (T,)."""
+        """Return the kinetic plus contact energy at every sample (T,)."""
         pressed = np.maximum(self.overlaps(kept.displacement), 0.0)
         return 0.5 * (self.masses * kept.velocity**2).sum(axis=1) + 0.4 * (self.springs * pressed**2.5).sum(axis=1)
 
     def momentum(self, kept: Samples) -> np.ndarray:
-        """Momentum of all beads at every sample (T,)."""
+        """Return the momentum of all beads at every sample (T,)."""
         return (self.masses * kept.velocity).sum(axis=1)

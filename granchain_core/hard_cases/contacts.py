@@ -14,7 +14,7 @@ from .oracle import PlainChain, solved
 
 
 def brushed(quick: bool) -> list[Measurement]:
-    """Random grazing touches: none missed, none invented, and the times of contact exact."""
+    """Measure random grazing touches: none may be missed or invented, and the times of contact must be exact."""
     count = 4_000 if quick else 100_000
     driver, thrown = (touches.draw(count // 2, 11, True), touches.draw(count // 2, 12, False))
     by_driver, by_throw = touches.run(driver, True), touches.run(thrown, False)
@@ -30,7 +30,7 @@ def brushed(quick: bool) -> list[Measurement]:
 
 
 def brushed_picture() -> Picture:
-    """Fraction of touches that 100 and 1000 samples a period detect, over their depth, and ours."""
+    """Draw the fraction of touches that 100 and 1000 steps per period detect, over their depth, and granchain's."""
     depths = np.linspace(-7.0, -2.0, 21)
     cases = touches.draw(2_000, 5, True)
     cases[:, touches.DEPTH] = np.abs(cases[:, touches.DEPTH])
@@ -48,7 +48,7 @@ def brushed_picture() -> Picture:
 
 
 def mirrored(beads: int, time: float, tolerance: float = 1e-13, cut: bool = False) -> float:
-    """Loss of mirror symmetry of a chain that starts symmetric, at the end, in amplitudes."""
+    """Return the final deviation from mirror symmetry of a chain that starts symmetric, in amplitudes."""
     bench = Bench(beads, time, 64, LinearDashpot(0.1), tolerance=tolerance, cut=cut)
     velocity = np.random.default_rng(beads).uniform(-1.0, 1.0, beads)
     bench.throw(velocity - velocity[::-1])
@@ -57,11 +57,11 @@ def mirrored(beads: int, time: float, tolerance: float = 1e-13, cut: bool = Fals
 
 
 def reordered(beads: int, time: float, seed: int) -> float:
-    """Distance of a chain from its mirror image, in which simultaneous events come in reversed order.
+    """Return the distance between a chain and its mirror image, in which simultaneous events have the opposite order.
 
-    Velocities are drawn from three values, so that collisions coincide without the whole being symmetric. The two take
-    steps of their own, so their tolerance is far below the limit: at 1e-14 one of 200 chains was 1.2e-12 off, now
-    3e-14.
+    Velocities are drawn from three values, so that collisions coincide although the whole is not symmetric. The two
+    chains use different steps, so their tolerance is far below the limit: at 1e-14, one of 200 chains was 1.2e-12 off;
+    now it is 3e-14.
     """
     velocity = np.random.default_rng(seed).choice([-1.0, 0.0, 1.0], beads)
     velocity[0] = 1.0
@@ -74,7 +74,7 @@ def reordered(beads: int, time: float, seed: int) -> float:
 
 
 def at_once(quick: bool) -> list[Measurement]:
-    """Symmetry, and independence of the order of events."""
+    """Measure symmetry, and independence of the order of events."""
     symmetric, of_cut = (max(mirrored(n, 200.0 if quick else 2000.0, t, cut)
                              for n in (2, 5, 8) for t in (1e-5, 1e-9, 1e-13)) for cut in (False, True))
     order = max(reordered(n, 60.0, seed) for n in (5, 8) for seed in range(4 if quick else 100))
@@ -84,9 +84,9 @@ def at_once(quick: bool) -> list[Measurement]:
 
 
 def at_once_picture() -> Picture:
-    """The middle bead of a mirror-symmetric motion, which must not move: ours, and a loop over beads.
+    """Draw the middle bead of a mirror-symmetric motion, which must not move: granchain, and a loop over beads.
 
-    The step is a hundredth of the shortest contact.
+    The loop's step is a hundredth of the shortest contact.
     """
     beads, samples, stride, damping = 5, 200, 10, 0.02
     step = contact_time(2.0) / 100.0
@@ -106,7 +106,7 @@ def at_once_picture() -> Picture:
 
 
 def hertz(speed: float, stiffness: float) -> tuple[float, float, float]:
-    """Relative errors of duration, peak force and speed after a loss-free impact on the wall."""
+    """Return the relative errors of duration, peak force and rebound speed in a loss-free impact on the wall."""
     duration = HERTZ_DURATION * stiffness**-0.4 * speed**-0.2
     bench = Bench(1, 2.0 * duration, 4, ends=(0.0, stiffness), tolerance=1e-14)
     bench.throw([speed])
@@ -119,7 +119,7 @@ def hertz(speed: float, stiffness: float) -> tuple[float, float, float]:
 
 
 def unequal(mass: float) -> float:
-    """Error of the velocities after a bead has met one of `mass` times its own, against the two conservation laws."""
+    """Return the velocities' error by both conservation laws after a bead hits another of `mass` times its mass."""
     bench = Bench(2, 8.0 * (1.0 + mass) ** 0.4, 4, ends=(0.0, 0.0), inverse_mass=[1.0, 1.0 / mass], tolerance=1e-14)
     bench.throw([1.0, 0.0])
     velocities = bench.record().velocity[-1]
@@ -127,7 +127,7 @@ def unequal(mass: float) -> float:
 
 
 def free_pulse(beads: int, inverse_mass: list[float], time: float = 20.0) -> float:
-    """Error of a free chain whose first bead moves at first, against SciPy restarted at every event, in amplitudes."""
+    """Return the error of a free chain with a moving first bead, against SciPy restarted at events, in amplitudes."""
     bench = Bench(beads, time, 32, ends=(0.0, 0.0), inverse_mass=inverse_mass, tolerance=1e-14)
     bench.throw(np.eye(beads)[0])
     ours = bench.record().displacement
@@ -140,7 +140,7 @@ def free_pulse(beads: int, inverse_mass: list[float], time: float = 20.0) -> flo
 
 
 def solitary(beads: int) -> tuple[float, float]:
-    """Errors of the solitary wave's speed against its laws c F^{1/6} and c' v^{1/5}, half way down the chain."""
+    """Return the errors of the solitary wave's speed, halfway along the chain, by the laws c F^{1/6} and c' v^{1/5}."""
     bench = Bench(beads, float(beads), 64 * beads, ends=(0.0, 1.0), tolerance=1e-11)
     bench.throw(np.eye(beads)[0])
     kept = bench.record()
@@ -154,7 +154,7 @@ def solitary(beads: int) -> tuple[float, float]:
 
 
 def _top(time: np.ndarray, values: np.ndarray) -> tuple[float, float]:
-    """Time and height of a smooth pulse: the quartic through the highest sample and its neighbours."""
+    """Return time and height of a smooth pulse's peak, by the quartic through the highest sample and its neighbours."""
     i, h = int(values.argmax()), time[1] - time[0]
     fit = np.polynomial.Polynomial.fit(np.arange(-2.0, 3.0), values[i - 2 : i + 3], 4)
     roots = fit.deriv().roots()
@@ -164,7 +164,7 @@ def _top(time: np.ndarray, values: np.ndarray) -> tuple[float, float]:
 
 
 def collisions(quick: bool) -> list[Measurement]:
-    """Hertz collision, unequal beads, cradle, a bead on a chain, solitary wave."""
+    """Measure Hertz collision, unequal beads, cradle, a bead on a chain, and solitary wave."""
     duration, peak, loss = np.max([hertz(v, s) for v in (0.01, 1.0, 10.0) for s in (1.0, 2.0**1.5)], axis=0)
     masses = (1e-3, 0.5, 1.0, 3.0, 1e3)
     by_force, by_speed = solitary(60 if quick else 120)
@@ -182,7 +182,7 @@ def collisions(quick: bool) -> list[Measurement]:
 
 
 def collisions_picture() -> Picture:
-    """Velocities of a cradle's last two beads, and those by explicit Euler with 40 steps a contact."""
+    """Draw the velocities of a cradle's last two beads: granchain, and explicit Euler with 40 steps per contact."""
     beads, samples, stride = 5, 120, 2
     step = contact_time(1.0) / 40.0
     bench = Bench(beads, samples * stride * step, samples, ends=(1e-9, 1e-9))

@@ -1,4 +1,4 @@
-"""Hard cases of damping: dashpots too strong for explicit steps, and the restitution of every law."""
+"""Hard cases of damping: dashpots that are too strong for explicit steps, and the restitution of every law."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from .oracle import PlainChain, restitution, solved
 
 
 def overdamped(times: float, beads: int = 3) -> Scene:
-    """The rig with a multiple of its damping."""
+    """Return the rig with a multiple of its damping."""
     return scene("rig").evolve(N=beads, D=35.4 * times, f=160.0, accuracy=1e-7)
 
 
 def implicit_error(chosen: Scene, samples: int = 16) -> float:
-    """Largest difference of `run` from Radau in (u, v) in the first period from rest, over the largest displacement."""
+    """Return the error of `run` against Radau in (u, v), first period from rest, over the largest displacement."""
     ours = run(chosen, periods=0, record=1, samples=samples).displacement / chosen.A0
     chain = PlainChain.of(chosen)
     times = chain.period * np.arange(samples + 1) / samples
@@ -29,13 +29,13 @@ def implicit_error(chosen: Scene, samples: int = 16) -> float:
 
 
 def strong_damping(quick: bool) -> list[Measurement]:
-    """Error against an implicit reference from the rig's damping to 10^4 times it."""
+    """Measure the error against an implicit reference, from the rig's damping to 10^4 times that value."""
     return [Measurement(f"error at {t:g} times the rig's damping", implicit_error(overdamped(t)), 1e-6)
             for t in ((1e2, 1e4) if quick else (1.0, 1e1, 1e2, 1e3, 1e4))]
 
 
 def strong_damping_picture() -> Picture:
-    """First bead at 10^4 times the rig's damping: ours, and plain RK4 with two and a half times our step."""
+    """Draw the first bead at 10^4 times the rig's damping: granchain, and plain RK4 with 2.5 times its step."""
     chosen, samples = overdamped(1e4), 100
     ours = run(chosen, periods=0, record=1, samples=samples).displacement[:, 0] / chosen.A0
     naive, kept = Engine(chosen, MethodSetting("rk4-naive", 0.4), samples), np.full(samples + 1, np.nan)
@@ -52,7 +52,7 @@ def strong_damping_picture() -> Picture:
 # --- restitution ------------------------------------------------------------------------------------------
 
 def bounce(law: str, strength: float, cut: bool, speed: float = 1.0) -> float:
-    """Restitution of a bead that hits the wall."""
+    """Return the restitution of a bead that hits the wall."""
     time = 4.0 * contact_time(speed, 1.0) * (1.0 + 3.0 * strength)
     bench = Bench(1, time, 4, LAWS[law].slot(strength), ends=(0.0, 1.0), cut=cut, tolerance=1e-15)
     bench.throw([speed])
@@ -60,20 +60,20 @@ def bounce(law: str, strength: float, cut: bool, speed: float = 1.0) -> float:
 
 
 def tsuji_strength(e: float) -> float:
-    """The coefficient α with which Tsuji's law has restitution e at every speed: D = α √(m_eff K) δ_r^{1/4}.
+    """Return the coefficient α with which Tsuji's law has restitution e at every speed: D = α √(m_eff K) δ_r^{1/4}.
 
-    It is an exact solution as long as tension is allowed (Antypov & Elliott 2011).
+    The solution is exact as long as tension is allowed (Antypov & Elliott 2011).
     """
     loss = -np.log(e)
     return float(np.sqrt(5.0) * loss / np.hypot(np.pi, loss))
 
 
-#: Laws, and whether tension is cut, of the quick form: each pair is a structure to compile.
+#: Laws of the quick check, and whether tension is cut; each pair is a structure to compile.
 _QUICK = (("linear", False), ("linear", True), ("tsuji", False), ("kuwabara-kono", True))
 
 
 def restitutions(quick: bool) -> list[Measurement]:
-    """Restitution for the laws with tension allowed and cut, and the pull that the cut removes."""
+    """Measure the restitution of the laws with tension allowed and cut, and the pull that the cut removes."""
     strengths = (0.1, 0.6) if quick else (0.01, 0.1, 0.3, 0.6, 1.0)
     exact = max(abs(bounce("tsuji", tsuji_strength(e), False, v) - e)
                 for e in (0.95, 0.7, 0.3) for v in ((1.0,) if quick else (0.01, 1.0, 10.0)))
@@ -85,7 +85,7 @@ def restitutions(quick: bool) -> list[Measurement]:
 
 
 def _pulls(periods: int) -> list[Measurement]:
-    """The largest pull of any contact over the largest push, cut; and that without the cut there is one."""
+    """Measure the largest pull of any contact over the largest push with the cut, and the pull expected without it."""
     forces = {}
     for tension in ("cut", "allowed"):
         engine = Engine(scene("sec2").evolve(tension=tension, D=200.0), dop853_setting(1e-10), 256)
@@ -97,7 +97,7 @@ def _pulls(periods: int) -> list[Measurement]:
 
 
 def naive_bounce(strength: float, steps: float) -> float:
-    """The restitution with the dashpot by plain RK4 in (u, v), for a number of steps per contact."""
+    """Return the restitution with the linear dashpot from plain RK4 in (u, v), for a number of steps per contact."""
     h, state = contact_time(1.0, 1.0) / steps, np.array([-0.3 * contact_time(1.0, 1.0) / steps, 1.0])
 
     def slope(y: np.ndarray) -> np.ndarray:
@@ -112,7 +112,7 @@ def naive_bounce(strength: float, steps: float) -> float:
 
 
 def restitution_picture() -> Picture:
-    """Error of the restitution over steps in a contact: ours at its usual setting, and plain RK4."""
+    """Draw the error of the restitution over the steps per contact: granchain at its usual setting, and plain RK4."""
     steps = np.array([10.0, 20.0, 40.0, 80.0, 160.0, 320.0, 640.0])
     true = restitution("linear", 0.3, False)
     ours = max(1e-16, abs(bounce("linear", 0.3, False) - true))

@@ -1,4 +1,4 @@
-"""Hard cases of energy and momentum: conservation, and energy accounts that close."""
+"""Hard cases of energy and momentum: conservation laws, and energy accounts that balance."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ _BEADS = 7
 
 
 def _thrown(seed: int) -> np.ndarray:
-    """Velocities of a confined chain, the fastest bead at 1."""
+    """Return random velocities of a confined chain, with the fastest bead at 1."""
     velocity = np.random.default_rng(seed).uniform(-1.0, 1.0, _BEADS)
     return velocity / np.abs(velocity).max()
 
 
 def confined(times: int, method: str, refine: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
-    """Time in shortest contact times and relative change of energy of a chain between two walls, without damping."""
+    """Return the time (in shortest contact times) and relative energy change of an undamped chain between two walls."""
     shortest = contact_time(2.0)
     bench = Bench(_BEADS, 10.0 * shortest, 8, method=method, tolerance=1e-16, refine=refine)
     bench.throw(_thrown(1))
@@ -38,7 +38,7 @@ def confined(times: int, method: str, refine: float = 1.0) -> tuple[np.ndarray, 
 
 
 def free_chain(quick: bool) -> list[Measurement]:
-    """Energy, its trend and momentum without damping."""
+    """Measure energy, its trend, and momentum without damping."""
     times = 2_000 if quick else 10_000
     clock, change = confined(times, DOP853)
     slope = np.polyfit(clock, change, 1)[0]
@@ -55,7 +55,7 @@ def free_chain(quick: bool) -> list[Measurement]:
 
 
 def free_chain_picture() -> Picture:
-    """Change of energy: ours, a symplectic method's and plain RK4's with 40 steps in the shortest contact."""
+    """Draw the change of energy: granchain, a symplectic method and plain RK4, 40 steps per shortest contact."""
     clock, ours = confined(1_000, DOP853)
     finer = contact_time(2.0) / 40.0
     traces = [Trace("granchain, adaptive", ours)]
@@ -66,19 +66,19 @@ def free_chain_picture() -> Picture:
 
 # --- driven without damping -------------------------------------------------------------------------------
 
-#: Drive periods over which two methods measure the exponent of chaos from each start, and those of them at first that
-#: do not count: a neighbour turns into the leading direction.
+#: Drive periods over which two methods measure the Lyapunov exponent from each start, and how many of these are
+#: discarded at first, while a neighbour turns into the leading direction.
 _EXPONENT_PERIODS, _EXPONENT_TURNING = 70, 10
 
 
 
 def undamped(frequency: float = 340.0, beads: int = 11) -> Scene:
-    """Section 2's chain without any damping: a Hamiltonian system, which has no attractors."""
+    """Return section 2's chain without any damping: a Hamiltonian system, which has no attractors."""
     return scene("sec2").evolve(dissipation="none", f=frequency, N=beads)
 
 
 def driven_chaos(quick: bool) -> list[Measurement]:
-    """Energy account, Lyapunov exponent by two methods, and no periodic verdict."""
+    """Measure the energy account, the Lyapunov exponent by two methods, and the number of periodic verdicts."""
     engine = Engine(undamped(), dop853_setting(1e-14), 1, account=True)
     energy = engine.record(20 if quick else 100).energy
     stored, work, lost = (energy - energy[0]).T
@@ -97,11 +97,11 @@ def driven_chaos(quick: bool) -> list[Measurement]:
 
 
 def two_exponents(starts: int) -> tuple[float, tuple[float, float], tuple[float, float]]:
-    """The exponent of three undamped beads by a neighbour and by the map's derivative, each ± standard error.
+    """Return the exponent of three undamped beads from a neighbour and from the map's derivative, with standard errors.
 
-    Returns their difference over its standard error, and both. Both methods begin in each of several states of one
-    motion and follow it for `_EXPONENT_PERIODS`: what they differ by varies from state to state independently, while
-    blocks of one long motion would not be independent, since the drive heats an undamped chain slowly.
+    The first value returned is their difference over its standard error. Both methods start from each of several states
+    of one motion and follow it for `_EXPONENT_PERIODS`. Their differences are then independent from state to state,
+    whereas blocks of one long motion would not be independent, since the drive slowly heats an undamped chain.
     """
     chosen = undamped(1000.0, 3)
     stroboscopic_map = StroboscopicMap(chosen, 1)
@@ -117,7 +117,7 @@ def two_exponents(starts: int) -> tuple[float, tuple[float, float], tuple[float,
 
 
 def _growth_by_derivative(stroboscopic_map: StroboscopicMap, x: np.ndarray) -> np.ndarray:
-    """Logarithm of a tangent's growth in each of `_EXPONENT_PERIODS` periods from the state x."""
+    """Return the logarithm of a tangent's growth in each of `_EXPONENT_PERIODS` periods from the state x."""
     vector, growth = np.ones(len(x)) / np.sqrt(len(x)), np.zeros(_EXPONENT_PERIODS)
     for p in range(len(growth)):
         flow = stroboscopic_map(x)
@@ -132,7 +132,7 @@ def _mean(values: np.ndarray) -> tuple[float, float]:
 
 
 def chaos_picture() -> Picture:
-    """Strobes of the last bead: two starts that differ by 1e-12 of an amplitude diverge, and no period appears."""
+    """Draw strobes of the last bead: two starts that differ by 1e-12 of an amplitude diverge, and no period appears."""
     chosen = undamped(beads=5)
     traces = []
     for label, nudge in (("from rest", 0.0), ("from 1e-12 of an amplitude beside it", 1e-12)):
@@ -144,14 +144,14 @@ def chaos_picture() -> Picture:
 
 # --- drives that are switched -----------------------------------------------------------------------------
 
-#: Samples a period: Simpson's rule misses 0.0024 v^{3/2} h^{5/2} beside an opening or closing contact, 1e-11 here.
+#: Samples per period: Simpson's rule has an error of 0.0024 v^{3/2} h^{5/2} next to a contact event, 1e-11 here.
 _SWITCHED = 1 << 16
 
 
 def _segment(chosen: Scene, state: State, amplitude: float, samples: int) -> tuple[State, float, float]:
-    """Carry `state` through `samples` samples with the driver's amplitude times `amplitude`.
+    """Integrate from `state` over `samples` samples, with the driver's amplitude multiplied by `amplitude`.
 
-    Returns the state, the impulse of driver less wall [N s], the largest momentum on the way [N s].
+    Returns the final state, the impulse of driver minus wall [N s], and the largest momentum on the way [N s].
     """
     engine = Engine(chosen, dop853_setting(1e-13), _SWITCHED)
     slots = engine.scaled.slots
@@ -160,7 +160,7 @@ def _segment(chosen: Scene, state: State, amplitude: float, samples: int) -> tup
     phase = state.phase
     kept = engine.record(samples)
     scales, masses = engine.scaled.scales, chosen.masses()
-    # the dashpot's impulse is that of an exact derivative, D·[δ]_+, and only the elastic one needs a quadrature
+    # the dashpot's force is the exact derivative of D·[δ]_+, so only the elastic impulse needs a quadrature
     ends = np.maximum(np.stack([amplitude * np.sin(2.0 * np.pi * (phase + np.arange(samples + 1) / _SWITCHED))
                                 - kept.displacement[:, 0], kept.displacement[:, -1]]), 0.0)
     push = (ends[0] ** 1.5 - chosen.wall_factor * ends[1] ** 1.5) * scales.force
@@ -173,7 +173,7 @@ def _segment(chosen: Scene, state: State, amplitude: float, samples: int) -> tup
 
 
 def switched(steps: list[tuple[float, float, int]], phase: float, beads: int = 4) -> float:
-    """Change of momentum less impulse over the largest momentum, for a drive of (frequency, amplitude, samples)."""
+    """Return momentum gained minus impulse over the largest momentum, for drives (frequency, amplitude, samples)."""
     base = scene("sec2").evolve(N=beads, D=60.0)
     state, total, largest = State(np.zeros(beads), np.zeros(beads), phase), 0.0, 0.0
     for frequency, amplitude, samples in steps:
@@ -183,7 +183,7 @@ def switched(steps: list[tuple[float, float, int]], phase: float, beads: int = 4
 
 
 def jump_push() -> float:
-    """Momentum of a chain at rest after a jump of its driver by A0, less the dashpot's D·A0, over the latter."""
+    """Return the momentum of a chain at rest after its driver jumps by A0, minus the dashpot's D·A0, over D·A0."""
     chosen = scene("sec2").evolve(N=4)
     engine = Engine(chosen, dop853_setting(1e-12), 4)
     engine.grid_index = engine.grid // 4
@@ -193,7 +193,7 @@ def jump_push() -> float:
 
 
 def switched_drives(quick: bool) -> list[Measurement]:
-    """The push of a jump; impulse balance after a jump, of a ramp, a chirp and a stop."""
+    """Measure the push of a jump, and the impulse balance after a jump, a ramp, a chirp and a stop."""
     half, full, limit = _SWITCHED // 2, _SWITCHED, 1e-9
     count = 6 if quick else 40
     return [
@@ -206,15 +206,15 @@ def switched_drives(quick: bool) -> list[Measurement]:
 
 
 def switched_picture() -> Picture:
-    """Momentum of a chain whose driver jumps into it by its amplitude, and the same by plain RK4.
+    """Draw the momentum of a chain whose driver jumps into it by its amplitude: granchain, and plain RK4.
 
-    A jump is the limit of a fast push: the dashpot then transfers D times the jump, whatever the push's form. In this
-    limit w does not jump, and the velocity does.
+    A jump is the limit of a fast push, in which the dashpot transfers D times the jump, whatever the shape of the push.
+    In this limit, the velocity jumps and w does not.
     """
     chosen, beads, samples = scene("sec2").evolve(N=4), 4, 2000
     engine, shown = Engine(chosen, dop853_setting(1e-12), samples), 100
     engine.grid_index = engine.grid // 4
-    engine.evaluate()  # the driver is at its amplitude now; the beads, and w, are where they were
+    engine.evaluate()  # the driver is at its amplitude now; the beads, and w, have not changed
     ours = engine.record(shown).velocity.sum(axis=1)
     chain = PlainChain.of(chosen)
     naive = rk4(plain_slope(chain), np.zeros(2 * beads), 0.25 * chain.period, chain.period / samples / 2, 2 * shown)

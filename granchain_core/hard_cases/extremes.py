@@ -18,7 +18,7 @@ from .oracle import PlainChain, solved
 
 
 def scaled_difference(frequency: float, setting: MethodSetting, times: tuple[float, ...]) -> float:
-    """Distance of scaled motions of (sA0, s^{1/4} f, s^{1/4} D) from that of s = 1, over the largest displacement."""
+    """Return the distance of scaled motions (sA0, s^{1/4} f, s^{1/4} D) from s = 1, over the largest displacement."""
     base = scene("sec2").evolve(A0=1e-8, N=5, kappa=0.002, f=frequency)
     true = Engine(base, setting, 16).record(16).displacement
     worst = 0.0
@@ -29,7 +29,7 @@ def scaled_difference(frequency: float, setting: MethodSetting, times: tuple[flo
 
 
 def statics_error(frequency: float) -> float:
-    """Distance of a slowly driven, precompressed chain from statics over one period, in drive amplitudes.
+    """Return the distance of a slowly driven, precompressed chain from statics over one period, in drive amplitudes.
 
     All contacts carry the same force F, and their overlaps add up: Σ(F/K_c)^{2/3} = Σ(F0/K_c)^{2/3} + u_0.
     """
@@ -43,13 +43,13 @@ def statics_error(frequency: float) -> float:
 
 
 def lattice_error(ratio: float) -> float:
-    """Distance of a weakly driven, precompressed chain above its cut-off from the linear lattice, in drive amplitudes.
+    """Return a weakly driven, precompressed chain's distance from the linear lattice above its cut-off, in amplitudes.
 
-    The answer of the linear lattice is Im(U e^{iωt}) with U from a complex tridiagonal system.
+    The response of the linear lattice is Im(U e^{iωt}), with U from a complex tridiagonal system.
     """
     base = scene("sec2").evolve(F0=10.0, N=8, A0=1e-12, D=200.0, accuracy=1e-7)
     driven = base.evolve(f=min(1e6, ratio * cut_off(base)))
-    # the slowest mode decays at 400 a second; after 0.06 s e^-24 of it is left
+    # the slowest mode decays at a rate of 400/s; after 0.06 s, e^-24 of it is left
     motion = run(driven, periods=int(0.06 * driven.f), record=1, samples=16)
     omega = 2.0 * np.pi * driven.f
     slope = 1.5 * base.contact_stiffness() * np.sqrt(base.static_overlap()) + 1j * omega * base.D
@@ -59,7 +59,7 @@ def lattice_error(ratio: float) -> float:
 
 
 def cut_off(chosen: Scene) -> float:
-    """Highest frequency of small waves, (1/π)√(1.5 K^{2/3} F0^{1/3}/m) [Hz]."""
+    """Return the highest frequency of small waves, (1/π)√(1.5 K^{2/3} F0^{1/3}/m) [Hz]."""
     return float(np.sqrt(1.5 * chosen.K ** (2 / 3) * chosen.F0 ** (1 / 3) / chosen.bead(1).mass) / np.pi)
 
 
@@ -68,7 +68,7 @@ def _tridiagonal(slope: np.ndarray) -> np.ndarray:
 
 
 def amplitudes(quick: bool) -> list[Measurement]:
-    """Scaling, statics, and the stop band of the linear lattice: the frequencies above its cut-off."""
+    """Measure scaling, statics, and the linear lattice's stop band (frequencies above its cut-off)."""
     times = (1e-4, 1e4) if quick else tuple(10.0**p for p in range(-4, 5))
     drives = (340.0,) if quick else (10.0, 340.0, 3000.0, 1e5)
     fixed = max(scaled_difference(f, fixed_step_setting(2.0), times) for f in drives)
@@ -83,7 +83,7 @@ def amplitudes(quick: bool) -> list[Measurement]:
 
 
 def amplitudes_picture() -> Picture:
-    """First bead driven at 1e-9 m: ours, and SciPy's solve_ivp in metres with its default tolerances."""
+    """Draw the first bead driven at 1e-9 m: granchain, and SciPy's solve_ivp in metres with its default tolerances."""
     from scipy.integrate import solve_ivp
 
     chosen = scene("sec2").evolve(A0=1e-9, N=3, f=340.0 * 0.002**0.25)
@@ -108,7 +108,7 @@ def amplitudes_picture() -> Picture:
 
 
 def plain_error(chosen: Scene, samples: int = 16, method: str = "DOP853") -> float:
-    """Largest difference of `run` from SciPy restarted at every contact event, over the first period from rest."""
+    """Return the largest difference of `run` from SciPy restarted at every contact event, first period from rest."""
     ours = run(chosen, periods=0, record=1, samples=samples).displacement / chosen.A0
     chain = PlainChain.of(chosen)
     times = chain.period * np.arange(samples + 1) / samples
@@ -117,7 +117,7 @@ def plain_error(chosen: Scene, samples: int = 16, method: str = "DOP853") -> flo
 
 
 def long_chain_error(beads: int) -> float:
-    """Largest difference of two methods on a long chain with one moving front, over the largest displacement."""
+    """Return the difference of two methods on a long chain with one moving front, over the largest displacement."""
     chosen = scene("sec2").evolve(N=beads, f=3000.0)
     ours = Engine(chosen, fixed_step_setting(8.0), 8).record(16).displacement
     true = Engine(chosen, dop853_setting(1e-12), 8).record(16).displacement
@@ -125,7 +125,7 @@ def long_chain_error(beads: int) -> float:
 
 
 def cost_growth(beads: int, rounds: int = 5) -> float:
-    """Seconds per step and bead of a long chain over those of one of 100 beads; the fastest of alternating runs."""
+    """Return the time per step and bead of a long chain over that of 100 beads, by the fastest of alternating runs."""
     import time
 
     engines = [Engine(scene("sec2").evolve(N=n, f=3000.0, F0=1.0), fixed_step_setting(), 1) for n in (100, beads)]
@@ -140,7 +140,7 @@ def cost_growth(beads: int, rounds: int = 5) -> float:
 
 
 def unequal(masses: dict[int, float], beads: int, modulus: float = 1.0) -> Scene:
-    """Section 2's chain with some masses multiplied, and bead 2's Young's modulus by `modulus`."""
+    """Return section 2's chain with some masses multiplied, and bead 2's Young's modulus multiplied by `modulus`."""
     base = scene("sec2").evolve(N=beads, accuracy=1e-7, f=1000.0)
     steel = base.bead(1)
     changed = {place: replace(steel, mass=times * steel.mass) for place, times in masses.items()}
@@ -150,7 +150,7 @@ def unequal(masses: dict[int, float], beads: int, modulus: float = 1.0) -> Scene
 
 
 def sizes(quick: bool) -> list[Measurement]:
-    """One bead, two, ten thousand; a mass and a stiffness a million apart."""
+    """Measure chains of one, two and ten thousand beads, and masses and stiffnesses that differ a million-fold."""
     measurements = [
         Measurement("error of one bead", plain_error(scene("sec2").evolve(N=1, accuracy=1e-7)), 1e-6),
         Measurement("error of two beads", plain_error(scene("sec2").evolve(N=2, accuracy=1e-7)), 1e-6),
@@ -165,7 +165,7 @@ def sizes(quick: bool) -> list[Measurement]:
 
 
 def sizes_picture() -> Picture:
-    """A bead of a thousandth of the mass between two others: ours, and plain RK4 with one step for all beads."""
+    """Draw a bead of 1/1000 of the mass between two others: granchain, and plain RK4 with one step for all beads."""
     chosen, samples, stride, light = unequal({2: 1e-3}, 3), 200, 10, 1
     ours = run(chosen, periods=0, record=1, samples=samples).displacement / chosen.A0
     chain = PlainChain.of(chosen)
@@ -181,7 +181,7 @@ def sizes_picture() -> Picture:
 
 
 def mode(chosen: Scene, number: int) -> tuple[float, np.ndarray]:
-    """Frequency [Hz] and shape of a small wave about the pressed rest, from the linear eigenvalue problem."""
+    """Return frequency [Hz] and shape of a linear mode about the compressed rest state, by the eigenvalue problem."""
     slope = 1.5 * chosen.contact_stiffness() * np.sqrt(chosen.static_overlap())
     root = 1.0 / np.sqrt(chosen.masses())
     squares, shapes = np.linalg.eigh(root[:, None] * _tridiagonal(slope) * root)
@@ -190,7 +190,7 @@ def mode(chosen: Scene, number: int) -> tuple[float, np.ndarray]:
 
 
 def swing(chosen: Scene, frequency: float, shape: np.ndarray, amplitude: float, periods: int = 3) -> np.ndarray:
-    """Displacements over the amplitude (49, N) of a bead chain let go from a mode's shape, driver at rest, undamped."""
+    """Return the displacements over the amplitude (49, N) of an undamped chain released in a mode's shape."""
     engine = Engine(chosen.evolve(f=frequency / periods), dop853_setting(1e-15), 48)
     scaled = engine.scaled
     slots = scaled.slots._replace(driver=Harmonic(0.0, scaled.beta), dissipation=LinearDashpot(0.0))
@@ -200,14 +200,14 @@ def swing(chosen: Scene, frequency: float, shape: np.ndarray, amplitude: float, 
 
 
 def mode_errors(preload: float, number: int, beads: int = 11) -> tuple[float, float]:
-    """Error of a linear mode's swing with the even part of the answer taken off, and the growth of the whole
-    deviation from an amplitude to ten times it, less 10.
+    """Return the error of a linear mode's swing without its even part, and the growth of the whole deviation from one
+    amplitude to ten times that amplitude, minus 10.
 
-    The force's next term is quadratic: half the difference of a swing and its opposite is linear to a²; what is left
-    of a hundred-thousandth of the overlap is 1e-10.
+    The force's next term is quadratic, so half the difference between a swing and its opposite is linear up to a
+    relative error of a²: 1e-10 for an amplitude of a hundred-thousandth of the overlap.
     """
     chosen = scene("sec2").evolve(F0=preload, N=beads)
-    chosen = chosen.evolve(A0=min(1e-4, float(chosen.static_overlap()[0])))  # the unit of length, the driver rests
+    chosen = chosen.evolve(A0=min(1e-4, float(chosen.static_overlap()[0])))  # a unit of length: the driver rests
     frequency, shape = mode(chosen, number)
     static = float(chosen.static_overlap()[0])
     linear = np.outer(np.cos(2.0 * np.pi * 3.0 * np.arange(49) / 48.0), shape)
@@ -218,9 +218,9 @@ def mode_errors(preload: float, number: int, beads: int = 11) -> tuple[float, fl
 
 
 def cut_off_error(beads: int) -> float:
-    """Relative difference of the highest mode's frequency from f_c cos(π/2(N+1)).
+    """Return the relative difference between the highest mode's frequency and f_c cos(π/2(N+1)).
 
-    A wrong frequency shows as a phase at the end of the swing: the chain is let go in the formula's mode.
+    The chain is released in the formula's mode, and a wrong frequency shows as a phase at the end of the swing.
     """
     chosen = scene("sec2").evolve(F0=10.0, N=beads)
     place = np.arange(1, beads + 1)
@@ -229,14 +229,14 @@ def cut_off_error(beads: int) -> float:
     static, periods = float(chosen.static_overlap()[0]), 20
     ends = [swing(chosen, frequency, sign * shape, 1e-5 * static, periods)[-2:] for sign in (1.0, -1.0)]
     odd = 0.5 * (ends[0] - ends[1])
-    # 5/12 of the mode's period before the end: there cos is steep, and its argument is the phase
+    # 5/12 of the mode's period before the end, where cos is steep and its argument gives the phase
     projection = float(odd[0] @ shape / (shape @ shape))
     angle = 2.0 * np.pi * periods * 47.0 / 48.0
     return abs(projection - np.cos(angle)) / abs(np.sin(angle)) / angle
 
 
 def preloads(quick: bool) -> list[Measurement]:
-    """Linear modes from a millionth of a newton to ten thousand, and the limit without preload."""
+    """Measure linear modes at preloads from 1e-6 N to 1e4 N, and the limit without preload."""
     forces = (1e-6, 10.0) if quick else (1e-6, 1e-3, 1.0, 10.0, 100.0, 1e4)
     errors = [mode_errors(f, n) for f in forces for n in (0, 10)]
     weak = (1e-9,) if quick else (1e-12, 1e-9, 1e-6)
@@ -250,9 +250,9 @@ def preloads(quick: bool) -> list[Measurement]:
 
 
 def preloads_picture() -> Picture:
-    """Force in every contact of a chain that a wall presses: ours, and SciPy's least squares from touching beads.
+    """Draw the contact forces of a precompressed chain: granchain, and SciPy's least squares from touching beads.
 
-    A contact that is open has neither force nor slope, so that no step of the search closes it.
+    An open contact has neither force nor slope, so no step of the search closes it.
     """
     from scipy.optimize import root
 

@@ -1,4 +1,4 @@
-"""Hard cases of long runs: the drive keeps its phase, and interrupting a run changes nothing."""
+"""Hard cases of long runs: the drive must keep its phase, and interrupting a run must not change its result."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ _SAMPLES = 8
 
 
 def cut_and_gone_on(method: str, periods: int, cuts: int, seed: int = 1) -> float:
-    """Count of numbers in the final state and the samples that change if the run is cut at random places.
+    """Count the numbers in the final state and the samples that change if the run is cut at random places.
 
-    Each cut takes a checkpoint through its bytes into a new engine. Methods with fixed steps are cut at any sample,
-    those with error control at whole periods.
+    At each cut, a checkpoint is written to bytes and read into a new engine. Fixed-step methods are cut at any sample,
+    and methods with error control only at whole periods.
     """
     chosen = scene("sec2").evolve(f=1130.0, N=5)
     setting = MethodSetting(method, 1.0, 1e-9 if METHODS[method].error_control else 0.0)
@@ -36,12 +36,12 @@ def cut_and_gone_on(method: str, periods: int, cuts: int, seed: int = 1) -> floa
 
 
 def whole_part(engine: Engine, count: int) -> np.ndarray:
-    """Displacements of the next `count` samples."""
+    """Return the displacements of the next `count` samples."""
     return engine.record(count).displacement
 
 
 def uninterrupted(method: str, periods: int, cuts: int) -> float:
-    """Count of numbers in the final state that differ between one call over all periods and many calls."""
+    """Count the numbers in the final state that differ between one call over all periods and many calls."""
     chosen = scene("sec2").evolve(f=1130.0, N=5)
     setting = MethodSetting(method, 1.0, 1e-9 if METHODS[method].error_control else 0.0)
     uncut, pieces = Engine(chosen, setting, 1), Engine(chosen, setting, 1)
@@ -54,7 +54,7 @@ def uninterrupted(method: str, periods: int, cuts: int) -> float:
 
 
 def phase_error(periods: int) -> tuple[float, float]:
-    """Distance of the driver from sin 2πft after `periods` + 1 periods, in amplitudes; and periods miscounted."""
+    """Return the driver's distance from sin 2πft after `periods` + 1 periods, in amplitudes, and miscounted periods."""
     engine = Engine(scene("sec2").evolve(N=1, f=3000.0), fixed_step_setting(), _SAMPLES)
     left = periods
     while left > 0:
@@ -68,7 +68,7 @@ def phase_error(periods: int) -> tuple[float, float]:
 
 
 def long_runs(quick: bool) -> list[Measurement]:
-    """Drive phase and bitwise restarts."""
+    """Measure the drive phase and bitwise restarts."""
     periods = 20_000 if quick else 100_000
     phase, counted = phase_error(periods)
     measurements = [Measurement(f"drive phase after {periods} periods, in amplitudes", phase, 1e-15),
@@ -83,7 +83,7 @@ def long_runs(quick: bool) -> list[Measurement]:
 
 
 def long_runs_picture() -> Picture:
-    """Phase error of a clock that adds its steps, t += dt, in amplitudes of the driver, over the periods; ours is 0."""
+    """Draw the phase error of a clock that adds its steps, t += dt, in drive amplitudes; granchain's error is 0."""
     frequency, steps, marks = 340.0, 200, np.array([1, 10, 100, 1_000, 10_000, 50_000])
     dt = 1.0 / frequency / steps
     times = np.add.accumulate(np.full(int(marks[-1]) * steps, dt))[marks * steps - 1]

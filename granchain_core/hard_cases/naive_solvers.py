@@ -1,6 +1,6 @@
 """Naive solvers in plain Python, for pictures that compare them with granchain.
 
-They are correct except for what they omit: contacts are tested at the ends of steps, and no event is located.
+They are correct apart from their omissions: contacts are only tested at the ends of steps, and no event is located.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ Slope = Callable[[float, np.ndarray], np.ndarray]
 
 
 def plain_slope(chain: PlainChain, push: tuple[np.ndarray, np.ndarray] | None = None) -> Slope:
-    """(u̇, v̇) of a chain whose contacts act where their overlap is above zero.
+    """Return the function (u̇, v̇) of a chain whose contacts act where their overlap is above zero.
 
-    With a `push`, times and forces that are interpolated linearly, the first bead feels that force and no driver.
+    With a `push` (times and forces, interpolated linearly), that force acts on the first bead instead of the driver.
     """
     n, bodies, zeros = len(chain.masses), np.zeros((2, len(chain.masses) + 2)), np.zeros(len(chain.masses) + 1)
     static = np.vstack([chain.static, zeros])
@@ -37,7 +37,7 @@ def plain_slope(chain: PlainChain, push: tuple[np.ndarray, np.ndarray] | None = 
 
 
 def rk4(slope: Slope, start: np.ndarray, first: float, step: float, count: int) -> np.ndarray:
-    """States (count + 1, size) of the classical Runge–Kutta method; numbers that are not finite stay in."""
+    """Return the states (count + 1, size) of the classical Runge–Kutta method, including non-finite numbers."""
     out = np.empty((count + 1, len(start)))
     out[0] = start
     with np.errstate(all="ignore"):
@@ -51,7 +51,7 @@ def rk4(slope: Slope, start: np.ndarray, first: float, step: float, count: int) 
 
 
 def euler(slope: Slope, start: np.ndarray, step: float, count: int) -> np.ndarray:
-    """States (count + 1, size) of explicit Euler steps."""
+    """Return the states (count + 1, size) of explicit Euler steps."""
     out = np.empty((count + 1, len(start)))
     out[0] = start
     for i in range(count):
@@ -60,7 +60,7 @@ def euler(slope: Slope, start: np.ndarray, step: float, count: int) -> np.ndarra
 
 
 def one_after_another(velocity: np.ndarray, damping: float, step: float, count: int) -> np.ndarray:
-    """Displacements (count + 1, N) between two walls of a loop that moves each bead before it computes the next."""
+    """Return displacements (count + 1, N) between two walls; a loop moves each bead before it computes the next."""
     u, v = np.zeros(len(velocity) + 2), np.concatenate([[0.0], velocity, [0.0]])
     out = np.zeros((count + 1, len(velocity)))
 
@@ -77,10 +77,9 @@ def one_after_another(velocity: np.ndarray, damping: float, step: float, count: 
 
 
 def observed_apart(chain: PlainChain, start: np.ndarray, periods: int, rtol: float) -> np.ndarray:
-    """Largest difference (periods + 1,) between a chain and its observer, each a run of SciPy's solve_ivp of its own.
+    """Return the largest difference (periods + 1,) between a chain and its observer, two separate runs of solve_ivp.
 
-    Both start in `start`. The observer's first bead is driven by the force that the driver had in the first run, read
-    from a record of it.
+    Both start in `start`. The observer's first bead is driven by the driver's force recorded in the first run.
     """
     from scipy.integrate import solve_ivp
 

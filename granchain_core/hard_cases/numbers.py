@@ -1,4 +1,4 @@
-"""Hard cases of floating-point numbers: NaN and infinity anywhere, and slow subnormal numbers."""
+"""Hard cases of floating-point numbers: NaN and infinity in any place, and slow subnormal numbers."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _SAMPLES = 4
 
 
 class Injector:
-    """An engine into which a bad number is put at random, repeatedly, from the same state."""
+    """An engine into which bad numbers are injected at random, each time from the same state."""
 
     def __init__(self, method: str, beads: int) -> None:
         self.method, self.beads = method, beads
@@ -29,19 +29,19 @@ class Injector:
         self._kept = engine.y.copy(), engine.stepper.slope.copy(), engine.grid_index, engine.elapsed
 
     def restore(self) -> None:
-        """Restore that state."""
+        """Restore the common state."""
         engine = self.engine
         engine.y[:], engine.stepper.slope[:] = self._kept[0], self._kept[1]
         engine.grid_index, engine.elapsed = self._kept[2], self._kept[3]
         self.renew()
 
     def renew(self) -> None:
-        """New vectors from the present parameters, where the method has any."""
+        """Rebuild the method's vectors, if it has any, from the current parameters."""
         if not METHODS[self.method].error_control:
             self.engine.stepper.work = self.engine.stepper.work._replace(simd=self.engine.stepper.new_simd_workspace())
 
     def into_state(self, rng: np.random.Generator) -> bool:
-        """Whether a bad displacement or w of a bead is reported at once, with bead, time and step."""
+        """Return whether a bad displacement or w of a bead is reported at once, with bead, time and step."""
         row, bead = self.engine.scaled.bodies, int(rng.integers(1, self.beads + 1))
         self.engine.y[bead + row * int(rng.integers(2))] = _VALUES[rng.integers(3)]
         failure = self.outcome()
@@ -49,7 +49,7 @@ class Injector:
         return failure is not None and (failure.bead, failure.step) == (bead, step)
 
     def into_contact(self, rng: np.random.Generator) -> bool:
-        """Whether a contact whose stiffness is NaN is reported in the first step, at one of its two beads."""
+        """Return whether a contact whose stiffness is NaN is reported in the first step, at one of its two beads."""
         springs, contact = self.engine.scaled.slots.chain.stiffness, int(rng.integers(self.beads + 1))
         before, springs[contact] = springs[contact], np.nan
         self.renew()
@@ -61,10 +61,10 @@ class Injector:
         return failure is not None and failure.bead in beads and failure.step == step
 
     def into_drive(self, rng: np.random.Generator) -> bool:
-        """Whether a driver that is NaN in one step is reported in that step, at bead 1."""
+        """Return whether a driver that is NaN in one step is reported in that step, at bead 1."""
         n = self.engine.grid
         step = int(rng.integers(n // _SAMPLES))
-        row = 2 * step + 2  # the step's end; the middle of a split step is not read from this table
+        row = 2 * step + 2  # the end of the step; the middle of a split step is not read from this table
         before = self.engine.stepper.drive[row].copy()
         self.engine.stepper.drive[row] = np.nan
         failure = self.outcome()
@@ -72,7 +72,7 @@ class Injector:
         return failure is not None and (failure.bead, failure.step) == (1, step)
 
     def outcome(self) -> ComputationError | None:
-        """The typed failure of the next sample, None if it went unnoticed."""
+        """Return the failure of the next sample; None if the bad number went unnoticed."""
         try:
             self.engine.record(1)
         except ComputationError as found:
@@ -83,7 +83,7 @@ class Injector:
 
 
 def injections(count: int) -> tuple[int, int]:
-    """Injections made, and those not caught where they were made."""
+    """Return the number of injections, and of those that were not caught where they were made."""
     rng = np.random.default_rng(4)
     injectors = [Injector(m, n) for m in ("rk4", RK4_SPLIT, DOP853) for n in (1, 11)]
     wrong = 0
@@ -100,10 +100,11 @@ def injections(count: int) -> tuple[int, int]:
 
 
 def converging(method: str, beads: int, rounds: int) -> float:
-    """Time of an evaluation of the equations with subnormal numbers ahead of a wave, over that with ordinary ones.
+    """Return the time of an evaluation with subnormal numbers ahead of a wave, over that with normal numbers.
 
-    Displacements fall from 1 by the same factor from bead to bead, to 1e-310 or to 1e-280; alternating runs, the
-    fastest of each by the thread's own time. Per evaluation, because the two motions have contact events of their own.
+    Displacements fall from 1 by a constant factor from bead to bead, to 1e-310 or to 1e-280. Runs alternate, and the
+    fastest of each counts, by the thread's own time. Times are per evaluation of the equations, because the two motions
+    have different contact events.
     """
     best = [np.inf, np.inf]
     chosen = scene("sec2").evolve(N=beads, f=3000.0, k=1e4)
@@ -120,7 +121,7 @@ def converging(method: str, beads: int, rounds: int) -> float:
 
 
 def bad_numbers(quick: bool) -> list[Measurement]:
-    """Injections, and the cost of subnormal numbers."""
+    """Measure injections, and the cost of subnormal numbers."""
     count, wrong = injections(2_000 if quick else 100_000)
     measurements = [
         Measurement(f"of {count} injections of NaN or infinity not caught in their step", float(wrong), 0.0)]
@@ -132,7 +133,7 @@ def bad_numbers(quick: bool) -> list[Measurement]:
 
 
 def bad_numbers_picture() -> Picture:
-    """A NaN in bead 6 in a solver whose contacts test `if overlap > 0`: the other beads go on regardless."""
+    """Draw a NaN in bead 6 of a solver whose contacts test `if overlap > 0`: the other beads carry on regardless."""
     chosen = scene("sec2").evolve(N=11)
     engine = Engine(chosen, MethodSetting("rk4", 1.0), 100)
     ours = np.full(201, np.nan)
@@ -145,7 +146,7 @@ def bad_numbers_picture() -> Picture:
             u[6] = np.nan
         force = np.zeros(12)
         for c in range(12):
-            if u[c] - u[c + 1] > 0.0:  # the trap: a NaN is not above zero, and the chain is cut in silence
+            if u[c] - u[c + 1] > 0.0:  # the trap: a NaN is not above zero, and the chain is silently cut
                 force[c] = stiffness[c] * (u[c] - u[c + 1]) ** 1.5 + chosen.D * (v[c] - v[c + 1])
         v[1:12] += h * (force[:-1] - force[1:]) / mass
         u[1:12] += h * v[1:12]

@@ -1,8 +1,8 @@
-"""An independent solver to compare with: SciPy in (u, v), restarted at every contact event.
+"""An independent solver for comparison: SciPy in (u, v), restarted at every contact event.
 
-It shares no equation and no variable with the kernels: contacts are gated by flags that events flip, forces are those
+It shares no equation and no variable with the kernels. Contacts are gated by flags that events flip, forces are those
 of Zhang et al. 2016, eq. (1), in scaled units, and the method may be implicit (Radau) where a dashpot is stiff. Only
-`restitution` takes something from them: the exponents of the damping laws, so that it knows every law.
+`restitution` uses something from the kernels, the exponents of the damping laws, so that it covers every law.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from ..errors import ComputationError
 from ..scene import Scene
 from ..scene.laws import LAWS
 
-#: Fewest steps in a drive period, so that the driver is never stepped over.
+#: Minimum number of steps per drive period, so that no push of the driver is stepped over.
 _LEAST_STEPS = 16.0
-#: Most contact events of one solution; more are an accident.
+#: Largest number of contact events in one solution; more mean that something has gone wrong.
 _MOST_EVENTS = 20_000
 
 
@@ -27,9 +27,9 @@ _MOST_EVENTS = 20_000
 class PlainChain:
     """A chain in scaled units, with the linear dashpot only.
 
-    `masses` (N,); `springs`, the stiffness of contacts, and `static`, their overlap at rest, (N+1,); `damping` of a
-    contact, stiffness `foundation` of a bead's own spring, drive frequency `beta`. A state (2N,) has displacements,
-    then velocities; times are scaled.
+    `masses` has shape (N,); `springs`, the stiffnesses of the contacts, and `static`, their overlaps at rest, have
+    shape (N+1,). `damping` is that of a contact, `foundation` the stiffness of a bead's on-site spring, and `beta` the
+    drive frequency. A state (2N,) has displacements, then velocities; times are scaled.
     """
 
     masses: np.ndarray
@@ -41,7 +41,7 @@ class PlainChain:
 
     @classmethod
     def of(cls, scene: Scene) -> PlainChain:
-        """The plain form of a scene; its dissipation must be the linear dashpot or none, its tension allowed."""
+        """Return the plain form of a scene, whose damping must be the linear dashpot or none, with tension allowed."""
         mass, stiffness, length = scene.bead(1).mass, scene.K, scene.A0
         phi = np.sqrt(stiffness * np.sqrt(length) / mass)
         damping = scene.D / (mass * phi) if scene.dissipation == "linear" else 0.0
@@ -54,17 +54,17 @@ class PlainChain:
         return 2.0 * np.pi / self.beta
 
     def overlaps(self, t: float, state: np.ndarray) -> np.ndarray:
-        """Overlap of every contact (N+1,) at scaled time t in a state (2N,)."""
+        """Return the overlap of every contact (N+1,) at scaled time t in a state (2N,)."""
         bodies = np.concatenate([[np.sin(self.beta * t)], state[: len(self.masses)], [0.0]])
         return bodies[:-1] - bodies[1:] + self.static
 
     def rates(self, t: float, state: np.ndarray) -> np.ndarray:
-        """Rates of the overlaps (N + 1,)."""
+        """Return the rates of the overlaps (N + 1,)."""
         bodies = np.concatenate([[self.beta * np.cos(self.beta * t)], state[len(self.masses) :], [0.0]])
         return bodies[:-1] - bodies[1:]
 
     def slope(self, t: float, state: np.ndarray, closed: np.ndarray) -> np.ndarray:
-        """(u̇, v̇) (2N,) while exactly the contacts in `closed` (N+1,) of bool act."""
+        """Return (u̇, v̇) (2N,) while exactly the contacts in the boolean mask `closed` (N+1,) act."""
         n = len(self.masses)
         pressed = np.maximum(self.overlaps(t, state), 0.0)
         force = closed * (self.springs * pressed**1.5 + self.damping * self.rates(t, state))
@@ -73,9 +73,9 @@ class PlainChain:
 
 def solved(chain: PlainChain, start: np.ndarray, times: np.ndarray, method: str = "DOP853",
            rtol: float = 1e-12) -> np.ndarray:
-    """States (T, 2N) of displacements and velocities at scaled `times` (T,), from `start` (2N,) at the first time.
+    """Return displacements and velocities (T, 2N) at scaled `times` (T,), from `start` (2N,) at the first time.
 
-    Raises `ComputationError` where SciPy gives up.
+    Raises `ComputationError` if SciPy gives up.
     """
     from scipy.integrate import solve_ivp
 
@@ -115,10 +115,10 @@ def _event(chain: PlainChain, contact: int, closed: bool) -> Callable[[float, np
 
 
 def restitution(law: str, strength: float, cut: bool) -> float:
-    """Speed after over speed before of a bead of mass 1 that meets a contact K = 1 at speed 1.
+    """Return the restitution of a bead of mass 1 that meets a contact of K = 1 at speed 1.
 
-    The force is δ^{3/2} + strength·g(δ)·δ̇ with g = δ^a. Integrated in s = t^{1/4}, in which the motion after the
-    closing is smooth; with a cut it ends where the force does, else where the overlap does.
+    The force is δ^{3/2} + strength·g(δ)·δ̇ with g = δ^a. The motion is integrated in s = t^{1/4}, in which it is smooth
+    after the closing. With a tension cut, it ends when the force vanishes, otherwise when the overlap does.
     """
     from scipy.integrate import solve_ivp
 
@@ -134,8 +134,8 @@ def restitution(law: str, strength: float, cut: bool) -> float:
     def over(s: float, state: np.ndarray) -> float:
         if s < 1e-3:
             return 1.0
-        # the forces of Tsuji's and of Kuwabara and Kono's laws vanish with the overlap; divided by d^power the end of a
-        # force is a simple root
+        # the forces of Tsuji's and of Kuwabara and Kono's laws vanish with the overlap; divided by d^power, a force has
+        # a simple root at its end
         d = max(state[0], 0.0)
         return float(d ** (1.5 - power) + strength * state[1]) if cut and state[1] < 0.0 else float(state[0])
 

@@ -1,4 +1,4 @@
-"""Hard cases of the long run: settled or not, which attractor, and drift."""
+"""Hard cases of long-term behaviour: settled or not, which attractor, and drift."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ from .case import Measurement, Picture, Trace
 from .naive_solvers import observed_apart
 from .oracle import PlainChain
 
-#: Strobes of a normal form.
+#: Number of strobes of a normal form.
 _STROBES = 400
-#: Beads whose states hold it: half its dimension.
+#: Number of beads whose states represent it: half its dimension.
 _BEADS = 3
 
 
 def normal_form(rng: np.random.Generator, kind: str, closeness: float,
                 count: int) -> tuple[np.ndarray, np.ndarray, int]:
-    """Strobes (count + 1, 2, N) of a map near a bifurcation, its orbit (q, 2, N) and the orbit's period q.
+    """Return strobes (count + 1, 2, N) of a map near a bifurcation, its orbit (q, 2, N) and the orbit's period q.
 
-    In the coordinates of the normal form one direction has the multiplier 1 − ε (fold) or −(1 − ε) (period doubling),
-    or two have the pair (1 − ε)e^{±iθ} (Neimark–Sacker), with a quadratic or cubic term; the others decay
-    fast. A random linear change of coordinates hides it, and rounding of 1e-15 is added. Beyond a period doubling
-    ("doubled") the orbit has period 2.
+    In normal form coordinates, one direction has the multiplier 1 − ε (fold) or −(1 − ε) (period doubling), or two have
+    the pair (1 − ε)e^{±iθ} (Neimark–Sacker), with a quadratic or cubic term; the others decay fast. A random linear
+    change of coordinates conceals the normal form, and rounding errors of 1e-15 are added. Beyond a period doubling
+    ("doubled"), the orbit has period 2.
     """
     size = 2 * _BEADS
     basis = np.linalg.qr(rng.standard_normal((size, size)))[0] + 0.2 * rng.standard_normal((size, size))
@@ -54,21 +54,22 @@ def normal_form(rng: np.random.Generator, kind: str, closeness: float,
             z = turn * (x[0] + 1j * x[1]) * (1.0 - 0.5 * abs(x[0] + 1j * x[1]) ** 2)
             new[0], new[1] = z.real, z.imag
         x = new
-    # beyond the period doubling the two points ±√(ε/2) are exchanged, with multiplier (1 − ε)² there
+    # beyond the period doubling, the two points ±√(ε/2) are mapped to each other, with multiplier (1 − ε)²
     orbit = np.array([0.0]) if kind != "doubled" else np.sqrt(0.5 * closeness) * np.array([1.0, -1.0])
     points = np.stack([middle + basis[:, 0] * a for a in orbit])
     return out.reshape(-1, 2, _BEADS), points.reshape(-1, 2, _BEADS), len(orbit)
 
 
 def distance(state: np.ndarray, orbit: np.ndarray, scale: np.ndarray) -> float:
-    """Largest relative distance of a state (2, N) from the nearest point of an orbit (q, 2, N)."""
+    """Return the largest relative distance of a state (2, N) from the nearest point of an orbit (q, 2, N)."""
     return float((np.abs(orbit - state).max(axis=2) / scale).max(axis=1).min())
 
 
 def claims(count: int, seed: int) -> tuple[int, int, int]:
-    """Of `count` maps near a bifurcation: how many are called settled, how many of these wrongly, how many are slow.
+    """Of `count` maps near a bifurcation, return how many are reported as settled, wrongly settled, and slow.
 
-    Wrong is a bound or a period. A slow map has a multiplier so near 1 that it cannot have settled within its strobes.
+    "Wrong" refers to a bound or a period. A slow map's multiplier is so near 1 that it cannot settle within its
+    strobes.
     """
     rng = np.random.default_rng(seed)
     made, wrong, slow = 0, 0, 0
@@ -82,7 +83,7 @@ def claims(count: int, seed: int) -> tuple[int, int, int]:
         made += 1
         assert regime.distance is not None
         scale = np.abs(strobes).max(axis=(0, 2))
-        # the strobes themselves are rounded to 1e-15, and the orbit's place is known to no more than that
+        # the strobes are rounded to 1e-15, and the orbit's position is not known more accurately than that
         far = distance(strobes[-1], orbit, scale) > regime.distance + 1e-13
         wrong += far or regime.period != period
         slow += closeness < 1e-3 and far
@@ -90,7 +91,7 @@ def claims(count: int, seed: int) -> tuple[int, int, int]:
 
 
 def near_bifurcation(quick: bool) -> list[Measurement]:
-    """Distance bounds near bifurcations, by normal forms and in the chain."""
+    """Measure distance bounds near bifurcations, for normal forms and for the chain."""
     count = 600 if quick else 10_000
     made, wrong, slow = claims(count, 3)
     checked, outside = chain_claims(4 if quick else 60)
@@ -104,7 +105,7 @@ def near_bifurcation(quick: bool) -> list[Measurement]:
 
 
 def chain_claims(count: int) -> tuple[int, int]:
-    """Settled chains near section 2's period doubling, and those further from Newton's orbit than they state."""
+    """Count settled chains near section 2's period doubling, and those further from Newton's orbit than they state."""
     checked, outside = 0, 0
     for frequency in np.linspace(560.0, 640.0, count):
         chosen = scene("sec2").evolve(f=float(frequency))
@@ -121,7 +122,7 @@ def chain_claims(count: int) -> tuple[int, int]:
 
 
 def near_bifurcation_picture() -> Picture:
-    """Distance from the orbit of a slow approach, the change per period, and our bound where stated."""
+    """Draw a slow approach: distance from the orbit, change per period, and granchain's bound where it states one."""
     strobes, orbit, _ = normal_form(np.random.default_rng(8), "period_doubling", 0.02, 1_000)
     scale, marks = np.abs(strobes).max(axis=(0, 2)), np.arange(20, 1_000, 20)
     true = [distance(strobes[i], orbit, scale) for i in marks]
@@ -139,14 +140,14 @@ def near_bifurcation_picture() -> Picture:
 
 #: A frequency at which the chain of `sec2` has orbits of period 1 and of period 3, both stable [Hz].
 _SHARED = 885.7627
-#: Frequency at which the sweep up begins [Hz].
+#: Frequency at which the upward sweep starts [Hz].
 _BELOW = 800.0
-#: Frequency at which the sweep down begins [Hz].
+#: Frequency at which the downward sweep starts [Hz].
 _ABOVE = 1000.0
 
 
 def arrivals() -> dict[str, CurvePoint]:
-    """The steady state at one frequency, by the start it came from."""
+    """Return the steady states at one frequency, by the start from which each was reached."""
     chosen, arrived = scene("sec2"), {}
     for start, far in (("up", _BELOW), ("down", _ABOVE)):
         points = list(iter_curve(chosen, np.linspace(far, _SHARED, 12), start))
@@ -155,7 +156,7 @@ def arrivals() -> dict[str, CurvePoint]:
 
 
 def two_attractors(quick: bool) -> list[Measurement]:
-    """Both orbits found, both stable by their multipliers, and every result says which start it is from."""
+    """Measure whether both orbits are found and have stable multipliers, and whether every result states its start."""
     arrived, chosen = arrivals(), scene("sec2").evolve(f=_SHARED)
     orbits = {start: periodic_orbit(chosen, p.regime.period, p.state) for start, p in arrived.items()}
     forces = [p.max_output_force for p in arrived.values()]
@@ -177,7 +178,7 @@ def two_attractors(quick: bool) -> list[Measurement]:
 
 
 def two_attractors_picture() -> Picture:
-    """Output force on both orbits over three drive periods, and from rest, the only one that a single run shows."""
+    """Draw the output force on both orbits over three drive periods; a single run from rest shows only one of them."""
     chosen, traces = scene("sec2").evolve(f=_SHARED), []
     for start, point in arrivals().items():
         engine = Engine(chosen, dop853_setting(1e-10), 100)
@@ -191,7 +192,7 @@ def two_attractors_picture() -> Picture:
 
 
 def drifting(quick: bool) -> list[Measurement]:
-    """The observer without a foundation drifts, and the verdict reports it; with one it does not drift."""
+    """Measure the verdicts: the observer drifts without a foundation, and does not drift with one."""
     wrong = []
     for base, drifts in (("fig11-free", True), ("fig11-founded", False)):
         for frequency in ((100.0,) if quick else (100.0, 200.0)):
@@ -204,7 +205,7 @@ def drifting(quick: bool) -> list[Measurement]:
 
 
 def drifting_picture() -> Picture:
-    """Distance of an observer from its chain: by its multipliers from 1e-6, and by two runs that start together."""
+    """Draw an observer's distance from its chain: by its multipliers from 1e-6, and by two runs that start together."""
     strobes = np.arange(8)
     (free, multiplier), (founded, _) = (_apart(base, len(strobes)) for base in ("fig11-free", "fig11-founded"))
     return Picture(strobes, "drive periods", "observer less chain, in amplitudes, log10", tuple(
@@ -216,9 +217,9 @@ def drifting_picture() -> Picture:
 
 
 def _apart(base: str, count: int) -> tuple[np.ndarray, float]:
-    """Largest difference (count,) of an observer moved as a whole by 1e-6 of the amplitude, as long as it is small.
+    """Return the largest difference (count,) of an observer shifted as a whole by 1e-6 amplitudes, while it is small.
 
-    Also the size of its leading multiplier.
+    Also returns the modulus of its leading multiplier.
     """
     orbit = periodic_orbit(scene(base), observer=True)
     stroboscopic_map = StroboscopicMap(orbit.scene, orbit.period)
@@ -232,7 +233,7 @@ def _apart(base: str, count: int) -> tuple[np.ndarray, float]:
 
 
 def _two_runs(tolerance: float, count: int) -> np.ndarray:
-    """Distances (count,) of chain and observer, two runs of SciPy from the same state on the chain's orbit."""
+    """Return the distances (count,) of chain and observer in two SciPy runs from one state on the chain's orbit."""
     orbit = periodic_orbit(scene("fig11-free"))
     scales = Engine(orbit.scene, dop853_setting()).scaled.scales
     start = np.concatenate([orbit.state.displacement / scales.length, orbit.state.velocity / scales.velocity])

@@ -1,4 +1,4 @@
-"""Running the table on two processes, the longest cases first."""
+"""Execution of the table in two processes, the longest cases first."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ def _run(name: str, quick: bool) -> list[Check]:
 
 
 def run_cases(quick: bool, workers: int | None = None) -> Iterator[tuple[str, list[Check]]]:
-    """Case names with their rows as they are finished; closing the generator ends what has not begun.
+    """Yield case names with their rows as they finish; closing the generator cancels cases that have not started.
 
-    Processes, because much of the oracles is Python, which only one thread at a time can run. Raises `ComputationError`
-    where one of them is ended from outside.
+    Processes are used because much of the oracles is Python code, which only one thread at a time can run. Raises
+    `ComputationError` if a process is ended from outside.
     """
     count = workers or min(2, usable_cores())
     processes = pool(count)
@@ -39,5 +39,5 @@ def run_cases(quick: bool, workers: int | None = None) -> Iterator[tuple[str, li
 
 
 def in_order(rows: dict[str, list[Check]]) -> list[Check]:
-    """All rows in the order of the table."""
+    """Return all rows in the order of the table."""
     return [row for case in CASES for row in rows.get(case.name, ())]

@@ -1,9 +1,9 @@
-"""Random grazing touches: a bead or a driver touches its neighbour, or misses it, by as little as 1e-7 of an amplitude.
+"""Random grazing touches: a bead or a driver touches or misses its neighbour by as little as 1e-7 of an amplitude.
 
-One bead with a gap on both sides (a negative static overlap), in scaled units. Either a driver of amplitude 1 comes
-within the gap's depth of it while it rests, or it swings on its foundation and comes as near to the wall. Depths are
-log-uniform from 1e-7 to 1e-2 of the amplitude, half of them negative: then nothing may be touched. Frequency, phase,
-step settings and tolerance are random.
+One bead has a gap on both sides (a negative static overlap), in scaled units. Either a driver of amplitude 1 reaches
+into it by the depth while the bead is at rest, or the bead swings on its foundation and reaches equally far into the
+wall. Depths are log-uniform from 1e-7 to 1e-2 of the amplitude, and half of them are negative: then there must be no
+touch. Frequency, phase, step settings and tolerance are random.
 """
 
 from __future__ import annotations
@@ -22,15 +22,15 @@ from ..kernels.equations.motion import Forces, Slots, Trajectory, copy
 from ..kernels.error_control.located_step import located_step
 from ..kernels.error_control.step import DriveCycle, evaluate
 
-#: Columns of a drawn case: the driver's rate β (or the bead's own ω), depth, phase it starts at, tolerance, largest
-#: step as a part of the period, first step as a part of the largest.
+#: Columns of a drawn case: the driver's angular frequency β (or the bead's own ω), depth, initial phase, tolerance,
+#: largest step as a fraction of the period, first step as a fraction of the largest.
 RATE, DEPTH, PHASE, TOLERANCE, LARGEST, FIRST = range(6)
-#: Columns of a result: touches counted by closings, error of the closing and of the opening as parts of the period.
+#: Columns of a result: number of closings, and errors of the closing and opening times as fractions of the period.
 CLOSINGS, CLOSING_ERROR, OPENING_ERROR = range(3)
 
 
 def draw(count: int, seed: int, driven: bool) -> np.ndarray:
-    """Random touches (count, 6); the phase is before the top, so that the whole touch lies ahead."""
+    """Draw random touches (count, 6); the phase is before the peak, so that the whole touch lies ahead."""
     rng = np.random.default_rng(seed)
     cases = np.empty((count, 6))
     cases[:, RATE] = 10.0 ** rng.uniform(-2.0, 1.0, count) if driven else 10.0 ** rng.uniform(-1.0, 1.0, count)
@@ -45,10 +45,10 @@ def draw(count: int, seed: int, driven: bool) -> np.ndarray:
 
 @kernel
 def touch(cases, driven, work, y, counts, static, chain, results):  # type: ignore[no-untyped-def]
-    """Run every case from its phase until the driver, or the bead, is back at middle position.
+    """Run every case from its phase until the driver, or the bead, is back at its middle position.
 
-    The gap is 1 − depth. A bead that rests is where it was until the touch, so the analytic closing is asin(gap); the
-    same is true of a bead on a spring of stiffness ω² with velocity ω. It separates at π − asin(gap), apart from the
+    The gap is 1 − depth. A bead at rest does not move until the touch, so the analytic closing is at asin(gap); the
+    same is true of a bead on a spring of stiffness ω² with velocity ω. It separates at π − asin(gap), apart from its
     displacement by the touch.
     """
     for n in range(cases.shape[0]):
@@ -86,7 +86,7 @@ def touch(cases, driven, work, y, counts, static, chain, results):  # type: igno
 
 
 def run(cases: np.ndarray, driven: bool) -> np.ndarray:
-    """Results for each case (count, 3)."""
+    """Return the results of each case (count, 3)."""
     row, results = 3, np.zeros((len(cases), 3))
     chain = Chain(np.array([0.0, 1.0, 0.0]), np.ones(2))
     touch(cases, driven, workspace(row), np.zeros(2 * row), np.zeros(4, dtype=np.int64), np.zeros(2), chain,
@@ -95,7 +95,7 @@ def run(cases: np.ndarray, driven: bool) -> np.ndarray:
 
 
 def workspace(row: int) -> Dop853Workspace:
-    """Arrays of dop853 for a chain of `row` bodies."""
+    """Return dop853's work arrays for a chain of `row` bodies."""
     return Dop853Workspace(
         k=np.zeros((ALL_STAGES, 2 * row)), stage=np.zeros(2 * row), end=np.zeros(2 * row), probe=np.zeros(2 * row),
         slope=np.zeros(2 * row), dense=np.zeros((7, 2 * row)), scale=np.zeros(2), next_step=np.zeros(1),
@@ -103,14 +103,14 @@ def workspace(row: int) -> Dop853Workspace:
 
 
 def missed(cases: np.ndarray, results: np.ndarray) -> np.ndarray:
-    """Numbers of the cases whose touch was missed, or invented."""
+    """Return the indices of the cases whose touch was missed or invented."""
     return np.flatnonzero((results[:, CLOSINGS] == 1) != (cases[:, DEPTH] > 0.0))
 
 
 def moved(cases: np.ndarray) -> np.ndarray:
-    """Delay after π − asin(gap) with which a touch by the driver ends, as a part of the period, to order depth².
+    """Return a driver touch's delay after π − asin(gap) in ending, as a fraction of the period, to order depth².
 
-    The bead has moved by half the touch's length 2√(2·depth)/β times its velocity (3π√2/8)·depth²/β, over the driver's
-    speed.
+    The bead has moved by half the touch's duration 2√(2·depth)/β times its velocity (3π√2/8)·depth²/β. The delay is
+    this displacement over the driver's speed.
     """
     return 3.0 * pi * 2.0**0.5 / 8.0 * (cases[:, DEPTH] / cases[:, RATE]) ** 2 / (2.0 * pi)

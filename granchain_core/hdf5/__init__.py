@@ -1,4 +1,4 @@
-"""HDF5 files: sealed with a checksum when they are written, checked when they are read (docs/reliability.md)."""
+"""HDF5 files, sealed with a checksum when written and checked when read (docs/reliability.md)."""
 
 from .border import File, opened
 from .seal import SIGNATURE, VERSIONS, seal

@@ -26,37 +26,37 @@ _LIBRARIES = (OSError, RuntimeError, ArithmeticError, LookupError, ValueError, T
 
 
 class File:
-    """An open file; every method raises `Refused` or `BadInput` where the file does not hold what is asked for."""
+    """An open file; every method raises `Refused` or `BadInput` if the file does not contain what is requested."""
 
     def __init__(self, source: Plain | Child) -> None:
         self._source = source
         self._units: dict[str, str] = {}
 
     def expect_units(self, units: Mapping[str, str]) -> None:
-        """Units by path: from now on `numbers` refuses a dataset that states another one."""
+        """Set the units by path: from now on, `numbers` refuses a dataset that states a different unit."""
         self._units.update(units)
 
     def has(self, path: str) -> bool:
-        """Whether there is a dataset."""
+        """Return whether a dataset exists."""
         return self._source.stored(path) is not None
 
     def names(self) -> list[str]:
-        """The paths of all datasets that stand in the file itself."""
+        """Return the paths of all datasets stored in the file itself."""
         return self._source.names()
 
     def described(self, path: str) -> Stored:
-        """The type, shape and unit of a dataset that has to be there."""
+        """Return the type, shape and unit of a required dataset."""
         return self._stored(path)
 
     def shape(self, path: str) -> tuple[int, ...]:
-        """The shape of a dataset that has to be there."""
+        """Return the shape of a required dataset."""
         return self._stored(path).shape
 
     def numbers(self, path: str, shape: tuple[int, ...], kind: str = "f", rows: int | None = None) -> np.ndarray:
-        """Numbers of a shape, checked before they are read: floats of eight bytes ("f"), whole numbers ("i") or both.
+        """Read numbers of a given shape, checked first: eight-byte floats ("f"), integers ("i") or both.
 
-        A unit that the file states must be that of `expect_units`, if there is one for this path. With `rows`, only
-        the first `rows` are read.
+        A unit stated in the file must agree with `expect_units`, if that has one for this path. With `rows`, only that
+        many of the dataset's rows are read.
         """
         stored = self._stored(path)
         if stored.shape != shape:
@@ -70,34 +70,34 @@ class File:
         return values.astype({"i": np.int64}.get(kind, np.float64), copy=False)
 
     def words(self, path: str, count: int, known: tuple[str, ...]) -> list[str]:
-        """One row of words, each one of `known`."""
+        """Read one row of words, each of which must be in `known`."""
         if self._stored(path).shape != (count,):
             raise Refused(f"/{path} has shape {self._stored(path).shape}, expected {(count,)}")
         return [one_of(f"/{path}", word, known) for word in self._source.words(path)]
 
     def text(self, name: str) -> str:
-        """An attribute of the root that is a text."""
+        """Read a text attribute of the root."""
         value = self._attribute("", name)
         if not isinstance(value, str):
             raise Refused(f"attribute {name} is {value!r}, not a text")
         return value
 
     def number(self, name: str, absent: float | None = None) -> float:
-        """An attribute of the root that is a number, or `absent` where there is none; NaN is one."""
+        """Read a numeric attribute of the root (NaN is allowed), or return `absent` if it is missing."""
         value = absent if absent is not None and not self.stated(name) else self._attribute("", name)
         if isinstance(value, str) or value is None:
             raise Refused(f"attribute {name} is {str(value)[:40]!r}, not a number")
         return float(value)
 
     def whole(self, name: str, low: int, path: str = "") -> int:
-        """An attribute that is a whole number, not below `low`."""
+        """Read an integer attribute that is not below `low`."""
         value = self._attribute(path, name)
         if not isinstance(value, int) or value < low:
             raise Refused(f"attribute {name} is {str(value)[:40]!r}, not a whole number from {low}")
         return value
 
     def json(self, name: str) -> Any:
-        """An attribute of the root that is JSON."""
+        """Read a JSON attribute of the root."""
         text = self.text(name)
         try:
             return json.loads(text)
@@ -105,13 +105,13 @@ class File:
             raise Refused(f"attribute {name} is not JSON: {described(problem)}") from None
 
     def schema(self) -> None:
-        """Refuse a layout that is not this version's."""
+        """Refuse a file whose layout is of another version."""
         number = self.whole("granchain_schema", 0)
         if number != SCHEMA:
             raise Refused(f"its schema is {number}, and this version reads {SCHEMA}")
 
     def scene(self) -> Scene:
-        """The scene, its values checked like those of the command line and against the knobs that the file repeats."""
+        """Read the scene; check its values like the command line's, and against the knobs that the file repeats."""
         scene = Scene.from_json(self.json("scene"))
         for name, value in scene.knobs.items():
             repeated = self._source.attribute("", f"knob_{name}")
@@ -120,7 +120,7 @@ class File:
         return scene
 
     def stated(self, name: str) -> bool:
-        """Whether the root has an attribute."""
+        """Return whether the root has an attribute."""
         return self._source.attribute("", name) is not None
 
     def _attribute(self, path: str, name: str) -> float | int | str:
@@ -138,12 +138,11 @@ class File:
 
 @contextlib.contextmanager
 def opened(path: str | Path, fault: str, *, called: str = "", foreign: bool = False) -> Iterator[File]:
-    """Open the file at `path`; every error becomes a `BadInput`: what it is `called` (its path if not
-    given), then `fault`, then the reason.
+    """Open the file at `path`; every error becomes a `BadInput` with `called` (or the path), `fault` and the reason.
 
-    A file whose seal fits is what granchain wrote, and is read here. One of an earlier version has no seal: HDF5
-    parses it in a child, because a single damaged bit can keep HDF5 busy for ever or end its process. A file that may
-    be anybody's (`foreign`) needs no seal and is parsed in a child even with one, which anybody can forge.
+    A file with a valid seal is unchanged since granchain wrote it, and is read in this process. A file of an earlier
+    version has no seal and is parsed in a child process, because a single damaged bit can hang or crash HDF5. A file of
+    unknown origin (`foreign`) needs no seal, and is always parsed in a child process because anyone can forge a seal.
     """
     source: Plain | Child | None = None
     try:
@@ -159,7 +158,7 @@ def opened(path: str | Path, fault: str, *, called: str = "", foreign: bool = Fa
 
 
 def reason(problem: BaseException) -> str:
-    """An error in a few words."""
+    """Describe an error in a few words."""
     if isinstance(problem, OSError) and problem.strerror:
         return problem.strerror
     return str(problem) if isinstance(problem, Refused) else described(problem)
@@ -169,16 +168,16 @@ def reason(problem: BaseException) -> str:
 
 
 def one_of(what: str, value: object, known: tuple[str, ...]) -> str:
-    """`value` if it is one of the known words."""
+    """Return `value` if it is one of the known words."""
     if not isinstance(value, str) or value not in known:
         raise Refused(f"{what} is {str(value)[:40]!r}, not one of {', '.join(map(repr, known))}")
     return value
 
 
 def entries(what: str, value: object, kinds: Mapping[str, str]) -> dict[str, Any]:
-    """The entries of a JSON object, each of the kind that is named for it.
+    """Return the entries of a JSON object, each checked to be of the kind given in `kinds`.
 
-    A kind is "number", "whole" (from 0), "text" or "flag"; with a "?" at its end null and absence are allowed.
+    A kind is "number", "whole" (from 0), "text" or "flag"; a trailing "?" allows null and absence.
     """
     if not isinstance(value, dict):
         raise Refused(f"{what} is {str(value)[:40]!r}, not an object")
@@ -203,14 +202,14 @@ def _entry(what: str, value: object, kind: str) -> Any:
 
 
 def finite(what: str, value: float) -> float:
-    """`value` if it is a finite number."""
+    """Return `value` if it is finite."""
     if not math.isfinite(value):
         raise Refused(f"{what} is {value}, not a finite number")
     return value
 
 
 def within(what: str, values: np.ndarray, low: int, high: int) -> np.ndarray:
-    """Whole numbers of which none is outside a range."""
+    """Return integers, none of which may be outside a range."""
     if values.size and not (low <= values.min() and values.max() <= high):
         raise Refused(f"{what} holds {values.min()} to {values.max()}, expected {low} to {high}")
     return values

@@ -17,16 +17,16 @@ import numpy as np
 from . import plain
 from .plain import Refused, Stored
 
-#: Time that opening and reading may take [s].
+#: Time allowed for opening and reading [s].
 _SECONDS = 10
-#: One second more is allowed for each of this many bytes of the file [bytes/s].
+#: Bytes of the file for which one more second is allowed [bytes/s].
 _BYTES_A_SECOND = 20_000_000
-#: Longest answer that is not numbers [bytes].
+#: Longest non-numeric answer [bytes].
 _LONGEST = 64_000_000
 
 
 class Child:
-    """Reads a file as `Plain` does, in a child that ends with this object, after too long, or with this process."""
+    """Reads a file as `Plain` does, in a child process that ends with this object or process, or at a time limit."""
 
     def __init__(self, path: str) -> None:
         seconds = _SECONDS + Path(path).stat().st_size // _BYTES_A_SECOND
@@ -44,7 +44,7 @@ class Child:
             raise
 
     def close(self) -> None:
-        """End the child."""
+        """End the child process."""
         self._clock.cancel()
         self._process.kill()
         for pipe in (self._process.stdin, self._process.stdout):
@@ -53,24 +53,24 @@ class Child:
         self._process.wait()
 
     def attribute(self, path: str, name: str) -> float | int | str | None:
-        """An attribute of the group or dataset at `path`; None where there is none. As `Plain.attribute`."""
+        """Return an attribute of the group or dataset at `path`; None if it is absent. As `Plain.attribute`."""
         return self._ask("attribute", path, name)
 
     def stored(self, path: str) -> Stored | None:
-        """Type, shape and unit of a dataset; None where there is none. As `Plain.stored`."""
+        """Return type, shape and unit of a dataset; None if it is absent. As `Plain.stored`."""
         answer = self._ask("stored", path)
         return answer and Stored(str(answer["type"]), tuple(answer["shape"]), answer["units"])
 
     def names(self) -> list[str]:
-        """The paths of all datasets in the file. As `Plain.names`."""
+        """Return the paths of all datasets in the file. As `Plain.names`."""
         return [str(name) for name in self._ask("names")]
 
     def words(self, path: str) -> list[str]:
-        """One row of words. As `Plain.words`."""
+        """Read one row of words. As `Plain.words`."""
         return [str(word) for word in self._ask("words", path)]
 
     def numbers(self, path: str, rows: int | None = None) -> np.ndarray:
-        """The numbers of a dataset, of which only the first `rows` where that is given. As `Plain.numbers`."""
+        """Read the numbers of a dataset, or only its first `rows` rows. As `Plain.numbers`."""
         answer = self._ask("numbers", path, rows)
         kind, shape = np.dtype(answer["type"]), tuple(answer["shape"])
         size = math.prod(shape) * kind.itemsize
@@ -80,7 +80,7 @@ class Child:
         return np.frombuffer(bytearray(content), kind).reshape(shape)
 
     def _ask(self, *args: Any) -> Any:
-        with contextlib.suppress(OSError):  # a child that has ended is told below
+        with contextlib.suppress(OSError):  # `_answer` reports a child that has ended
             self._process.stdin.write(json.dumps(args).encode() + b"\n")  # type: ignore[union-attr]
             self._process.stdin.flush()  # type: ignore[union-attr]
         return self._answer()
@@ -99,7 +99,7 @@ class Child:
         self._process.kill()
 
     def _ended(self) -> Refused:
-        """Why the child says nothing more."""
+        """Return the reason why the child has stopped answering."""
         self._process.kill()
         if self._late:
             return Refused(f"reading it took more than {self._seconds} s, as only a damaged file does")

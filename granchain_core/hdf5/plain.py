@@ -1,11 +1,12 @@
-"""The parts of an HDF5 file that may be read: numbers and text in this file, each in one contiguous block.
+"""Reader for the permitted parts of an HDF5 file: numbers and text in this file, each in one contiguous block.
 
-HDF5 can lead a reader elsewhere: links to other objects and files, numbers in external files, virtual datasets, filters
-that are loaded as plug-ins, shapes of terabytes that were never written. None of it is followed. Every part of a path
-is looked at before it is opened, and a size is bounded by that of the file before memory is allocated.
+HDF5 can lead a reader elsewhere, by links to other objects and files, numbers in external files, virtual datasets,
+filters that are loaded as plug-ins, and shapes of terabytes that were never written. None of these is followed. Every
+part of a path is inspected before it is opened, and a size is checked against that of the file before memory is
+allocated.
 
-The module imports nothing of granchain, because it is also a program: child.py runs it in a process of its own, which
-answers requests, one JSON object a line, on its standard output.
+The module imports nothing from granchain, because it is also a program: child.py runs it in a separate process, which
+answers requests on its standard output, with one JSON object per line.
 """
 
 from __future__ import annotations
@@ -25,28 +26,28 @@ from h5py import h5a, h5d, h5g, h5l, h5o, h5s, h5t
 
 #: Largest attribute [bytes]: a scene of ten thousand different beads has about one million.
 _MOST_ATTRIBUTE = 16_000_000
-#: Most words in one dataset.
+#: Maximum number of words in a dataset.
 _MOST_WORDS = 100_000
-#: Most dimensions of one.
+#: Maximum number of dimensions of a dataset.
 _MOST_DIMENSIONS = 3
-#: Most objects of a file that are listed.
+#: Maximum number of objects listed in a file.
 _MOST_OBJECTS = 2000
-#: Most groups within groups.
+#: Maximum depth of nested groups.
 _DEEPEST = 5
-#: Size of the reference to a string of variable length [bytes].
+#: Size of the reference to a variable-length string [bytes].
 _REFERENCE = 16
 _NUMBERS = (h5t.FLOAT, h5t.INTEGER)
-#: Memory that a child may take beside what it starts with and the file's own size, three times [bytes].
+#: Memory that a child process may use in addition to its initial memory and three times the size of the file [bytes].
 _BESIDE = 256_000_000
 
 
 class Refused(ValueError):
-    """Something in a file that is not followed or not read; the message says which and why."""
+    """Part of a file that is not followed or not read; the message says which part and why."""
 
 
 @dataclass(frozen=True)
 class Stored:
-    """A dataset: its NumPy type ("text" for words), its shape, and its attribute `units`, if it has one."""
+    """Description of a dataset: NumPy type ("text" for words), shape and, if present, the attribute `units`."""
 
     type: str
     shape: tuple[int, ...]
@@ -62,12 +63,12 @@ class Plain:
         self._stored: dict[str, Stored | None] = {}
 
     def close(self) -> None:
-        """Close the file; what is damaged may not close, and is left to the end of the process."""
+        """Close the file. A damaged file may fail to close, and is then left open until the process ends."""
         with contextlib.suppress(Exception):
             self._file.close()
 
     def attribute(self, path: str, name: str) -> float | int | str | None:
-        """An attribute of the root or of a dataset, which must be one number or one text; None where it is absent."""
+        """Return an attribute of the root or of a dataset, which must be one number or text; None if it is absent."""
         item = self._find(path)
         if item is None or not h5a.exists(item, name.encode()):
             return None
@@ -82,7 +83,7 @@ class Plain:
                                             h5py.Dataset(item))[name], called)
 
     def stored(self, path: str) -> Stored | None:
-        """Type and shape of a dataset, unread; None where there is none. Raises `Refused` where it is not plain."""
+        """Return a dataset's type and shape without reading it; None if absent. Raises `Refused` if it is not plain."""
         if path not in self._stored:
             self._stored[path] = self._look(path)
         return self._stored[path]
@@ -105,7 +106,7 @@ class Plain:
         return Stored(name, shape, None if units is None else str(units))
 
     def names(self) -> list[str]:
-        """The paths of all datasets, reached by hard links only, in the order of their names."""
+        """Return the paths of all datasets reached by hard links only, in the order of their names."""
         listed: list[str] = []
         self._list(h5g.open(self._file.id, b"/"), "", listed, [0], 0)
         return listed
@@ -124,7 +125,7 @@ class Plain:
                 listed.append(called)
 
     def numbers(self, path: str, rows: int | None = None) -> np.ndarray:
-        """The numbers of a dataset or only its first `rows`, as they are stored."""
+        """Return the numbers of a dataset, or of its first `rows` rows, in the stored type."""
         stored = self._described(path)
         if stored.type == "text":
             raise Refused(f"/{path} holds words where numbers are expected")
@@ -132,7 +133,7 @@ class Plain:
         return np.ascontiguousarray(data[()] if rows is None else data[:rows])
 
     def words(self, path: str) -> list[str]:
-        """The words of a one-dimensional dataset. They are read one by one, because many may point to the same text."""
+        """Return the words of a one-dimensional dataset, read one by one because many may refer to the same text."""
         stored, total, listed = self._described(path), 0, []
         if stored.type != "text" or len(stored.shape) != 1 or stored.shape[0] > _MOST_WORDS:
             raise Refused(f"/{path} is not one row of at most {_MOST_WORDS} words")
@@ -151,7 +152,7 @@ class Plain:
         return stored
 
     def _find(self, path: str) -> Any:
-        """The identifier of an object, reached by hard links only; None where a part of the path is absent."""
+        """Return the identifier of an object reached by hard links only; None if a part of the path is absent."""
         here, walked = h5g.open(self._file.id, b"/"), ""
         for part in filter(None, path.split("/")):
             if not isinstance(here, h5g.GroupID):
@@ -160,23 +161,23 @@ class Plain:
             if not here.links.exists(part.encode()):
                 return None
             if here.links.get_info(part.encode()).type != h5l.TYPE_HARD:
-                raise Refused(f"{walked} is a link, and only what is stored in the file itself is read")
+                raise Refused(f"{walked} is a link, and only data in the file itself are read")
             here = h5o.open(here, part.encode())
         return here
 
     def _shape(self, dataset: h5d.DatasetID, path: str) -> tuple[int, ...]:
-        """The shape of a dataset that is one block within this file."""
+        """Return the shape of a dataset, which must be one block within this file."""
         properties, type_ = dataset.get_create_plist(), dataset.get_type()
         variable = type_.get_class() == h5t.STRING and type_.is_variable_str()
         size = _REFERENCE if variable else type_.get_size()
         if properties.get_external_count():
-            raise Refused(f"/{path} stands in another file, and only what is stored in the file itself is read")
+            raise Refused(f"/{path} is stored in another file, and only data in the file itself are read")
         if properties.get_layout() not in (h5d.CONTIGUOUS, h5d.COMPACT):
-            raise Refused(f"/{path} is virtual, compressed or in pieces, and only what is stored in the file itself as "
-                          "one block is read")
+            raise Refused(f"/{path} is virtual, compressed or in pieces, and only data in one block of the file "
+                          "itself are read")
         if dataset.get_space().get_simple_extent_type() != h5s.SIMPLE or len(dataset.shape) > _MOST_DIMENSIONS:
             raise Refused(f"/{path} is not a row or a table")
-        needed = math.prod(dataset.shape) * size  # of Python's integers, which do not overflow
+        needed = math.prod(dataset.shape) * size  # in Python integers, which do not overflow
         if needed > self._size:
             raise Refused(f"/{path} has shape {dataset.shape}, {needed} bytes in a file of {self._size}")
         if needed and dataset.get_storage_size() != needed:
@@ -188,11 +189,11 @@ class Plain:
 
 
 def _value(value: Any, called: str) -> float | int | str:
-    """One number or text as Python's own."""
+    """Convert a number or text to a Python value."""
     if isinstance(value, bytes):
         value = value.decode("utf-8")
     if isinstance(value, str):
-        value.encode("utf-8")  # HDF5 does not check that a text is one
+        value.encode("utf-8")  # HDF5 does not check that a text is valid
         return value
     if isinstance(value, np.integer):
         return int(value)
@@ -205,7 +206,7 @@ def _value(value: Any, called: str) -> float | int | str:
 
 
 def answer_requests(file: Plain, requests: Iterable[bytes], out: BinaryIO) -> None:
-    """Answer requests: one line of JSON each and, for numbers, their bytes after it."""
+    """Answer each request with one line of JSON, followed by the bytes if numbers were requested."""
     for line in requests:
         name, *args = json.loads(line)
         content: bytes | memoryview = b""
@@ -217,7 +218,7 @@ def answer_requests(file: Plain, requests: Iterable[bytes], out: BinaryIO) -> No
             elif isinstance(value, Stored):
                 value = asdict(value)
             answer = {"found": value}
-        except Exception as problem:  # whatever HDF5 raises for damaged bytes: the parent says it
+        except Exception as problem:  # whatever HDF5 raises for damaged bytes; the parent reports it
             answer = {"refused": str(problem) if isinstance(problem, Refused) else described(problem)}
         out.write(json.dumps(answer).encode() + b"\n")
         out.write(content)
@@ -225,7 +226,7 @@ def answer_requests(file: Plain, requests: Iterable[bytes], out: BinaryIO) -> No
 
 
 def described(problem: BaseException) -> str:
-    """An error of a library in a few words."""
+    """Describe a library's error in a few words."""
     if isinstance(problem, MemoryError):
         return "it asks for more memory than there is"
     if isinstance(problem, RecursionError):
@@ -234,9 +235,9 @@ def described(problem: BaseException) -> str:
 
 
 def limit(seconds: int, size: int) -> None:
-    """Let the system end this process after so much computing, and refuse it memory beyond what a file of `size` needs.
+    """Limit this process's processor time, and its memory to the needs of a file of `size` bytes.
 
-    Systems other than Linux do not say how much memory a process has; there only the time is limited.
+    Systems other than Linux do not report how much memory a process has, so only the time is limited there.
     """
     try:
         import resource
@@ -249,7 +250,7 @@ def limit(seconds: int, size: int) -> None:
 
 
 def main() -> None:
-    """Open the file that is named, under limits, and answer until the parent closes the pipe."""
+    """Open the file given as an argument, under limits, and answer requests until the parent closes the pipe."""
     path = sys.argv[1]
     limit(int(sys.argv[2]), os.path.getsize(path))
     try:
@@ -260,7 +261,7 @@ def main() -> None:
     sys.stdout.buffer.write(b'{"found": null}\n')
     sys.stdout.buffer.flush()
     answer_requests(file, sys.stdin.buffer, sys.stdout.buffer)
-    os._exit(0)  # a damaged file may not close
+    os._exit(0)  # a damaged file may fail to close
 
 
 if __name__ == "__main__":

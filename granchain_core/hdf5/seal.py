@@ -1,11 +1,11 @@
 """The seal of a file: the SHA-256 of its bytes in a last line, checked before HDF5 opens it.
 
-HDF5 keeps its own length and ignores what follows, so h5py, xarray, h5dump and everybody else open a sealed file as
-any other. h5py removes the line when it opens a file for writing. Files with a seal have HDF5's superblock of version
-2, those of earlier versions of granchain version 0 and no seal: a sealed file cannot lose its seal and pass for an old
-one.
+HDF5 stores its own length and ignores everything after it, so h5py, xarray, h5dump and other programs open a sealed
+file like any other. h5py removes the line when it opens a file for writing. Sealed files have HDF5's superblock version
+2. Files of earlier versions of granchain have superblock version 0 and no seal, so a sealed file that loses its seal
+cannot pass for an old one.
 
-The seal finds damage and careless changes. It is not a signature: anyone who forges a file can also seal it.
+The seal detects damage and careless changes. It is not a signature: anyone who forges a file can also seal it.
 """
 
 from __future__ import annotations
@@ -18,9 +18,10 @@ from typing import BinaryIO
 
 from .plain import Refused
 
-#: Bounds of the HDF5 version whose superblock (version 2) tells sealed files from older ones; since HDF5 1.8 (2008).
+#: HDF5 version bounds that give superblock version 2, which distinguishes sealed files from older ones (HDF5 1.8,
+#: 2008).
 VERSIONS = ("v108", "v108")
-#: First bytes of every HDF5 file, and so of every netCDF-4 file.
+#: First bytes of every HDF5 file, and therefore of every netCDF-4 file.
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
 _LINE = "\ngranchain: SHA-256 of the {:020d} bytes before this line is {}\n"
 _PATTERN = re.compile(rb"\ngranchain: SHA-256 of the (\d{20}) bytes before this line is ([0-9a-f]{64})\n")
@@ -29,7 +30,7 @@ _BLOCK = 1 << 20
 
 
 def seal(path: Path) -> None:
-    """Append the seal to a complete file and wait until the disk has it."""
+    """Append the seal to a complete file, and wait until it is on disk."""
     with path.open("r+b") as file:
         size = file.seek(0, os.SEEK_END)
         file.write(_LINE.format(size, _digest(file, size)).encode())
@@ -38,12 +39,12 @@ def seal(path: Path) -> None:
 
 
 def is_sealed(path: Path, required: bool = True) -> bool:
-    """Whether a file has its seal, which fits; False for a file of an earlier version. Raises `Refused` for damage.
+    """Return whether a file has a valid seal; False for a file of an earlier version. Raises `Refused` for damage.
 
-    If a seal is not `required`, a file of another program may have any version of HDF5's superblock.
+    If a seal is not `required`, files written by other programs may have any version of HDF5's superblock.
     """
     if not path.is_file():
-        path.stat()  # says why, if it is not there
+        path.stat()  # raises with the reason if it is not there
         raise Refused("it is not a file")
     with path.open("rb") as file:
         head = file.read(len(SIGNATURE) + 1)
@@ -58,12 +59,12 @@ def is_sealed(path: Path, required: bool = True) -> bool:
             raise Refused("the line with its checksum is missing: the file is damaged, cut short, or was changed by "
                           "another program")
         if int(seal[1]) != size or seal[2].decode() != _digest(file, size):
-            raise Refused("its checksum does not fit: the file is damaged or was changed by another program")
+            raise Refused("its checksum does not match: the file is damaged or was changed by another program")
     return True
 
 
 def _digest(file: BinaryIO, size: int) -> str:
-    """SHA-256 of the first `size` bytes."""
+    """Return the SHA-256 of the first `size` bytes."""
     digest = hashlib.sha256()
     file.seek(0)
     while size > 0 and (block := file.read(min(_BLOCK, size))):

@@ -1,1 +1,1 @@
-"""Values from outside: their checks, numbers in text, gaps in a series of samples."""
+"""Input values: checks, numbers in text, and gaps in a series of samples."""

@@ -1,4 +1,4 @@
-"""Gaps in a series of samples: what counts as a gap, and the ways to treat it."""
+"""Gaps in a series of samples: their definition, and the ways to treat them."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ import numpy as np
 
 from ..errors import BadInput
 
-#: A spacing of more than this factor times the median one is a gap.
+#: A spacing of more than this factor times the median spacing is a gap.
 GAP = 1.5
-#: Ways to treat gaps: refuse them, take the quantity as zero in them, or draw a curve across.
+#: Ways to treat gaps: refuse them, set the quantity to zero in them, or interpolate across them.
 GAPS = ("refuse", "zero", "interpolate")
-#: Zeros that are put into a gap begin and end at most this part of the gap beside its neighbours.
+#: Zeros inserted into a gap begin and end at most this fraction of the gap away from the neighbouring samples.
 _PART_OF_GAP = 0.4
 
 
 def sample_number(index: int) -> str:
-    """The place of a sample, for messages on samples that come from no file."""
+    """Return the place of a sample, for messages on samples that do not come from a file."""
     return f"Sample {index}"
 
 
@@ -33,7 +33,7 @@ class Gaps:
     usual : float
         The usual spacing [s].
     since : float
-        Time at which the first gap begins [s].
+        Time at which the first gap starts [s].
     where : str
         The first gap in words, with its place in the source.
     """
@@ -45,7 +45,7 @@ class Gaps:
 
     @classmethod
     def of(cls, time: np.ndarray, place: Callable[[int], str] = sample_number) -> Gaps:
-        """The gaps of samples at these times (T,) [s]; `place` names the place of a sample in its source."""
+        """Return the gaps of samples at these times (T,) [s]; `place` gives the place of a sample in its source."""
         steps = np.diff(time)
         usual = float(np.median(steps))
         before = np.flatnonzero(steps > GAP * usual)
@@ -54,9 +54,10 @@ class Gaps:
                                                    f"where {usual:.4g} s is usual")
 
     def treated(self, gap: str, across: str, quantity: str = "") -> str:
-        """What the choice `gap` does, in words, empty without gaps; `BadInput` if it refuses them or is unknown.
+        """Describe what the choice `gap` does; empty without gaps. Raises `BadInput` if it refuses gaps or is unknown.
 
-        `across` says what interpolate draws, and `quantity` is what zero sets to zero; without it there is no zero.
+        `across` describes the interpolation. `quantity` is the quantity that "zero" sets to zero; without it, this
+        choice is refused.
         """
         if gap not in GAPS:
             raise BadInput(f"gap {str(gap)[:30]!r} is not one of {', '.join(GAPS)}.")
@@ -73,7 +74,7 @@ class Gaps:
 
 def with_zeros(time: np.ndarray, values: np.ndarray, gaps: np.ndarray,
                spacing: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Samples with zeros in the gaps after these, and the indices of the zeros; they end a spacing beside them."""
+    """Insert zeros into the gaps after the samples `gaps`, a spacing from their ends; return the zeros' indices too."""
     beside = np.minimum(spacing, _PART_OF_GAP * (time[gaps + 1] - time[gaps]))
     inside = np.sort(np.concatenate([time[gaps] + beside, time[gaps + 1] - beside]))
     places = np.searchsorted(time, inside)

@@ -1,7 +1,7 @@
-"""Reading numbers from text, the same for command line, links, fields of the page and CSV files.
+"""Parsing of numbers in text, the same for command line, links, fields of the page and CSV files.
 
-Python's own `float` and `int` take more than a person means (`1_000`, `١٠`, `１`, `nan`), and `int` raises an error of
-its own for 5,000 digits.
+Python's `float` and `int` accept more than a person means (`1_000`, `١٠`, `１`, `nan`), and `int` raises its own error
+for 5,000 digits.
 """
 
 from __future__ import annotations
@@ -11,12 +11,12 @@ import re
 
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 _WHOLE = re.compile(r"[+-]?[0-9]+")
-#: Longest text that is read as a number [characters]: a double written out has at most some 770 digits, 25 are usual.
+#: Longest text that is read as a number [characters]: a double written out has at most about 770 digits; 25 are usual.
 _LONGEST = 400
 
 
 def number_in(text: str) -> float | None:
-    """The finite number that a text is, written with ASCII digits, a point and an exponent; None for anything else."""
+    """Return the finite number in a text (ASCII digits, decimal point, exponent); None for anything else."""
     plain = text.strip(" \t")
     if len(plain) > _LONGEST or not _NUMBER.fullmatch(plain):
         return None
@@ -25,6 +25,6 @@ def number_in(text: str) -> float | None:
 
 
 def whole_in(text: str) -> int | None:
-    """The whole number that a text is, written with ASCII digits alone; None for anything else."""
+    """Return the whole number in a text (ASCII digits alone); None for anything else."""
     plain = text.strip(" \t")
     return int(plain) if len(plain) <= _LONGEST and _WHOLE.fullmatch(plain) else None

@@ -1,4 +1,4 @@
-"""The figures of Zhang et al. 2016 computed from the presets, and the paper's statements beside our numbers."""
+"""The figures of Zhang et al. 2016 computed from the presets, and the paper's statements with granchain's numbers."""
 
 from .figures import FIGURES, PaperFigure, compute, figure_of
 from .given import Given, read_given

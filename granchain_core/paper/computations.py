@@ -1,6 +1,6 @@
 """The computations behind the table of figures (figures.py): one function for each kind of figure, from the presets.
 
-They take what they need of a user's data, a stop flag, and a function that is called with the fraction done.
+As needed, they take the user's data, a stop flag, and a function that is called with the fraction done.
 """
 
 from __future__ import annotations
@@ -41,56 +41,56 @@ Progress = Callable[[float], None]
 SECTION_2_FREQUENCIES = np.arange(30.0, 3000.5, 10.0)
 #: Frequencies of figures 5, 6 and 9 [Hz].
 RIG_FREQUENCIES = np.arange(20.0, 160.5, 2.0)
-#: The presets of figure 12 by the paper's frequency [Hz].
+#: The presets of figure 12, by the paper's frequency [Hz].
 STATES = {60.0: "fig12-60", 90.0: "fig12-90", 100.0: "fig12-100"}
 #: Drive amplitude of figure 6 [m], in the middle of the range that the text states for the shaker.
 RIG_AMPLITUDE = scene("rig").A0
-#: Amplitudes of figure 5 [m]: the range that the text states, about 6 to 8 µm, and the rig's between.
+#: Amplitudes of figure 5 [m]: the range stated in the text, about 6 to 8 µm, and the rig's amplitude within it.
 STATED_AMPLITUDES = (6e-6, RIG_AMPLITUDE, 8e-6)
-#: Amplitudes of figure 9 [m]: those of the presets, and the largest that the text states, which lies between them.
+#: Amplitudes of figure 9 [m]: those of the presets, and the largest one stated in the text, which lies between them.
 MODEL_AMPLITUDES = tuple(sorted({STATED_AMPLITUDES[-1], *(scene(name).A0 for name in STATES.values())}))
-#: Drive periods shown of figures 3a and 3b.
+#: Drive periods shown in figures 3a and 3b.
 ENERGY = {"fig3a": 4, "fig3b": 9}
-#: Samples a drive period of force trains: a pulse of the rig lasts 1/70 of one at 60 Hz.
+#: Samples per drive period of force trains: at 60 Hz, a pulse in the rig lasts 1/70 of a period.
 _TRAIN_SAMPLES = 960
-#: Samples a drive period of energy maps: pulses of section 2 are slower.
+#: Samples per drive period of energy maps: section 2's pulses take a larger part of a period.
 _ENERGY_SAMPLES = 192
-#: Drive periods for which model (3) is followed from rest; the last of them are shown.
+#: Drive periods for which model (3) is run from rest; the last of them are shown.
 FOLLOWED_PERIODS = 60
-#: Accuracy of model (3)'s steps; what a measured force leaves open between its samples is more.
+#: Accuracy of model (3)'s steps; the uncertainty of a measured force between its samples is larger.
 _OBSERVER_ACCURACY = 1e-4
 #: The paper's foundation, κ = k/(K√A0).
 KAPPA = 0.001
-#: Figure 11: drive frequency [Hz], which the text does not name; at 200 Hz as many multipliers are outside.
+#: Figure 11: drive frequency [Hz], which the text does not state; at 200 Hz, as many multipliers are outside.
 COUPLED_FREQUENCY = 100.0
-#: Figure 11: first distance of the observer from its chain, in drive amplitudes.
+#: Figure 11: initial distance of the observer from its chain, in drive amplitudes.
 COUPLED_DISTANCE = 1e-3
-#: Figure 11: drive periods that are shown.
+#: Figure 11: drive periods shown.
 COUPLED_PERIODS = 16
 
 
 def rig(name: str, fixture: bool = False) -> Rig:
-    """Figures 1, 4 and 8; `fixture` adds what stands around the chain, as figure 4 does."""
+    """Compute figures 1, 4 and 8; `fixture` adds the apparatus around the chain, as in figure 4."""
     return Rig(scene(name), fixture)
 
 
 def transmission(given: Given, stop: Stop | None, progress: Progress) -> Transmission:
-    """Figure 2."""
+    """Compute figure 2."""
     return Transmission(_curve(scene("sec2"), SECTION_2_FREQUENCIES, stop, progress), given.curve)
 
 
 def energy(names: Sequence[str], stop: Stop | None) -> EnergyMaps:
-    """Figure 3 or one of its parts."""
+    """Compute figure 3 or one of its parts."""
     return EnergyMaps(tuple((settle(scene(name), samples=_ENERGY_SAMPLES, stop=stop), ENERGY[name]) for name in names))
 
 
 def shaker(given: Given) -> ShakerAmplitude:
-    """Figure 5."""
+    """Compute figure 5."""
     return ShakerAmplitude(RIG_FREQUENCIES, STATED_AMPLITUDES, given.shaker)
 
 
 def response(given: Given, observed: bool, stop: Stop | None, progress: Progress) -> RigResponse:
-    """Figures 6 and 9; `observed` adds model (3) and more amplitudes, as figure 9 does."""
+    """Compute figures 6 and 9; `observed` adds model (3) and more amplitudes, as in figure 9."""
     amplitudes = MODEL_AMPLITUDES if observed else (RIG_AMPLITUDE,)
     part = 1.0 / (len(amplitudes) + 1)
     curves = [_curve(scene("rig").evolve(A0=a, kappa=KAPPA), RIG_FREQUENCIES, stop, _within(progress, i * part, part))
@@ -102,7 +102,7 @@ def response(given: Given, observed: bool, stop: Stop | None, progress: Progress
 
 def trains(frequencies: Sequence[float], given: Given, observed: bool, stop: Stop | None,
            progress: Progress) -> Trains:
-    """Figures 7, 10 and 12; `observed` adds model (3), as figure 10 does."""
+    """Compute figures 7, 10 and 12; `observed` adds model (3), as in figure 10."""
     columns = []
     for i, f in enumerate(frequencies):
         columns.append(column(f, given.series.get(f), observed, stop))
@@ -112,10 +112,10 @@ def trains(frequencies: Sequence[float], given: Given, observed: bool, stop: Sto
 
 def observers(stop: Stop | None, frequencies: Sequence[float] = (COUPLED_FREQUENCY,),
               periods: int = COUPLED_PERIODS, distance: float = COUPLED_DISTANCE) -> Observers:
-    """Figure 11: at every frequency [Hz] a row without foundation, then one with κ = 0.001.
+    """Compute figure 11: at every frequency [Hz], a row without a foundation, then one with κ = 0.001.
 
-    (a) One multiplier lies outside the unit circle, (b) the chain's orbit is stable and (c) the observer leaves it; (d)
-    all multipliers lie inside and (e, f) both first beads move alike.
+    (a) One multiplier lies outside the unit circle, (b) the chain's orbit is stable, and (c) the observer leaves it.
+    (d) All multipliers lie inside, and (e, f) the first beads of both move alike.
     """
     chains = [scene(name).evolve(f=f) for f in frequencies for name in ("fig11-free", "fig11-founded")]
     return Observers(tuple(CoupledRow(chain.f, chain.kappa, twin(chain, distance, periods, stop=stop))
@@ -123,7 +123,7 @@ def observers(stop: Stop | None, frequencies: Sequence[float] = (COUPLED_FREQUEN
 
 
 def column(named: float, series: Series | None, observed: bool, stop: Stop | None) -> Column:
-    """The trains of one of the paper's frequencies [Hz], with model (3) if `observed`."""
+    """Compute the force trains at one of the paper's frequencies [Hz], with model (3) if `observed`."""
     settled = _state(STATES[named], stop)
     run, chain = settled.run, settled.run.scene
     index, time = repeated(run, SHOWN * chain.f)
@@ -137,7 +137,7 @@ def column(named: float, series: Series | None, observed: bool, stop: Stop | Non
 
 def _observer(chain: Scene, series: Series | None, delay: float,
               stop: Stop | None) -> tuple[np.ndarray, np.ndarray, str]:
-    """Model (3): time, output force and words. A measured input force drives it or, without one, model (5)'s."""
+    """Return model (3)'s time, output force and description; without a measured input force, model (5)'s is used."""
     if series is None:
         pair = twin(chain, rest(chain), FOLLOWED_PERIODS, _TRAIN_SAMPLES, stop)
         rows = min(len(pair.time), round(SHOWN * chain.f) * _TRAIN_SAMPLES + 1)
@@ -156,7 +156,7 @@ def _state(name: str, stop: Stop | None) -> Settled:
 
 
 def _within(progress: Progress, begin: float, part: float) -> Progress:
-    """Progress of a part of a computation as progress of the whole."""
+    """Convert the progress of a part of a computation to progress of the whole."""
     return lambda done: progress(begin + part * done)
 
 

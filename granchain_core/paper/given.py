@@ -1,5 +1,4 @@
-"""A user's data for a figure: the kinds it takes, the frequency to which a series belongs, its delay against the model.
-"""
+"""The user's data for a figure: the kinds it accepts, the frequency of each series, and its delay against the model."""
 
 from __future__ import annotations
 
@@ -15,7 +14,7 @@ from .results import SHOWN
 
 @dataclass(frozen=True)
 class Given:
-    """Measured data of one figure: a resonance curve, the shaker's amplitude, series by the paper's frequency [Hz]."""
+    """Measured data for one figure: a resonance curve, the shaker's amplitude, series by the paper's frequency [Hz]."""
 
     curve: Measured | None = None
     shaker: Shaker | None = None
@@ -23,16 +22,16 @@ class Given:
 
     @property
     def sentences(self) -> list[str]:
-        """A sentence for each file: how it was understood."""
+        """Return a sentence for each file that says how it was understood."""
         parts = [measurement.understood for measurement in (self.curve, self.shaker) if measurement is not None]
         return parts + [f"at {f:g} Hz {measurement.understood}" for f, measurement in sorted(self.series.items())]
 
 
-#: A component smaller than this fraction of the signal's range has no phase to align by.
+#: A component smaller than this fraction of the signal's range has no phase that could be aligned.
 _LEAST_AMPLITUDE = 1e-3
-#: The field of `Given` that a file's content belongs to.
+#: The field of `Given` for a file's content.
 _KINDS = {Measured: "curve", Shaker: "shaker", Series: "series"}
-#: Contents of the files in words, with their columns.
+#: Contents of the files in words, with columns.
 _WORDS = {"curve": "a resonance curve (frequency_Hz, force_N)",
           "shaker": "the shaker's amplitude (frequency_Hz, velocity_m_s or displacement_m)",
           "series": "time series (time_s and velocity_m_s, input_force_N, output_force_N)"}
@@ -40,9 +39,9 @@ _WORDS = {"curve": "a resonance curve (frequency_Hz, force_N)",
 
 def read_given(number: str, takes: Sequence[str], frequencies: Sequence[float], files: Sequence[str],
                answers: Answers | None = None) -> Given:
-    """The files of `--data`, each FILE or HZ=FILE; `answers` are for all of them.
+    """Read the files of `--data`, each FILE or HZ=FILE; `answers` apply to all of them.
 
-    Raises `Unclear` for what has to be asked, and `BadInput` for what the figure does not take.
+    Raises `Unclear` if the user has to be asked, and `BadInput` for data that the figure does not accept.
     """
     given = Given()
     for name in files:
@@ -90,11 +89,11 @@ def _frequency(hertz: float | None, frequencies: Sequence[float], path: str, num
 
 
 def delay_of(series: Series, f: float, time: np.ndarray, velocity: np.ndarray, force: np.ndarray) -> float:
-    """By how much a series must be moved back, so that its last `SHOWN` seconds are from 0 on and in phase [s].
+    """Return by how much [s] a series must be moved back, so that its last `SHOWN` seconds start at 0 and are in phase.
 
-    `velocity` and input `force` at `time` (T,) are the model's. The phase is that of the component at `f` [Hz], the
-    frequency of the model's drive: of the input force or, where that was not measured, of the velocity. A series
-    without such a component, as of an output force alone, is moved by whole drive periods.
+    `velocity` and input `force` at `time` (T,) are the model's. The phase is that of the component at the model's drive
+    frequency `f` [Hz], in the input force or, if that was not measured, in the velocity. A series without such a
+    component, for example of an output force alone, is moved by whole drive periods.
     """
     for model, measured in ((force, series.input_force), (velocity, series.velocity)):
         if measured is not None:
@@ -108,7 +107,7 @@ def delay_of(series: Series, f: float, time: np.ndarray, velocity: np.ndarray, f
 
 
 def moved_back(series: Series, delay: float) -> Series:
-    """A series `delay` seconds earlier, of which what is then from 0 to `SHOWN` is kept."""
+    """Move a series `delay` seconds earlier, and keep its part from 0 to `SHOWN`."""
     time = series.time - delay
     kept = (time >= 0.0) & (time <= SHOWN)
     velocity, entered, arrived = (None if values is None else values[kept] for values in (
@@ -117,7 +116,7 @@ def moved_back(series: Series, delay: float) -> Series:
 
 
 def _component(time: np.ndarray, values: np.ndarray, f: float) -> tuple[float, float]:
-    """Phase 2πfs and amplitude of the part a·cos(2πf(t − s)) of `values`, over whole periods where there is one."""
+    """Return phase 2πfs and amplitude of the part a·cos(2πf(t − s)) of `values`, over whole periods if possible."""
     duration = np.floor((time[-1] - time[0]) * f + 1e-9) / f
     inside = time - time[0] <= duration if duration > 0.0 else np.ones(len(time), dtype=bool)
     t, v = time[inside], values[inside]

@@ -1,4 +1,4 @@
-"""The bold numbers in the table of docs/paper.md, computed row by row."""
+"""Computation of the bold numbers in the table of docs/paper.md, row by row."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from .peaks_and_valleys import dips, peaks
 Numbers = list[float | str]
 #: Density of the rig's beads [kg/m³], from the text.
 _DENSITY = 7850.0
-#: Samples a period that find the largest kinetic energy to 1e-8; with 96, as many pictures have, 4 % of it is missed.
+#: Samples per period that give the largest kinetic energy to 1e-8; with 96, as in many pictures, 4 % of it is missed.
 _FINE = 3840
 
 
@@ -139,7 +139,7 @@ def _states() -> Numbers:
 
 
 def _trains() -> Numbers:
-    """The presets at 90 and 50 Hz; then 100 Hz from rest with the amplitudes of `_two_solutions`."""
+    """Compute the presets at 90 and 50 Hz, then 100 Hz from rest with the amplitudes of `_two_solutions`."""
     shown = [_settle(STATES[f]) for f in (90.0, 100.0)]
     twice = scene(STATES[100.0]).evolve(f=100.0)
     gentle = [settle(chain, rest(chain)) for chain in (twice.evolve(A0=a, kappa=KAPPA) for a in (RIG_AMPLITUDE, 10e-6))]
@@ -148,7 +148,7 @@ def _trains() -> Numbers:
 
 
 def _two_solutions() -> Numbers:
-    """At 100 Hz with the rig's amplitude, with one between, and with that of the preset; then the preset at 50 Hz."""
+    """Compute 100 Hz with the rig's amplitude, an intermediate one, and the preset's; then the preset at 50 Hz."""
     preset = scene("fig12-100")
     twice = preset.evolve(f=100.0)
     gentle = [attractors(twice.evolve(A0=a, kappa=KAPPA), 32) for a in (RIG_AMPLITUDE, 10e-6)]
@@ -174,7 +174,7 @@ _NUMBERS: dict[str, Callable[[], Numbers]] = {
 
 
 def numbers_of(key: str) -> Numbers:
-    """The bold entries of the row with this key, computed: numbers in the row's units, and words."""
+    """Compute the bold entries of the row with this key: numbers in the row's units, and words."""
     if key not in _NUMBERS:
         raise unknown_name("row", key, _NUMBERS)
     return _NUMBERS[key]()

@@ -1,4 +1,4 @@
-"""Peaks and dips of a resonance curve, by prominence: where the paper names resonances and anti-resonances."""
+"""Peaks and dips of a resonance curve, by prominence: the paper's resonances and anti-resonances."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ from ..steady.curve.resonance import peaks_and_valleys
 
 
 def turning_points(curve: Curve) -> tuple[list[CurvePoint], list[CurvePoint]]:
-    """Peaks and dips of the elastic output force, without the curve's ends."""
+    """Return peaks and dips of the elastic output force, excluding the curve's ends."""
     high, low = peaks_and_valleys(curve.column("max_output_force_elastic"))
     return [curve.points[i] for i in high], [curve.points[i] for i in low]
 
 
 def peaks(curve: Curve) -> list[CurvePoint]:
-    """Resonances: peaks on which the motion is periodic."""
+    """Return the resonances: peaks at which the motion is periodic."""
     return [p for p in turning_points(curve)[0] if p.regime.period is not None]
 
 
 def dips(curve: Curve) -> list[CurvePoint]:
-    """The first dip after each resonance but the last."""
+    """Return the first dip after each resonance except the last."""
     tops = [p.frequency for p in peaks(curve)]
     lowest = []
     for low, high in pairwise(tops):

@@ -1,4 +1,4 @@
-"""Results from which the figures are drawn; `rows` has the numbers of a figure as columns of a table."""
+"""Results from which the figures are drawn; `rows` yields the numbers of a figure as rows of a table."""
 
 from __future__ import annotations
 
@@ -25,18 +25,18 @@ class Result(Protocol):
     """The result of any figure."""
 
     def rows(self) -> Iterator[Row]:
-        """The figure's numbers, one dictionary a line; units are in the names."""
+        """Yield the figure's numbers, one dictionary per row, with units in the names."""
 
 
 @dataclass(frozen=True, eq=False)
 class Rig:
-    """Figures 1, 4 and 8: a chain at rest, its dimensions from the scene. `fixture` adds what stands around it."""
+    """Figures 1, 4 and 8: a chain at rest, with dimensions from the scene. `fixture` adds the apparatus around it."""
 
     scene: Scene
     fixture: bool = False
 
     def rows(self) -> Iterator[Row]:
-        """The place, radius and mass of every bead; the driver is bead 0."""
+        """Yield position, radius and mass of every bead; the driver is bead 0."""
         place = 0.0
         for number, bead in enumerate((self.scene.bead(1), *self.scene.beads)):
             place += bead.radius if number == 0 else 2.0 * bead.radius
@@ -46,13 +46,13 @@ class Rig:
 
 @dataclass(frozen=True, eq=False)
 class Transmission:
-    """Figure 2: the curve from rest, and a measured one."""
+    """Figure 2: the curve from rest, and a measured curve."""
 
     curve: Curve
     measured: Measured | None = None
 
     def rows(self) -> Iterator[Row]:
-        """One line a frequency; measured points follow."""
+        """Yield one row per frequency, then the measured points."""
         yield from _curve_rows(self.curve)
         yield from _measured_rows(self.measured)
 
@@ -64,7 +64,7 @@ class EnergyMaps:
     parts: tuple[tuple[Settled, int], ...]
 
     def rows(self) -> Iterator[Row]:
-        """One line an instant: drive, force, and the kinetic energy of every bead."""
+        """Yield one row per instant: drive, force, and the kinetic energy of every bead."""
         for settled, periods in self.parts:
             index, time = repeated(settled.run, periods)
             for i, t in zip(index, time, strict=True):
@@ -77,18 +77,18 @@ class EnergyMaps:
 
 @dataclass(frozen=True, eq=False)
 class ShakerAmplitude:
-    """Figure 5: velocity amplitude V0 = 2πf A0 over f [Hz] for amplitudes A0 [m], and the measured one."""
+    """Figure 5: velocity amplitude V0 = 2πf A0 over f [Hz] for amplitudes A0 [m], and the measured amplitude."""
 
     frequency: np.ndarray
     amplitudes: tuple[float, ...]
     measured: Shaker | None = None
 
     def velocity(self, amplitude: float) -> np.ndarray:
-        """V0 over the frequencies [m/s]."""
+        """Return V0 over the frequencies [m/s]."""
         return np.asarray(2.0 * math.pi * self.frequency * amplitude)
 
     def rows(self) -> Iterator[Row]:
-        """One line a frequency and amplitude; measured points follow."""
+        """Yield one row per frequency and amplitude, then the measured points."""
         for amplitude in self.amplitudes:
             for f, v in zip(self.frequency, self.velocity(amplitude), strict=True):
                 yield {"source": "computed", "frequency_Hz": f, "velocity_m_s": v, "displacement_m": amplitude}
@@ -100,16 +100,16 @@ class ShakerAmplitude:
 
 @dataclass(frozen=True, eq=False)
 class RigCurves:
-    """Panel (a) of figures 6 and 9: the rig's curves at constant amplitudes, what the text states, single states."""
+    """Panel (a) of figures 6 and 9: the rig's curves at constant amplitudes, features stated in the text, states."""
 
     curves: tuple[Curve, ...]
     features: tuple[Feature, ...]
     states: tuple[tuple[float, Settled], ...] = ()
-    """States at amplitudes of their own, each at the frequency [Hz] that the paper names."""
+    """Motions at individual amplitudes, each with the frequency [Hz] that the paper gives it."""
     measured: Measured | None = None
 
     def rows(self) -> Iterator[Row]:
-        """Lines of every curve, then the states, then measured points."""
+        """Yield the rows of every curve, then the states, then the measured points."""
         for curve in self.curves:
             for row in _curve_rows(curve):
                 yield {"panel": "a", **row}
@@ -126,9 +126,9 @@ class RigCurves:
 class Column:
     """One frequency of figures 6b, 7, 9b, 10 and 12: force trains over `SHOWN` seconds.
 
-    named : the frequency the paper gives it [Hz]. found : the settled orbit of model (5). time (T,) from 0 [s];
-    velocity, input_force, output_force, contact (T,) of it, `contact` being whether driver and bead 1 touch. observer :
-    output force of model (3) at `observer_time`, or None. measured : a user's series shifted so that it is in phase.
+    named : the paper's frequency [Hz]. found : the settled orbit of model (5). time (T,) : from 0 [s]. velocity,
+    input_force, output_force, contact (T,) : of that orbit; `contact` is whether driver and bead 1 touch. observer :
+    output force of model (3) at `observer_time`, or None. measured : the user's series, shifted to be in phase.
     """
 
     named: float
@@ -144,7 +144,7 @@ class Column:
     measured: Series | None = None
 
     def rows(self) -> Iterator[Row]:
-        """Lines of model (5), then of model (3), then of the measured series."""
+        """Yield the rows of model (5), then of model (3), then of the measured series."""
         for values in zip(self.time, self.velocity, self.input_force, self.output_force, self.contact, strict=True):
             yield {"frequency_in_paper_Hz": self.named, "source": "model (5)", "f_Hz": self.found.run.scene.f,
                    "A0_m": self.found.run.scene.A0,
@@ -169,7 +169,7 @@ class Trains:
     columns: tuple[Column, ...]
 
     def rows(self) -> Iterator[Row]:
-        """The lines of all columns."""
+        """Yield the rows of all columns."""
         for column in self.columns:
             yield from column.rows()
 
@@ -182,7 +182,7 @@ class RigResponse:
     column: Column
 
     def rows(self) -> Iterator[Row]:
-        """The lines of both panels."""
+        """Yield the rows of both panels."""
         yield from self.curves.rows()
         for row in self.column.rows():
             yield {"panel": "b", **row}
@@ -198,7 +198,7 @@ class CoupledRow:
 
     @property
     def multipliers(self) -> np.ndarray:
-        """Panel (a) or (d): the chain's and the observer's multipliers."""
+        """Multipliers of chain and observer, panel (a) or (d)."""
         multipliers = self.twin.multipliers
         assert multipliers is not None  # the figure's orbits are periodic
         return multipliers
@@ -210,7 +210,7 @@ class CoupledRow:
 
     @property
     def first_beads(self) -> tuple[np.ndarray, np.ndarray]:
-        """Panels (b), (c) or (e), (f): displacement of bead 1 of chain and observer over `twin.time` [m]."""
+        """Return the displacement [m] of bead 1 of chain and observer over `twin.time`, panels (b), (c) or (e), (f)."""
         return self.twin.chain[:, 0], self.twin.observer[:, 0]
 
 
@@ -221,7 +221,7 @@ class Observers:
     parts: tuple[CoupledRow, ...]
 
     def rows(self) -> Iterator[Row]:
-        """Multipliers, then the two first beads over time."""
+        """Yield the multipliers, then both first beads over time."""
         for part in self.parts:
             orbit = part.twin.orbit
             assert orbit is not None and orbit.observer_multipliers is not None
@@ -237,9 +237,9 @@ class Observers:
 
 
 def repeated(run: Run, periods: float) -> tuple[np.ndarray, np.ndarray]:
-    """Indices into a recorded orbit, again and again for `periods` drive periods, and their times from 0 [s].
+    """Return indices that repeat a recorded orbit for `periods` drive periods, and their times from 0 [s].
 
-    A motion that does not repeat is shown once, as far as it was recorded.
+    A motion that does not repeat is shown once, for as long as it was recorded.
     """
     rows = len(run.time) - 1
     count = round(periods * run.samples) + 1

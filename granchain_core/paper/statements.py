@@ -1,4 +1,4 @@
-"""The table of docs/paper.md: what the paper states, what we get, where they differ, the command that shows it."""
+"""The table of docs/paper.md: the paper's statements, our results, their differences, and commands that show them."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ..scene import ASSETS
 
 @dataclass(frozen=True)
 class Statement:
-    """One row: the paper's words and ours, with what is computed in bold, **0.622** or **period 1**."""
+    """One row: the paper's words and ours, with computed entries in bold, **0.622** or **period 1**."""
 
     key: str
     figures: tuple[str, ...]
@@ -24,11 +24,11 @@ class Statement:
 
     @property
     def computed(self) -> list[str]:
-        """The bold numbers and words, in order."""
+        """Return the bold numbers and words, in order."""
         return re.findall(r"\*\*(.+?)\*\*", self.ours)
 
     def wrong(self, numbers: Sequence[float | str]) -> list[str]:
-        """Entries that disagree with the computed ones: another word, or a number off by more than its last digit."""
+        """Return the entries that differ from the computed ones in a word, or by more than the last digit."""
         if len(numbers) != len(self.computed):
             return [f"{self.key}: {len(numbers)} values for {len(self.computed)} in bold"]
         return [f"{self.key}: {shown} is {value}" for shown, value in zip(self.computed, numbers, strict=True)
@@ -36,13 +36,13 @@ class Statement:
 
 
 def unit_of(number: str) -> float:
-    """One unit of the last digit, 0.001 of "0.622" and 1e6 of "9.758e9"."""
+    """Return one unit of the last digit: 0.001 for "0.622", 1e6 for "9.758e9"."""
     mantissa, _, exponent = number.lower().partition("e")
     return float(10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2])))
 
 
 @functools.cache
 def statements() -> tuple[Statement, ...]:
-    """All rows, in the order of the paper."""
+    """Return all rows in the order of the paper."""
     data = tomllib.loads((ASSETS / "paper" / "statements.toml").read_text(encoding="utf-8"))
     return tuple(Statement(**{**row, "figures": tuple(row["figures"])}) for row in data["statement"])

@@ -1,1 +1,1 @@
-"""Kernels compiled ahead of time: which there are, and in which pieces (`granchain warm`)."""
+"""Compilation of kernels ahead of time, in pieces (`granchain warm`)."""

@@ -1,4 +1,4 @@
-"""The table of what can be compiled ahead of time.
+"""The table of pieces that can be compiled ahead of time.
 
 The kernels of a new *structure* (docs/design.md, "A structure selects the kernels") are compiled once per machine, in
 pieces, each of which can be compiled in its own process.
@@ -53,7 +53,7 @@ from .pieces import (
 
 
 def structure(shown: Scene) -> str:
-    """Name of a scene's structure."""
+    """Return the name of a scene's structure."""
     scaled = scale_chain(shown)
     width = chain_width(scaled)
     length = f"vector of {width}" if width else "long"
@@ -64,7 +64,7 @@ def structure(shown: Scene) -> str:
 
 
 def _engine(setting: MethodSetting) -> Callable[[Scene], None]:
-    """A piece: whole periods and samples with one method."""
+    """Return a piece that compiles whole periods and samples with one method."""
 
     def compile_engine(short: Scene) -> None:
         engine = Engine(short, setting, 2)
@@ -75,13 +75,13 @@ def _engine(setting: MethodSetting) -> Callable[[Scene], None]:
 
 
 def _regime(short: Scene) -> None:
-    """The period of a record of strobes, and a state in SI."""
+    """Compile the detection of the period in a record of strobes, and a state in SI units."""
     find_period(np.zeros((2, 2, short.N)))
     scale_chain(short).to_si(np.zeros(2 * (short.N + 2)))
 
 
 def _checks(short: Scene) -> None:
-    """Checks of a batch, and of the records that it leaves undecided."""
+    """Compile the checks of a batch, and of the records that it leaves undecided."""
     record = np.zeros((SLOW_RECORD, 2, short.N))
     if can_share_batch(short):
         Batch(short, Stop()).checks_address()
@@ -90,7 +90,7 @@ def _checks(short: Scene) -> None:
 
 
 def _curve(short: Scene) -> None:
-    """A curve: located jumps, the neighbour of irregular motions, and the batch if the scene can use it."""
+    """Compile a curve: located jumps, the neighbour of irregular motions, and the batch if the scene can use it."""
     if short.forces_jump:
         Engine(short, fixed_step_setting(), 1).record(1)
     growth_along(Engine(short, following_setting(short.cuts_tension), 1), 1)
@@ -103,12 +103,12 @@ def _curve(short: Scene) -> None:
 
 
 def _orbit(short: Scene) -> None:
-    """The tangent flow."""
+    """Compile the tangent flow."""
     StroboscopicMap(short, 1)(np.zeros(2 * short.N))
 
 
 def _branch(short: Scene) -> None:
-    """Orbits continued over a knob."""
+    """Compile the continuation of orbits over a knob."""
     equations = BranchEquations(KnobAxis.of(short, "f", short.f, 2.0 * short.f), 1)
     x = np.zeros(equations.size)
     stroboscopic_map = equations.stroboscopic_map(short.f)
@@ -119,14 +119,14 @@ def _branch(short: Scene) -> None:
 
 
 def _observer(short: Scene) -> None:
-    """The motion of a chain with its observer, and the observer's tangents."""
+    """Compile the motion of a chain with its observer, and the observer's tangents."""
     Pair(short, 2).engine.record(2)
     if not short.cuts_tension:  # such a scene has no multipliers to compute (orbits/stroboscopic_map.py)
         StroboscopicMap(short, 1)(np.zeros(2 * short.N), observer=True)
 
 
 def _cost(account: bool) -> Callable[[Scene], None]:
-    """A piece: the kernels that are timed for the cost of an effect, with the energy account or without."""
+    """Return a piece that compiles the kernels timed for an effect's cost, with or without the energy account."""
 
     def compile_cost(short: Scene) -> None:
         for name in (CODE, MOTION):
@@ -135,7 +135,7 @@ def _cost(account: bool) -> Callable[[Scene], None]:
     return compile_cost
 
 
-#: Every piece with the function that compiles it by a short run, in the order in which a visitor needs them.
+#: Every piece, with the function that compiles it by a short run, in the order in which a visitor needs them.
 PIECES: dict[str, Callable[[Scene], None]] = {
     REGIME_KERNELS: _regime, CHECK_KERNELS: _checks, CURVE_KERNELS: _curve,
     DOP853_KERNELS: _engine(dop853_setting(1e-3)), FIXED_STEP_KERNELS: _engine(fixed_step_setting()),
@@ -146,21 +146,21 @@ PIECES: dict[str, Callable[[Scene], None]] = {
 
 def compile_piece(shown: Scene, piece: str) -> None:
     """Compile one piece for the scene's structure, or load it from the cache, and mark it as compiled."""
-    PIECES[piece](shown.evolve(f=max(shown.f, 1000.0), drive="harmonic"))  # short periods, and all that has orbits
+    PIECES[piece](shown.evolve(f=max(shown.f, 1000.0), drive="harmonic"))  # short periods, and a drive that has orbits
     if CACHE_FOLDER is not None:
-        with contextlib.suppress(OSError):  # the kernels were not kept either; kernels/compiling/cache.py has said so
+        with contextlib.suppress(OSError):  # kernels are not cached either, as kernels/compiling/cache.py has reported
             _marker(CACHE_FOLDER, structure(shown), piece).touch()
 
 
 def is_warm(shown: Scene, pieces: Iterable[str] = MOTION_KERNELS) -> bool:
-    """Whether these pieces of the scene's structure have been compiled on this machine."""
+    """Return whether these pieces of the scene's structure have been compiled on this machine."""
     if CACHE_FOLDER is None:
         return False
     return all(_marker(CACHE_FOLDER, structure(shown), piece).exists() for piece in pieces)
 
 
 def compiled_lines(names: Iterable[str]) -> Iterator[str]:
-    """Which pieces of these scenes' structures are compiled on this machine, and what the cache has altogether."""
+    """Yield which pieces of these scenes' structures are compiled on this machine, and the total size of the cache."""
     chains = {structure(scene(name)): scene(name) for name in names}
     for name, chain in chains.items():
         compiled = [piece for piece in PIECES if is_warm(chain, [piece])]
@@ -168,7 +168,7 @@ def compiled_lines(names: Iterable[str]) -> Iterator[str]:
         yield (f"{name}: {', '.join(compiled) or 'nothing'} compiled"
                + (f"; {', '.join(lacking)} not compiled" if lacking else ""))
     if CACHE_FOLDER is None:
-        yield "no folder for compiled kernels: they are compiled anew in every process"
+        yield "no folder for compiled kernels: they are compiled again in every process"
         return
     files = list(CACHE_FOLDER.rglob("*.nbc"))
     size = sum(file.stat().st_size for file in files)
@@ -184,15 +184,15 @@ def _compile(job: tuple[Scene, str]) -> str:
     return f"{structure(job[0])}, {job[1]}"
 
 
-#: Scenes that are compiled where none is named: the paper's chains, with a foundation and without.
+#: Scenes compiled by default: the paper's chains, with and without a foundation.
 USUAL = ("sec2", "rig")
 
 
 def warm_scenes(names: Iterable[str] = USUAL, workers: int = 2) -> Iterable[str]:
-    """Compile all pieces of these scenes' structures in `workers` processes; yields what has been finished.
+    """Compile all pieces of these scenes' structures in `workers` processes, yielding each as it is finished.
 
-    A structure's pieces are compiled in one process: they share parts that are compiled once a process. Every other
-    process begins with the last piece, so that none waits for the kernels that all structures share.
+    A structure's pieces are compiled in one process, because they share parts that are compiled once per process. Every
+    second process starts with the last piece, so that none waits for the kernels that all structures share.
     """
     chains: dict[str, Scene] = {}
     for name in names:

@@ -1,1 +1,1 @@
-"""Results of one motion in SI: what a run gives back, the motion over time, the regime with its evidence."""
+"""Results of one motion in SI units: the result of a run, the motion over time, and the regime with its evidence."""

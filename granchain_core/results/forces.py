@@ -1,4 +1,4 @@
-"""Largest forces of a motion with their relative errors, as attributes and in words."""
+"""Largest forces of a motion and their relative errors, as attributes and in words."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ RUN_ERRORS = ("error_estimate_input", "error_estimate_output", "error_estimate_e
 
 @dataclass(frozen=True)
 class ForceErrors:
-    """Relative errors of the largest input, output and elastic output force; None where none is stated."""
+    """Relative errors of the largest input, output and elastic output force; None if none is stated."""
 
     input: float | None = None
     output: float | None = None
@@ -22,12 +22,12 @@ class ForceErrors:
 
     @classmethod
     def of(cls, errors: np.ndarray | None) -> ForceErrors:
-        """From an array (3,) in that order; a force that is zero has no relative error."""
+        """Return the errors of an array (3,) in that order; a force that is zero has no relative error."""
         return cls() if errors is None else cls(*(e if math.isfinite(e) else None for e in errors.tolist()))
 
     @property
     def row(self) -> tuple[float, float, float]:
-        """The errors of input, output and elastic force as numbers, NaN where none is stated."""
+        """Return the errors of input, output and elastic force as numbers, NaN if none is stated."""
         values = (self.input, self.output, self.elastic)
         return tuple(np.nan if e is None else e for e in values)  # type: ignore[return-value]
 
@@ -51,7 +51,7 @@ class HasForces(LargestForces, Protocol):
 
 
 def force_sentences(motion: HasForces) -> list[str]:
-    """The largest forces in words, with their errors."""
+    """Describe the largest forces and their errors in words."""
     errors = (motion.force_errors.output, motion.force_errors.elastic, motion.force_errors.input)
     forces = (motion.max_output_force, motion.max_output_force_elastic, motion.max_input_force)
     return [f"largest {name} force {force:.6g} N" + (", no error stated" if e is None else f", relative error {e:.1e}")

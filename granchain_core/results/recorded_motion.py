@@ -1,4 +1,4 @@
-"""A motion over time with the forces at both ends, the base of runs, observations and driven motions."""
+"""A motion over time with the forces at both ends: the base class of runs, observations and driven motions."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from ..scene import Scene
 from ..scene.hertz import EXPONENT
 from ..tables import Column, Labelled, axis
 
-#: Most recorded values of one motion: samples times beads.
+#: Largest number of recorded values of one motion: samples times beads.
 MOST_RECORDED = 50_000_000
-#: Most samples a drive period.
+#: Largest number of samples per drive period.
 MOST_SAMPLES = 1_000_000
 
 _TIME_UNIT = "s"
@@ -44,10 +44,10 @@ class RecordedMotion(Labelled):
 
     @property
     def error_estimate(self) -> float | None:
-        """`displacement_error` by the name that it has in the command line's JSON.
+        """`displacement_error` under its name in the command line's JSON.
 
-        In curves, parameter maps and attractors this name is the
-        error of the output force (docs/result-files.md, "Which name is which error").
+        In curves, parameter maps and attractors, this name denotes the error of the output force (docs/result-files.md,
+        "Which name is which error").
         """
         return self.displacement_error
 
@@ -58,37 +58,37 @@ class RecordedMotion(Labelled):
 
     @property
     def input_force(self) -> np.ndarray:
-        """Force on bead 1 from the driver, or the one that was given (T,) [N]."""
+        """Force on bead 1 (T,) [N], from the driver or as given."""
         return self.force[:, 0]
 
     @property
     def output_force(self) -> np.ndarray:
-        """Total force on the wall, elastic and damping (T,) [N]."""
+        """Total force on the wall (T,) [N], elastic and damping."""
         return self.force[:, -1]
 
     @property
     def output_force_elastic(self) -> np.ndarray:
-        """Elastic part of the force on the wall, the paper's F_out (T,) [N]."""
+        """Elastic part of the force on the wall (T,) [N], the paper's F_out."""
         return elastic_output(self.scene, self.displacement[:, -1])
 
 
 def motion_columns(motion: RecordedMotion) -> dict[str, Column]:
-    """The columns over time of a motion: of a run all columns, of an observation those without a driver."""
+    """Return the columns over time of a motion: all for a run, those that need no driver for an observation."""
     return {name: Column(values, axes, unit, meaning) for name, (axes, unit, meaning) in _COLUMNS.items()
             if (values := getattr(motion, name, None)) is not None}
 
 
 def time_axis(time: np.ndarray, meaning: str) -> dict[str, Column]:
-    """The axis of times [s]; `meaning` says since when."""
+    """Return the time axis [s]; `meaning` says from which instant time counts."""
     return axis("time", time, _TIME_UNIT, meaning)
 
 
 def motion_units(group: str) -> dict[str, str]:
-    """The units of a motion's times and columns by their paths in a group of a file."""
+    """Return the units of a motion's times and columns, by their paths in a group of a file."""
     return {f"{group}/time": _TIME_UNIT, **{f"{group}/{name}": unit for name, (_, unit, _) in _COLUMNS.items()}}
 
 
 def elastic_output(scene: Scene, last: np.ndarray) -> np.ndarray:
-    """Elastic force on the wall [N] for displacements of the last bead [m]."""
+    """Return the elastic force on the wall [N] for displacements of the last bead [m]."""
     overlap = np.maximum(last + scene.static_overlap()[-1], 0.0)
     return np.asarray(scene.contact_stiffness()[-1] * overlap**EXPONENT)

@@ -1,4 +1,4 @@
-"""The regime of a motion with its evidence: period n, quasi-periodic, chaotic, or unsettled."""
+"""The regime of a motion and its evidence: period n, quasi-periodic, chaotic, or unsettled."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ NEVER_REPEATING = ("quasi-periodic", "chaotic")
 FOUND_BY = ("settling", "Newton", "extrapolation")
 #: [all] A distance is taken to shrink by |μ| per orbit, at most 1 less this (`Regime.assumed_contraction`).
 LEAST_BELOW_1 = 1e-6
-#: What files and JSON call `Regime.observed_contraction`: their keys do not change.
+#: Name of `Regime.observed_contraction` in files and JSON, whose keys do not change.
 CONTRACTION_KEY = "decay"
 
 
@@ -39,31 +39,31 @@ class Regime:
     distance : float or None
         Bound on the relative distance to the orbit.
     periods_run : int
-        Drive periods that were run.
+        Number of drive periods run.
     lyapunov : tuple of float or None
-        Lyapunov exponent per drive period and its standard error over blocks of periods, where it was measured.
+        Lyapunov exponent per drive period and its standard error over blocks of periods; None if not measured.
     lyapunov_periods : int or None
         Drive periods over which it was measured.
     multiplier : float or None
         Largest |μ| of the n-period map; None if it was not computed. A batch computes it for orbits found by
         extrapolation that decay slowly, to about 1e-4.
     followed : bool
-        Whether the motion was still approaching its orbit, which was then found by Newton's method or extrapolation.
+        Whether the motion was still approaching its orbit, which Newton's method or extrapolation then found.
     followed_by : str or None
-        Which of the two, "Newton" or "extrapolation"; None where it was neither, and in older files.
+        Which of the two, "Newton" or "extrapolation"; None if neither, and in older files.
     approaches : int or None
         Period of an orbit that an unsettled motion approaches.
     driven : bool
-        Whether there is a drive. Without one, as after an impact, the motion is a transient and `name` is "unsettled".
+        Whether there is a drive. Without one (e.g. after an impact), the motion is a transient, and `name` is
+        "unsettled".
     return_distance : float or None
         Median distance from the strobes of a record's second half to the nearest of its first half, relative to the
-        largest displacement and velocity (w in a batch); known where the Lyapunov exponent is neutral
-        (docs/regimes.md).
+        largest displacement and velocity (w in a batch); known if the Lyapunov exponent is neutral (docs/regimes.md).
     return_limit : float or None
-        Limit of `return_distance`: that of a quasi-periodic motion is below it.
+        Limit below which the `return_distance` of a quasi-periodic motion must be.
     window_ratios : tuple of float or None
         Smallest and largest ratio of the largest change in a window of periods to that in the window before, over three
-        windows and all periods tried; known where the Lyapunov exponent is neutral.
+        windows and all periods tried; known if the Lyapunov exponent is neutral.
 
     Examples
     --------
@@ -92,40 +92,40 @@ class Regime:
     @classmethod
     def unsettled(cls, periods_run: int, lyapunov: tuple[float, float] | None = None,
                   lyapunov_periods: int | None = None) -> Regime:
-        """A motion whose regime is not known after `periods_run` periods."""
+        """Return the regime of a motion that has not settled after `periods_run` periods."""
         return cls(name="unsettled", period=None, observed_contraction=None, distance=None, periods_run=periods_run,
                    lyapunov=lyapunov, lyapunov_periods=lyapunov_periods)
 
     @classmethod
     def undriven(cls, periods_run: int) -> Regime:
-        """A transient: the motion from its start without a drive, after `periods_run` times 1/f.
+        """Return the regime of a motion without a drive, a transient, after `periods_run` times 1/f.
 
-        Its name is "unsettled": files and the command line's JSON have one of `NAMES`, a list that scripts rely on.
-        `driven`, which both have too, tells it from a driven motion that has not settled.
+        Its name is "unsettled", because files and the command line's JSON have one of `NAMES`, a list on which scripts
+        rely. `driven`, which both also contain, distinguishes it from a driven motion that has not settled.
         """
         return cls(name="unsettled", period=None, observed_contraction=None, distance=None, periods_run=periods_run,
                    driven=False)
 
     def to_json(self) -> dict[str, Any]:
-        """The fields by the keys that files and JSON have."""
+        """Return the fields under their keys in files and JSON."""
         return {CONTRACTION_KEY if name == "observed_contraction" else name: value
                 for name, value in asdict(self).items()}
 
     def evidence_by_key(self) -> dict[str, Any]:
-        """The fields, and how the orbit was found, by the keys that the command line's JSON has."""
+        """Return the fields, and how the orbit was found, under their keys in the command line's JSON."""
         return {**self.to_json(), "orbit_found_by": self.orbit_found_by}
 
     @classmethod
     def from_json(cls, kept: Mapping[str, Any]) -> Regime:
-        """The regime with these keys of files, whose values have been checked."""
+        """Return the regime from the keys of a file, whose values have been checked."""
         return cls(**{"observed_contraction" if name == CONTRACTION_KEY else name: value
                       for name, value in kept.items()})
 
     @property
     def orbit_found_by(self) -> str | None:
-        """One of `FOUND_BY`: how the orbit of a periodic motion was found. None for other motions.
+        """How the orbit of a periodic motion was found, one of `FOUND_BY`; None for other motions.
 
-        Also None for an orbit in an older file that the motion was still approaching.
+        It is also None for an older file's orbit that the motion was still approaching.
         """
         if self.name != "periodic":
             return None
@@ -133,9 +133,9 @@ class Regime:
 
     @property
     def assumed_contraction(self) -> float:
-        """Factor by which a distance is taken to shrink per orbit.
+        """Factor by which a distance is assumed to shrink per orbit.
 
-        It is |μ|, else the observed one, else `CONTRACTION_NOT_SEEN`.
+        It is |μ| if known, otherwise the observed factor, otherwise `CONTRACTION_NOT_SEEN`.
         """
         if self.multiplier is not None:
             return min(1.0 - LEAST_BELOW_1, self.multiplier)
@@ -143,9 +143,9 @@ class Regime:
 
     @property
     def evidence(self) -> str:
-        """|μ| where it was computed, else the observed contraction factor; empty where neither is known.
+        """Describe |μ| if it was computed, otherwise the observed contraction factor; empty if neither is known.
 
-        A batch that extrapolated a motion to its orbit without multipliers assumed a contraction: that is no evidence.
+        If a batch extrapolated a motion to its orbit without multipliers, its assumed contraction is not evidence.
         """
         shown = self.period or self.approaches or 1
         if self.multiplier is not None:
@@ -173,13 +173,13 @@ class Regime:
 
 
 def exponent_words(exponent: float, error: float) -> str:
-    """A Lyapunov exponent and its standard error, with two figures of the error, but no more than seven decimals."""
+    """Format a Lyapunov exponent and its standard error with two digits of the error, but at most seven decimals."""
     decimals = min(7, max(1, 1 - math.floor(math.log10(error)))) if 0.0 < error < math.inf else 3
     return f"{exponent:+.{decimals}f} ± {error:.{decimals}f}"
 
 
 def modulus_words(modulus: float) -> str:
-    """A modulus with enough figures to distinguish it from 1 and from 0."""
+    """Format a modulus with enough digits to distinguish it from 1 and from 0."""
     if abs(modulus - 1.0) < 0.01:
         return f"{modulus:.6f}" if abs(modulus - 1.0) < 1e-4 else f"{modulus:.4f}"
     if modulus < 0.0095:

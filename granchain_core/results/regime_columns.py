@@ -1,4 +1,4 @@
-"""Columns with regimes and their evidence, which several results have."""
+"""Columns with regimes and their evidence, shared by several results."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from .regime import FOUND_BY, Regime
 
 
 def regime_columns(regimes: Sequence[Regime], along: str) -> dict[str, Column]:
-    """Regime and period along an axis."""
+    """Return regime and period along an axis."""
     return {"regime": Column(np.array([regime.name for regime in regimes], dtype=object), (along,), "",
                              "periodic, quasi-periodic, chaotic or unsettled"),
             "period": Column(np.array([regime.period or 0 for regime in regimes], dtype=np.int64), (along,), "1",
                              "period in drive periods, 0 where not periodic")}
 
 
-#: The evidence for a regime that every result keeps, and what each number means.
+#: The evidence for a regime that every result keeps, with the meaning of each number.
 EVIDENCE = {
     "decay": "observed contraction factor: factor by which changes shrank per period of the orbit, NaN where not seen",
     "multiplier": "modulus of the leading multiplier, NaN where not computed",
@@ -26,7 +26,7 @@ EVIDENCE = {
     "lyapunov_error": "standard error of the Lyapunov exponent",
     "lyapunov_periods": "drive periods over which the Lyapunov exponent was measured, NaN where not measured",
 }
-#: The rest of the evidence, which a map's cells do not keep.
+#: Further evidence, which the cells of a map do not keep.
 MORE_EVIDENCE = {
     "distance": "bound on the relative distance to the orbit, NaN where not periodic",
     "return_distance": "median distance of late strobes from the nearest early one, NaN where not measured",
@@ -37,7 +37,7 @@ MORE_EVIDENCE = {
 
 
 def evidence_columns(regimes: Sequence[Regime], along: str) -> dict[str, Column]:
-    """All evidence for regimes along an axis."""
+    """Return all evidence for regimes along an axis."""
 
     def whole(values: list[int], meaning: str) -> Column:
         return Column(np.array(values, dtype=np.int64), (along,), "1", meaning)
@@ -59,7 +59,7 @@ def evidence_columns(regimes: Sequence[Regime], along: str) -> dict[str, Column]
 
 
 def _evidence(regime: Regime) -> tuple[float, ...]:
-    """The numbers of `EVIDENCE`, then of `MORE_EVIDENCE`."""
+    """Return the numbers of `EVIDENCE`, then of `MORE_EVIDENCE`."""
     lyapunov, ratios = regime.lyapunov or (np.nan, np.nan), regime.window_ratios or (np.nan, np.nan)
     return (or_nan(regime.observed_contraction), or_nan(regime.multiplier), *lyapunov, or_nan(regime.lyapunov_periods),
             or_nan(regime.distance), or_nan(regime.return_distance), or_nan(regime.return_limit), *ratios)

@@ -1,4 +1,4 @@
-"""The result of a run, in SI."""
+"""The result of a run, in SI units."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ RUN_STARTS = (AT_REST, INITIAL_VELOCITY, GIVEN_STATE)
 
 
 def start_words(scene: Scene, start: State | None) -> str:
-    """The start of a motion of `scene` from `start`, one of `RUN_STARTS`; without `start`, the scene's own."""
+    """Return the start of a motion of `scene` from `start`, one of `RUN_STARTS`; without `start`, the scene's own."""
     if start is not None:
         return GIVEN_STATE
     return INITIAL_VELOCITY if scene.moves_at_start else AT_REST
@@ -39,7 +39,7 @@ class Cost:
     Attributes
     ----------
     wall_s : float
-        Wall-clock time [s]; of a run, without the time of compiling kernels.
+        Wall-clock time [s]; for a run, without the compilation of kernels.
     steps : int
         Accepted steps.
     rhs : int
@@ -65,7 +65,7 @@ class Cost:
 
     @classmethod
     def of(cls, wall_s: float, counts: Counts, method: str) -> Cost:
-        """The cost from an engine's counters."""
+        """Return the cost from an engine's counters."""
         return cls(wall_s, counts.steps, counts.rhs, counts.events, method)
 
 
@@ -73,11 +73,11 @@ class Cost:
 class Jumps:
     """Forces that jump from 0 because a contact with a linear dashpot closes in motion. Openings are not among them.
 
-    Methods that do not locate events keep those of the first and last contact only.
+    Methods that do not locate events only keep the jumps of the first and last contact.
 
-    `time` (J,) [s], `contact` (J,) and `force` (J,) [N], the force just after the jump (its right limit). `missing` is
-    how many more jumps were not kept, `unresolved` how many belong to touches shorter than a step, which methods
-    without located events do not resolve.
+    `time` (J,) [s], `contact` (J,) and `force` (J,) [N], the force just after the jump (its right limit). `missing`
+    counts further jumps that were not kept, `unresolved` those of touches shorter than a step, which methods without
+    located events do not resolve.
     """
 
     time: np.ndarray = field(default_factory=lambda: np.zeros(0))
@@ -87,16 +87,16 @@ class Jumps:
     unresolved: int = 0
 
     def of(self, contact: int) -> tuple[np.ndarray, np.ndarray]:
-        """Times and forces of the jumps of one contact."""
+        """Return the times and forces of the jumps of one contact."""
         mine = self.contact == contact
         return self.time[mine], self.force[mine]
 
     def axis(self) -> dict[str, Column]:
-        """The axis of the jumps: their numbers, from 0."""
+        """Return the axis of the jumps, numbered from 0."""
         return axis("jump", np.arange(len(self.time)), "1", "number of the closing at which a contact force jumps")
 
     def columns(self) -> dict[str, Column]:
-        """Times, contacts and forces of the jumps as columns of a table."""
+        """Return times, contacts and forces of the jumps as columns of a table."""
         more = {"missing": self.missing, "unresolved": self.unresolved}
         return {"jump_time": Column(self.time, ("jump",), "s", "time at which a contact closes in motion", more),
                 "jump_contact": Column(self.contact, ("jump",), "1", "contact that closes"),
@@ -105,7 +105,7 @@ class Jumps:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Run(RecordedMotion):
-    """A recorded motion: T samples of N beads and N + 1 contacts, in SI.
+    """A recorded motion: T samples of N beads and N + 1 contacts, in SI units.
 
     Attributes
     ----------
@@ -114,11 +114,11 @@ class Run(RecordedMotion):
     samples : int
         Samples per drive period.
     time : numpy.ndarray, shape (T,)
-        Time [s] from drive phase 0 of the first period, discarded periods included.
+        Time [s] from drive phase 0 of the first period, including discarded periods.
     displacement, velocity : numpy.ndarray, shape (T, N)
-        Of every bead: displacement from its rest position [m], and velocity [m/s].
+        Displacement of every bead from its rest position [m], and velocity [m/s].
     force : numpy.ndarray, shape (T, N + 1)
-        Total force of every contact, elastic and damping [N].
+        Total force (elastic and damping) of every contact [N].
     drive_displacement : numpy.ndarray, shape (T,)
         Displacement of the driver [m].
     kinetic_energy : numpy.ndarray, shape (T, N)
@@ -129,23 +129,23 @@ class Run(RecordedMotion):
     overlap : numpy.ndarray, shape (T, N + 1)
         Overlap of every contact, negative where there is a gap [m].
     max_input_force, max_output_force, max_output_force_elastic : float
-        Suprema over the recorded time [N], between the samples too, with the right limits at `jumps`.
+        Suprema over the recorded time [N], including times between samples and the right limits at `jumps`.
     force_errors : ForceErrors
         Stated relative errors of these three suprema, `input`, `output`, `elastic`: numerical error only, an empirical
-        bound (docs/accuracy.md), not a proof; None where none is stated.
+        bound (docs/accuracy.md), not a proof; None if none is stated.
     displacement_error : float or None
         Stated largest error of any displacement over the largest displacement: numerical error only, an empirical
-        bound (docs/accuracy.md), not a proof; None where none is stated. Also called `error_estimate`
+        bound (docs/accuracy.md), not a proof; None if none is stated. Also called `error_estimate`
         (docs/result-files.md, "Which name is which error").
     energy_residual : float or None
         Largest |work − loss − change of stored energy| of the record over the largest of |work|, |loss| and the stored
-        energy above that of the preload at rest; None where no account was kept.
+        energy above that of the preload at rest; None if no account was kept.
     regime : Regime
-        What kind of motion it is.
+        The kind of motion, with the evidence.
     status : str
         "done", "accuracy-not-reached" or "over-budget".
     start : str
-        Where the motion began, one of `RUN_STARTS`: "rest", "initial velocity" or "given state".
+        How the motion started, one of `RUN_STARTS`: "rest", "initial velocity" or "given state".
     cost : Cost
         Computing time, steps and evaluations.
     jumps : Jumps
@@ -182,19 +182,19 @@ class Run(RecordedMotion):
 
     @property
     def overlap(self) -> np.ndarray:
-        """Overlap of every contact (T, N+1) [m], negative where there is a gap."""
+        """Overlap of every contact (T, N + 1) [m], negative where there is a gap."""
         rows = len(self.time)
         bodies = np.hstack([self.drive_displacement[:, None], self.displacement, np.zeros((rows, 1))])
         return bodies[:, :-1] - bodies[:, 1:] + self.scene.static_overlap()
 
     def tables(self) -> tuple[Table, ...]:
-        """One table, `run`: the motion over time, bead and contact, the jumps of forces, and what a run has one of."""
+        """Return one table, `run`: the motion over time, bead and contact, the jumps of forces, and single values."""
         axes = time_axis(self.time, "time since the start, at drive phase 0")
         return (Table("run", {**axes, **bead_axis(self.scene.N), **contact_axis(self.scene.N), **self.jumps.axis()},
                       {**motion_columns(self), **self.jumps.columns(), **self._single()}),)
 
     def _single(self) -> dict[str, Column]:
-        """Largest forces, errors and regime: columns without an axis."""
+        """Return largest forces, errors and regime as columns without an axis."""
         forces = np.array([getattr(self, name) for name in MAXIMA])
         kinds = ("input", "output", "elastic output")
         errors = {name: Column(np.array(error), (), "1", f"relative error of the largest {force} force, NaN if unknown")
@@ -208,7 +208,7 @@ class Run(RecordedMotion):
                                  "period in drive periods, 0 where not periodic")}
 
     def attributes(self) -> dict[str, Attribute]:
-        """Largest forces with their errors, regime, status, start, warnings and cost, and where they come from."""
+        """Return largest forces with their errors, regime, status, start, warnings, cost and provenance."""
         return {**provenance(self.scene, self.cost.method, self.displacement_error),
                 "status": self.status, "start": self.start,
                 "warnings": json.dumps(overlap_warnings(self.scene, self.overlap.max(axis=0))),
@@ -218,7 +218,7 @@ class Run(RecordedMotion):
                 **dict(zip(RUN_ERRORS, self.force_errors.row, strict=True))}
 
     def summary(self) -> list[str]:
-        """Regime, largest forces and errors."""
+        """Return regime, largest forces and errors in words."""
         error = self.displacement_error
         reached = "no error stated" if error is None else f"relative error {error:.1e}"
         return [self.regime.sentence, *force_sentences(self),
@@ -226,7 +226,7 @@ class Run(RecordedMotion):
 
 
 def require_run(value: object) -> None:
-    """`BadInput` for anything but a recorded motion; its sentence says how to get one."""
+    """Raise `BadInput` for anything but a recorded motion; the message says how to get one."""
     if isinstance(value, Run):
         return
     near = "its attribute `run` is one" if isinstance(getattr(value, "run", None), Run) else \
@@ -235,11 +235,11 @@ def require_run(value: object) -> None:
 
 
 def residual(energy: np.ndarray | None, static: float) -> float | None:
-    """The largest |work − loss − change of stored energy| of a record, over the energies that take part in the motion.
+    """Return the largest |work − loss − change of stored energy| of a record, over the energies involved in the motion.
 
     These are the largest of |work|, |loss| and |stored energy − `static`|, where `static` is the energy of the contacts
-    at rest under the preload (`ScaledChain.static_energy`). `energy` (T, 3) has the columns stored, work, lost; None
-    where no account was kept.
+    at rest under the preload (`ScaledChain.static_energy`). `energy` (T, 3) has the columns stored, work, lost; it is
+    None if no account was kept.
     """
     if energy is None:
         return None
@@ -250,12 +250,12 @@ def residual(energy: np.ndarray | None, static: float) -> float | None:
 
 def run_from(engine: Engine, samples: Samples, first_sample: int, regime: Regime, error: float | None,
              cost: Cost, *, start: str, status: str = "done", force_errors: np.ndarray | None = None) -> Run:
-    """The `Run` of recorded samples; time counts from drive phase 0, `first_sample` being the index of row 0.
+    """Return the `Run` of recorded samples; time counts from drive phase 0, and `first_sample` is the index of row 0.
 
-    `start` is where the motion began, one of `RUN_STARTS`.
+    `start` is how the motion started, one of `RUN_STARTS`.
 
-    The arrays of `samples` become the run's and are scaled in place: of a long chain they have hundreds of megabytes,
-    and copies took up to a third of a second, in which the computation could not be cancelled.
+    The arrays of `samples` become the run's and are scaled in place. For a long chain, they take hundreds of megabytes,
+    and copying took up to a third of a second, during which the computation could not be cancelled.
     """
     scene, scales = engine.scaled.scene, engine.scaled.scales
     index = first_sample + np.arange(len(samples.displacement))
@@ -275,7 +275,7 @@ def run_from(engine: Engine, samples: Samples, first_sample: int, regime: Regime
 
 
 def _jumps(engine: Engine, first_sample: int) -> Jumps:
-    """The jumps of the engine's last record, in SI."""
+    """Return the jumps of the engine's last record, in SI units."""
     rows, scene = engine.closings, engine.scaled.scene
     period = (first_sample + rows[:, 0].astype(np.int64)) // engine.samples
     return Jumps((period + rows[:, 1] / (2.0 * np.pi)) * scene.period, rows[:, 2].astype(np.int64),

@@ -1,4 +1,4 @@
-"""Scenes: frozen descriptions in SI, knobs and damping laws, presets, the equation on screen; states of chains."""
+"""Scenes: frozen descriptions in SI units, knobs, damping laws, presets, the displayed equation, states of chains."""
 
 from .amplitude import Amplitude
 from .description import Bead, hertz_stiffness

@@ -1,4 +1,4 @@
-"""The drive amplitude as a function of the frequency: a formula, or a table that was measured."""
+"""The drive amplitude as a function of the frequency: a formula or a measured table."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy as np
 from ..errors import BadInput
 from ..inputs.checks import unknown_name
 
-#: Formulas: what stays constant, its unit, and its ratio to A0 as a power of 2πf.
+#: Formulas: the quantity that stays constant, its unit, and its ratio to A0 as a power of 2πf.
 FORMULAS = {"constant-displacement": ("m", 0), "constant-velocity": ("m/s", 1), "constant-acceleration": ("m/s²", 2)}
 
 
@@ -29,7 +29,7 @@ class Amplitude:
     frequencies : tuple of float
         The table's frequencies [Hz], ascending; empty for a formula.
     source : str
-        Where a table comes from.
+        Source of a table.
 
     Examples
     --------
@@ -61,11 +61,11 @@ class Amplitude:
     @classmethod
     def table(cls, frequencies: Sequence[float] | np.ndarray, amplitudes: Sequence[float] | np.ndarray,
               source: str = "") -> Amplitude:
-        """Amplitudes [m] at ascending frequencies [Hz], with straight lines between them."""
+        """Return a table of amplitudes [m] at ascending frequencies [Hz], interpolated linearly."""
         return cls("table", tuple(map(float, amplitudes)), tuple(map(float, frequencies)), source)
 
     def at(self, f: float) -> float:
-        """A0 [m] at a frequency [Hz]. Raises `BadInput` outside a table: nobody measured it there."""
+        """Return A0 [m] at a frequency [Hz]. Raises `BadInput` outside a table, where it was not measured."""
         if self.formula in FORMULAS:
             return float(self.values[0] / (2.0 * math.pi * f) ** FORMULAS[self.formula][1])
         low, high = self.frequencies[0], self.frequencies[-1]
@@ -75,11 +75,11 @@ class Amplitude:
         return float(np.interp(f, self.frequencies, self.values))
 
     def held(self, f: float) -> float:
-        """Like `at`, but beyond a table's ends A0 [m] keeps its value there: for steps past the end of a range."""
+        """Like `at`, but constant beyond a table's ends, for steps past the end of a range."""
         return self.at(min(max(f, self.frequencies[0]), self.frequencies[-1]) if self.frequencies else f)
 
     def check_knobs(self, *knobs: str) -> None:
-        """`BadInput` unless f is among the knobs that vary and A0 is not."""
+        """Raise `BadInput` unless f is among the knobs that vary and A0 is not."""
         if "f" not in knobs:
             raise BadInput("A drive amplitude over the frequency needs a frequency that varies: make f a knob.")
         if "A0" in knobs:
@@ -87,20 +87,20 @@ class Amplitude:
 
     @property
     def words(self) -> str:
-        """The drive in words."""
+        """Description of the drive."""
         if self.formula == "table":
             return (f"A0 from {min(self.values) * 1e6:.4g} to {max(self.values) * 1e6:.4g} µm over {len(self.values)} "
                     f"frequencies{f' of {self.source}' if self.source else ''}")
         return f"{self.formula.replace('-', ' ')} {self.values[0]:g} {FORMULAS[self.formula][0]}"
 
     def to_json(self) -> dict[str, Any]:
-        """Plain data, enough to build it again."""
+        """Return plain data from which the amplitude can be rebuilt."""
         return {"formula": self.formula, "values": list(self.values), "frequencies": list(self.frequencies),
                 "source": self.source}
 
     @classmethod
     def from_json(cls, data: Any) -> Amplitude:
-        """The amplitude that `to_json` wrote. Raises `BadInput` for anything else."""
+        """Return the amplitude that `to_json` wrote. Raises `BadInput` for anything else."""
         if not isinstance(data, dict) or set(data) != {"formula", "values", "frequencies", "source"}:
             raise BadInput("A drive amplitude has formula, values, frequencies and source.")
         rows = [data["values"], data["frequencies"]]

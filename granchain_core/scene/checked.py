@@ -1,4 +1,4 @@
-"""Checks of a scene: of one read from a file everything, of one that is changed what no chain has."""
+"""Checks of a scene. A scene read from a file is checked in full, a changed one only for impossible values."""
 
 from __future__ import annotations
 
@@ -15,37 +15,37 @@ from .quantities import QUANTITIES, WALL_FACTORS, Quantity
 
 #: Longest text of a scene [characters].
 _LONGEST = 10_000
-#: Most entries of a list: as many as beads.
+#: Largest number of entries in a list: the largest number of beads.
 _MOST = int(QUANTITIES["N"].high)
 #: The smallest number above 0.
 _TINIEST = math.ulp(0.0)
 
 
 def _least(quantity: Quantity) -> float:
-    """The least value of a knob in a scene; its range may begin higher."""
+    """Return the least value of a knob in a scene; its range may start higher."""
     if quantity.low > 0.0:
         return _TINIEST
     return 0.0 if quantity.low == 0.0 else -sys.float_info.max
 
 
-#: The knobs that are fields of a scene; κ is computed. The wall, which may be named or a number, is checked by itself.
+#: The knobs that are fields of a scene; κ is computed. The wall, which may be a name or a number, is checked
+#: separately.
 _KNOBS = tuple(quantity for name, quantity in QUANTITIES.items()
                if name in {field.name for field in fields(Description)} and name != "wall")
-#: Knobs that are numbers, with their lower limits: above 0, 0 or above, or any finite number.
+#: Numeric knobs with their lower limits: above 0, 0 or above, or any finite number.
 _NUMBERS = (*((quantity.name, _least(quantity)) for quantity in _KNOBS if quantity.numeric and not quantity.whole),
             ("reference_overlap", _TINIEST))
 #: Knobs that are whole numbers.
 _COUNTS = tuple(quantity.name for quantity in _KNOBS if quantity.whole)
-#: Knobs that are words, with their choices.
+#: Knobs that are words, with the choices of each.
 _WORDS = tuple((quantity.name, frozenset(quantity.choices)) for quantity in _KNOBS if not quantity.numeric)
 
 
 def checked_values(scene: Description) -> dict[str, Any]:
-    """Fields of a scene that are numbers of another type than `float` and `int`, as these; `BadInput` for a value that
-    no chain has.
+    """Return fields whose numbers are not `float` or `int`, converted to these; `BadInput` for impossible values.
 
-    It is called for every scene that is made, tens of thousands for a map, and takes some 8 µs. The ranges of the knobs
-    are not checked: a branch may leave them by a step.
+    It is called for every scene created, tens of thousands for a map, and takes about 8 µs. The ranges of the knobs are
+    not checked, because a branch may leave them by a step.
     """
     values: dict[str, Any] = vars(scene)
     converted: dict[str, Any] = {}
@@ -81,7 +81,7 @@ def checked_values(scene: Description) -> dict[str, Any]:
 
 
 def _refused(name: str, value: object) -> BadInput:
-    """The error for a value that no chain has, in the words of the knob's own check where it refuses the value too."""
+    """Return the error for an impossible value, in the words of the knob's own check if that refuses the value too."""
     try:
         _field(name, value)
     except BadInput as problem:
@@ -90,8 +90,7 @@ def _refused(name: str, value: object) -> BadInput:
 
 
 def _check_special(name: str, entries: Any, beads: int) -> None:
-    """`BadInput` where an entry of impurities or start velocities names no bead of the chain, or one for a second time:
-    only one of the two could hold."""
+    """Raise `BadInput` if impurities or start velocities name a bead that does not exist, or one bead twice."""
     places = [place for place, _ in entries]
     for place in places:
         if not 1 <= place <= beads:
@@ -102,7 +101,7 @@ def _check_special(name: str, entries: Any, beads: int) -> None:
 
 
 def checked_fields(data: object) -> dict[str, Any]:
-    """The fields of a scene from what `Scene.to_json` gives; `BadInput` says which one cannot be used."""
+    """Return the fields of a scene from the output of `Scene.to_json`; `BadInput` says which one cannot be used."""
     if not isinstance(data, dict):
         raise _bad("a scene", data, "an object with its fields")
     known = {field.name: field for field in fields(Description)}
@@ -130,7 +129,7 @@ def _field(name: str, value: object) -> Any:
 
 
 def _knob(name: str, value: object) -> float | int | str:
-    """A knob's value; a text that looks like a number is none in a file."""
+    """Return a knob's value; in a file, a text that looks like a number does not count as one."""
     quantity = QUANTITIES[name]
     if (isinstance(value, str) and value not in quantity.choices) or isinstance(value, bool):
         raise _bad(name, value, f"one of {', '.join(quantity.choices)}" if quantity.choices else "a number")

@@ -1,4 +1,4 @@
-"""Sources to cite for a scene: the software, the paper of the model, and the sources of its damping law and effects."""
+"""Sources to cite for a scene: the software, the model's paper, and the sources of its damping law and effects."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _BREATHERS = ("C. Chong, F. Li, J. Yang, M. O. Williams, I. G. Kevrekidis, P. G.
 
 
 def citations(scene: Description) -> list[tuple[str, str]]:
-    """Subjects and the sources to cite for them: the model and the effects of a scene."""
+    """Return subjects and the sources to cite for them: the model and the effects of a scene."""
     sources = [("software", _SOFTWARE), ("model", _PAPER), ("contact", _HERTZ)]
     if scene.has_dissipation and LAWS[scene.dissipation].source:
         sources.append((f"{scene.dissipation} damping", LAWS[scene.dissipation].source))
@@ -44,7 +44,7 @@ def citations(scene: Description) -> list[tuple[str, str]]:
     if scene.F0 > 0.0:
         sources.append(("precompressed chains", _PRECOMPRESSED))
     impurity = scene.impurity != 1.0 and scene.site <= scene.N
-    if not scene.is_driven and scene.striker > 1.0 and scene.end == "first":  # else the heavy bead is at the wall
+    if not scene.is_driven and scene.striker > 1.0 and scene.end == "first":  # otherwise the heavy bead is at the wall
         sources.append(("pulse trains", _TRAINS))
     if not scene.is_driven and impurity:
         sources.append(("impurities", _IMPURITY))

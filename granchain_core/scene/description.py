@@ -1,4 +1,4 @@
-"""Frozen descriptions of a chain in SI: its physics, not how it is computed."""
+"""Frozen descriptions of a chain in SI units: its physics, not how it is computed."""
 
 from __future__ import annotations
 
@@ -16,18 +16,17 @@ from .quantities import QUANTITIES, WALL_FACTORS
 
 
 def is_number(value: object) -> bool:
-    """Whether a value is a real number, one of NumPy too, and not a truth value."""
+    """Return whether a value is a real number (Python's or NumPy's) and not a boolean."""
     return isinstance(value, (float, int, np.floating, np.integer)) and not isinstance(value, bool)
 
 
-#: Limits of a bead's values: above the first, at most the second. Poisson's ratio of a stable material is from −1 to
-#: 0.5.
+#: Limits of a bead's values: above the first, at most the second. A stable material's Poisson ratio is from −1 to 0.5.
 BEAD_LIMITS = {"mass": (0.0, math.inf), "radius": (0.0, math.inf), "young": (0.0, math.inf), "poisson": (-1.0, 0.5)}
 
 
 @dataclass(frozen=True)
 class Bead:
-    """One elastic sphere. Raises `BadInput` for values that no sphere has.
+    """One elastic sphere. Raises `BadInput` for impossible values.
 
     Attributes
     ----------
@@ -63,13 +62,13 @@ class Bead:
 
 
 def reduced(left: Bead, right: Bead) -> tuple[float, float]:
-    """E* [Pa] and R* [m] of two spheres in contact: 1/E* = Σ(1−ν²)/E, 1/R* = Σ1/R."""
+    """Return E* [Pa] and R* [m] of two spheres in contact: 1/E* = Σ(1−ν²)/E, 1/R* = Σ1/R."""
     modulus = 1.0 / ((1 - left.poisson**2) / left.young + (1 - right.poisson**2) / right.young)
     return modulus, 1.0 / (1.0 / left.radius + 1.0 / right.radius)
 
 
 def hertz_stiffness(left: Bead, right: Bead) -> float:
-    """Stiffness K of F = K δ^{3/2} between two spheres [N/m^{3/2}].
+    """Return the stiffness K of F = K δ^{3/2} between two spheres [N/m^{3/2}].
 
     K = (4/3) E* √R*; equal spheres give E√(2R)/(3(1−ν²)), Zhang et al. 2016, eq. (1).
     """
@@ -79,7 +78,7 @@ def hertz_stiffness(left: Bead, right: Bead) -> float:
 
 @dataclass(frozen=True)
 class Description:
-    """The values of a driven chain, immutable and hashable, and what follows from them.
+    """The values of a driven chain, immutable and hashable, and the quantities derived from them.
 
     The model is eq. (1) of Zhang et al. 2016: N spheres in Hertz contact between a harmonic driver and a wall
     (docs/model.md). Contact 0 joins driver and bead 1, contact N joins bead N and the wall. `Scene` documents each
@@ -118,10 +117,10 @@ class Description:
     # --- derived quantities -------------------------------------------------------------------------------
 
     def bead(self, number: int) -> Bead:
-        """Bead `number` counted from the driver, 1 to N, as in results.
+        """Return bead `number`, counted from the driver, 1 to N, as in results.
 
-        `pattern`, `impurities` and the knobs of the masses count from the chain's own first bead: with `end = "last"`
-        bead `number` is their entry N + 1 − `number`. An impurity stands in place of the pattern's bead.
+        `pattern`, `impurities` and the knobs of the masses count from the chain's own first bead: with `end = "last"`,
+        bead `number` is their entry N + 1 − `number`. An impurity replaces the pattern's bead.
         """
         if self.end == "last":
             number = self.N + 1 - number
@@ -134,8 +133,10 @@ class Description:
         return replace(bead, mass=part * bead.mass, radius=math.cbrt(part) * bead.radius)
 
     def mass_part(self, number: int) -> float:
-        """Mass of bead `number` of the chain's own numbering over that of the pattern there: dimer, taper, striker and
-        impurity, of the same material."""
+        """Return the mass of bead `number`, in the chain's own numbering, over that of the pattern's bead.
+
+        It follows from dimer, taper, striker and impurity, all of the same material.
+        """
         part = 1.0 if self.N == 1 else self.taper ** (3.0 * (number - 1) / (self.N - 1))
         if number % 2 == 0:
             part *= self.dimer
@@ -152,11 +153,11 @@ class Description:
 
     @property
     def beads(self) -> tuple[Bead, ...]:
-        """All beads, from the driver to the wall."""
+        """Return all beads, from the driver to the wall."""
         return tuple(self.bead(i) for i in range(1, self.N + 1))
 
     def masses(self) -> np.ndarray:
-        """Bead masses (N,) [kg]."""
+        """Return the bead masses (N,) [kg]."""
         return np.array([b.mass for b in self.beads])
 
     @property
@@ -165,14 +166,14 @@ class Description:
         return WALL_FACTORS[self.wall] if isinstance(self.wall, str) else float(self.wall)
 
     def contact_stiffness(self) -> np.ndarray:
-        """Hertz stiffness of contacts 0..N (N+1,) [N/m^{3/2}]; the driver is a bead like bead 1."""
+        """Return the Hertz stiffness of contacts 0..N (N+1,) [N/m^{3/2}]; the driver is a bead like bead 1."""
         beads = self.beads
         bodies = (beads[0], *beads)
         between = [hertz_stiffness(a, b) for a, b in itertools.pairwise(bodies)]
         return np.array([*between, self.wall_factor * hertz_stiffness(beads[-1], beads[-1])])
 
     def static_overlap(self) -> np.ndarray:
-        """Overlap of every contact under the preload alone (N+1,) [m]: (F0/K)^{2/3}."""
+        """Return the overlap of every contact under the preload alone (N+1,) [m]: (F0/K)^{2/3}."""
         return (self.F0 / self.contact_stiffness()) ** OVERLAP_POWER
 
     @property
@@ -202,13 +203,13 @@ class Description:
 
     @property
     def moves_at_start(self) -> bool:
-        """Whether beads have a velocity at time 0."""
+        """Whether any bead has a velocity at time 0."""
         return bool(self.start_velocity) or self.strike > 0.0
 
     def velocities_at_start(self) -> np.ndarray:
-        """Velocities of the beads at time 0 (N,) [m/s]: the strike, or instead of it those of `start_velocity`.
+        """Return the velocities of the beads at time 0 (N,) [m/s]: the strike, or those of `start_velocity` instead.
 
-        Both belong to what sets the chain in motion, like the driver, and count from the driver at either `end`.
+        Like the driver, both set the chain in motion, and so count from the driver for either `end`.
         """
         velocity = np.zeros(self.N)
         velocity[0] = self.strike
@@ -218,30 +219,30 @@ class Description:
 
     @property
     def foundation_frequency(self) -> float:
-        """Frequency of one bead on its foundation spring alone, √(k/m)/2π [Hz]."""
+        """Frequency of one bead on its foundation spring alone [Hz], √(k/m)/2π."""
         return math.sqrt(self.k / self.bead(1).mass) / (2 * math.pi)
 
     @property
     def knobs(self) -> dict[str, Any]:
-        """Every knob with its value in SI, in the order of `QUANTITIES`."""
+        """Return every knob with its value in SI units, in the order of `QUANTITIES`."""
         return {name: getattr(self, name) for name in QUANTITIES}
 
     def differences(self) -> dict[str, Any]:
-        """Knobs that differ from the preset (without kappa, which follows from k)."""
+        """Return the knobs that differ from the preset (without kappa, which follows from k)."""
         base = dict(self.preset)
         return {n: v for n, v in self.knobs.items() if n != "kappa" and n in base and base[n] != v}
 
     @property
     def has_dissipation(self) -> bool:
-        """Whether contacts lose energy at all."""
+        """Whether contacts dissipate energy."""
         return self.dissipation != "none" and self.D > 0
 
     @property
     def forces_jump(self) -> bool:
-        """Whether a contact's force jumps when it closes in motion: a linear dashpot's does, as g(0) > 0."""
+        """Whether contact forces jump when contacts close in motion, as with a linear dashpot, for which g(0) > 0."""
         return self.has_dissipation and LAWS[self.dissipation].jumps
 
     @property
     def cuts_tension(self) -> bool:
-        """Whether contact forces are cut at zero: only with damping can they be negative."""
+        """Whether contact forces are cut at zero; without damping, they are never negative."""
         return self.tension == "cut" and self.has_dissipation

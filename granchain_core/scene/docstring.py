@@ -8,7 +8,7 @@ from .quantities import QUANTITIES, Quantity
 
 
 def with_knobs(docstring: str | None) -> str | None:
-    """The docstring of `Scene` with every knob that is a field among its attributes; None if Python has dropped it."""
+    """Return `Scene`'s docstring with all knobs that are fields among its attributes; None if Python has dropped it."""
     if docstring is None:
         return None
     attributes, heading, rest = docstring.partition("\n    Notes\n")
@@ -17,7 +17,7 @@ def with_knobs(docstring: str | None) -> str | None:
 
 
 def _entry(knob: Quantity) -> str:
-    """A knob's name, type, label, unit and meaning as an attribute of a NumPy docstring."""
+    """Return a knob's name, type, label, unit and meaning as an attribute in a NumPy docstring."""
     unit = f" [{knob.unit}]" if knob.unit not in ("", "1") else ""
     words = [f'"{word}"' for word in knob.choices]
     values = f" One of {', '.join(words)}" + (", or a number." if knob.numeric else ".") if words else ""

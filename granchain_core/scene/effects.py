@@ -1,8 +1,7 @@
-"""The table of effects: for each its knobs, its presence, its term in the equation, and its names.
+"""The table of effects, with the knobs, presence, term in the equation, and names of each.
 
-`Scene.effects`, the equation on screen, the slots that are filled (scaling.py), the names of compiled kernels
-(warm.py), `--explain`, `granchain cite`, the page's switches and the kernels whose cost is measured are all read from
-this table.
+The table is the source of `Scene.effects`, the displayed equation, the slots that are filled (scaling.py), the names of
+compiled kernels (warm.py), `--explain`, `granchain cite`, the page's switches and the kernels whose cost is measured.
 """
 
 from __future__ import annotations
@@ -18,7 +17,7 @@ from .quantities import QUANTITIES
 
 @dataclass(frozen=True)
 class Equation:
-    """The equation of motion in LaTeX, in parts: right-hand side, force and overlap of contact j, stiffness symbol."""
+    """Parts of the equation of motion in LaTeX: right-hand side, force and overlap of contact j, stiffness symbol."""
 
     motion: str
     force: str
@@ -30,11 +29,11 @@ class Equation:
 class Effect:
     """One effect.
 
-    `slot` is its field of the kernels' `Slots`. `off` are the knob values that switch it off; `knobs` are those that
-    come back when it is switched on, and `usual` their values where neither the visitor nor the scene has set them.
-    `latex` puts its term into the equation. `label` names it in a scene, `key` in the name of a compiled kernel, which
-    names the law too. `source` is the publication to cite for it. Where it is not `possible`, `refusal` says why.
-    `dissipates` is False for an effect that only stores energy, or acts on a force that another effect dissipates by.
+    `slot` is its field of the kernels' `Slots`. `off` has the knob values that switch it off. `knobs` are restored when
+    it is switched on, and `usual` has their values if neither the visitor nor the scene has set them. `latex` adds its
+    term to the equation. `label` names it in a scene, `key` in the name of a compiled kernel, which includes the law.
+    `source` is the publication to cite for it. If it is not `possible`, `refusal` says why. `dissipates` is False for
+    an effect that only stores energy, or acts on a force by which another effect dissipates energy.
     """
 
     name: str
@@ -62,11 +61,11 @@ class Effect:
                             "and `usual`, their values with it.")
 
     def label(self, scene: Description) -> str:
-        """Name of the effect in a scene."""
+        """Return the name of the effect in a scene."""
         return self.title if self.label_of is None else self.label_of(scene)
 
     def key(self, scene: Description) -> str:
-        """Name of the effect in the name of a compiled kernel."""
+        """Return the name of the effect within the name of a compiled kernel."""
         return self.name if self.key_of is None else self.key_of(scene)
 
 
@@ -86,7 +85,7 @@ def _pressed(equation: Equation, scene: Description) -> Equation:
     return replace(equation, overlap=equation.overlap + r" + (F_0/" + equation.stiffness + ")^{2/3}")
 
 
-#: In the order in which their terms enter the equation: the cut acts on the damped force.
+#: All effects, in the order in which their terms enter the equation: the cut acts on the damped force.
 EFFECTS = (
     Effect("dashpot", "dissipation", "contact damping", "A contact loses energy while it is pressed.",
            lambda scene: scene.has_dissipation, _damped, ("dissipation", "D"), {"dissipation": "none"},
@@ -106,17 +105,17 @@ EFFECTS = (
 ACCOUNT = Effect("account", "account", "energy account",
                  "Work, loss and stored energy are integrated alongside; the status line shows how well they balance.",
                  lambda scene: False, dissipates=False)
-#: Slots that every scene fills, with what they hold.
+#: Slots that every scene fills, with the name of each one's content.
 ALWAYS = {"chain": "Hertz contact", "driver": "driver"}
 
 
 def effects_of(scene: Description) -> list[Effect]:
-    """The effects that are in a scene."""
+    """Return the effects in a scene."""
     return [effect for effect in EFFECTS if effect.present(scene)]
 
 
 def latex(scene: Description) -> str:
-    """Motion, contact force, overlap and driver of `scene` (Zhang et al. 2016, eqs. 1, 3 and 5), active terms only."""
+    """Return motion, contact force, overlap and driver (Zhang et al. 2016, eqs. 1, 3 and 5), active terms only."""
     masses = not scene.is_uniform
     stiffness = "K_c" if masses or scene.wall_factor != 1.0 else "K"
     equation = Equation(("m_i" if masses else "m") + r"\,\ddot u_i = F_{i-1} - F_i",

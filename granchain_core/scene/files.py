@@ -1,4 +1,4 @@
-"""A scene file: TOML text, checked section by section, and the scene that it describes (docs/scene-file.md)."""
+"""Scene files: TOML text, checked section by section, and the scene that it describes (docs/scene-file.md)."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from .quantities import QUANTITIES
 
 #: Longest scene file [bytes].
 MOST_BYTES = 100_000
-#: Sections of a scene file that are tables, with the names each may hold.
+#: Sections of a scene file that are tables, with the names that each may contain.
 TABLES = {"chain": ("pattern", "impurities", "start_velocity", "reference_overlap"), "knobs": tuple(QUANTITIES),
           "ranges": tuple(QUANTITIES)}
-#: Further entries of a scene file: texts, and its place in the list of scenes.
+#: Further entries of a scene file: texts, and the place in the list of scenes.
 WORDS = ("parent", "title", "look_at", "question", "paper", "order")
 _BEAD = tuple(field.name for field in fields(Bead))
 
 
 def toml_of(path: Path) -> dict[str, Any]:
-    """The content of a scene file, with known sections only; `BadInput` says what cannot be used."""
+    """Return the content of a scene file with known sections only. Raises `BadInput` for anything unusable."""
     try:
         with path.open("rb") as file:
             raw = file.read(MOST_BYTES + 1)
@@ -67,7 +67,7 @@ def _check_sections(data: dict[str, Any]) -> None:
 
 
 def built(name: str, data: dict[str, Any]) -> Scene:
-    """The scene of merged sections, each value checked as a user's; `BadInput` says which one cannot be used."""
+    """Build a scene from merged sections; each value is checked like user input. Raises `BadInput` for a bad one."""
     chain, knobs = data.get("chain", {}), dict(data.get("knobs", {}))
     kappa = knobs.pop("kappa", None)
     for needed, section in (("pattern", chain), ("reference_overlap", chain), ("N", knobs), ("f", knobs),
@@ -125,7 +125,7 @@ def _place(entry: dict[str, Any], name: str) -> int:
 
 
 def _impurity(entry: Any, beads: list[dict[str, Any]]) -> list[Any]:
-    """Place and bead; a value that the entry does not name is taken from the pattern's bead at that place."""
+    """Return place and bead; values that the entry does not give are those of the pattern's bead at that place."""
     values = _table(entry, "impurities", ("place", *_BEAD))
     place = _place(values, "impurities")
     own = {name: value for name, value in values.items() if name != "place"}

@@ -1,7 +1,7 @@
-"""The damping laws: the name of each in scenes and in words, its slot class, and the publication to cite for it.
+"""The damping laws, with the name of each in scenes and in words, its slot class, and the publication to cite.
 
-Exponents are in kernels/effects/dissipation.py, with the compiled code. The choices of the knob, the scale of D, the
-equation on screen, the names of effects, `granchain cite` and the reference solutions read this table.
+Exponents are in kernels/effects/dissipation.py, with the compiled code. This table is the source of the knob's choices,
+the scale of D, the displayed equation, the names of effects, `granchain cite` and the reference solutions.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from typing import Any
 class Law:
     """The damping force D (δ/δ_r)^a δ̇ of a closed contact.
 
-    Its `name` in scenes, the name of its slot class, its `title` in words, and its `source`, the publication to cite,
-    "" where there is none.
+    `name` is its name in scenes, `title` its name in words, and `slot_class` the name of its slot class. `source` is
+    the publication to cite, or "" if there is none.
     """
 
     name: str
@@ -27,7 +27,7 @@ class Law:
 
     @property
     def slot(self) -> Any:
-        """The slot class of the law, loaded at first use because it imports the compiler."""
+        """The law's slot class, loaded at first use because it imports the compiler."""
         slots = {law.__name__: law for law in _dissipation().LAWS}
         if self.slot_class not in slots:
             raise TypeError(f"damping law {self.name!r}: {self.slot_class} has no `exponent` and no `power` in "
@@ -41,12 +41,12 @@ class Law:
 
     @property
     def jumps(self) -> bool:
-        """Whether the force jumps when a contact closes in motion, which it does for a = 0."""
+        """Whether the force jumps when a contact closes in motion, which is the case for a = 0."""
         return self.exponent == 0.0
 
     @property
     def latex(self) -> str:
-        """The force in SI."""
+        """The force in LaTeX, in SI units."""
         if self.jumps:
             return r"D\,\dot\delta_c\,H(\delta_c)"
         return r"D\,(\delta_c/\delta_r)_+^{" + str(Fraction(self.exponent)) + r"}\,\dot\delta_c"
@@ -64,7 +64,7 @@ LAWS: dict[str, Law] = {law.name: law for law in (
 
 
 def require_complete() -> None:
-    """Check that the table and the compiled laws are the same; TypeError names the one that is missing."""
+    """Check that the table and the compiled laws agree. Raises `TypeError` naming a law that is missing."""
     named = [law.slot for law in LAWS.values()]
     for slot in _dissipation().LAWS:
         if slot not in named:

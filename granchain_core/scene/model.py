@@ -21,32 +21,32 @@ from .validity import warnings
 
 @dataclass(frozen=True)
 class Scene(Description):
-    """A driven chain, immutable and hashable; `evolve` gives one with other knobs.
+    """A driven chain, immutable and hashable; `evolve` returns one with other knobs.
 
-    A value that no chain has is refused with `BadInput`, however the scene is made.
+    Impossible values are refused with `BadInput`, however the scene is created.
 
     Attributes
     ----------
     name, title, look_at, paper : str
         Name and title of the scene, what to observe in it, and the section of the paper.
     pattern : tuple of Bead
-        Repeated to N beads: two entries make a dimer.
+        Beads that are repeated up to N beads: two entries make a dimer.
     reference_overlap : float
         Overlap at which D is stated for the laws of Tsuji and of Kuwabara and Kono [m].
     impurities : tuple of (int, Bead)
-        Beads in place of the pattern's, by number from the chain's own first bead.
+        Beads that replace the pattern's, by number from the chain's own first bead.
     start_velocity : tuple of (int, float)
         Beads that move at t = 0, by number from the driver, with their velocities [m/s], > 0 towards the wall.
     ranges : tuple of (str, float, float)
         Ranges of the sliders.
     preset : tuple
-        The knobs of the preset it comes from.
+        The knobs of the preset from which it is derived.
 
     Notes
     -----
-    Every knob of `QUANTITIES` is an attribute too, in SI; `help(Scene)` lists them. Knobs of masses count beads from
-    the chain's own first bead. `end="last"` turns the beads round, with all that `pattern`, `impurities`, `dimer`,
-    `taper`, `striker` and `site` say of them; `strike`, `start_velocity` and results count from the driver.
+    Every knob of `QUANTITIES` is an attribute too, in SI units; `help(Scene)` lists them. Knobs of masses count beads
+    from the chain's own first bead. `end="last"` reverses the order of the beads, including `pattern`, `impurities`,
+    `dimer`, `taper`, `striker` and `site`; `strike`, `start_velocity` and results count from the driver.
 
     Examples
     --------
@@ -68,38 +68,38 @@ class Scene(Description):
 
     @property
     def effects(self) -> list[str]:
-        """Names of the effects that are in this scene, and therefore in its kernel."""
+        """Names of the effects in this scene, and therefore in its kernel."""
         driver = "driver" if self.is_driven else "driver at rest"
         return ["contact", driver, "wall", *(effect.label(self) for effect in effects_of(self))]
 
     def equation_latex(self) -> str:
-        """The equation of motion with the terms that are computed, and no others."""
+        """Return the equation of motion in LaTeX, with only the terms that are computed."""
         return latex(self)
 
     def validity(self) -> list[str]:
-        """Sentences on where the model itself stops being valid for this scene (none, when it is fine)."""
+        """Return sentences on where the model is not valid for this scene; empty if it is."""
         return warnings(self)
 
     # --- identity and change -------------------------------------------------------------------------------
 
     def to_json(self) -> dict[str, Any]:
-        """The whole scene as plain data, enough to build it again."""
+        """Return the whole scene as plain data, from which it can be rebuilt."""
         return asdict(self)
 
     @classmethod
     def from_json(cls, data: dict[str, Any]) -> Scene:
-        """The scene that `to_json` described; `BadInput` where a value could not be that of a scene."""
+        """Return the scene that `to_json` described. Raises `BadInput` for a value that no scene can have."""
         return cls(**checked_fields(data))
 
     @property
     def digest(self) -> str:
-        """Hash of everything that changes the answer: the key of caches."""
+        """Return the hash of everything that affects the result, the key of caches."""
         physics = {k: v for k, v in self.to_json().items()
                    if k not in ("name", "title", "look_at", "paper", "ranges", "preset")}
         return hashlib.sha256(json.dumps(physics, sort_keys=True).encode()).hexdigest()[:16]
 
     def evolve(self, /, **changes: Any) -> Scene:
-        """This scene with other knobs; `kappa` sets k = κ·K·√A0 with the resulting scene's own A0.
+        """Return this scene with other knobs; `kappa` sets k = κ·K·√A0 with the A0 of the resulting scene.
 
         Raises `BadInput` for unknown knobs, values outside their range, and k together with kappa.
         """
@@ -122,11 +122,11 @@ class Scene(Description):
         return new
 
     def scaled(self, s: float) -> Scene:
-        """The chain with s times the amplitude that moves alike (docs/model.md, "Scaled variables").
+        """Return the chain with s times the amplitude and the same scaled motion (docs/model.md, "Scaled variables").
 
         (A0, f, D, F0) → (s A0, s^{1/4} f, s^{1/4 − a} D, s^{3/2} F0) at fixed κ, with the exponent a of the damping
-        law. Displacements are s times as large, velocities s^{5/4}, forces s^{3/2}; multipliers are the same. Raises
-        `BadInput` where a value leaves its range.
+        law. Displacements are multiplied by s, velocities by s^{5/4}, and forces by s^{3/2}; multipliers are the same.
+        Raises `BadInput` if a value leaves its range.
 
         Examples
         --------
@@ -143,7 +143,7 @@ class Scene(Description):
 
 
 def _with_values(scene: Scene, values: dict[str, Any]) -> Scene:
-    """`dataclasses.replace`, in a third of its time: a curve makes a scene for each point, a map for each cell."""
+    """Like `dataclasses.replace`, in a third of the time: curves create a scene per point, maps one per cell."""
     new = object.__new__(type(scene))
     vars(new).update(vars(scene) | values)
     new.__post_init__()

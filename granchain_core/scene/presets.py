@@ -1,4 +1,4 @@
-"""Scenes by name from assets/scenes/*.toml, each a parent and its differences; and scenes from a user's file."""
+"""Scenes by name from assets/scenes/*.toml, each given by a parent and differences, and scenes from a user's file."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from .files import TABLES, built, toml_of
 from .model import Scene
 
 _PACKAGE = Path(__file__).resolve().parents[1]
-#: Scenes and measured data: next to the packages in the tree, within this one where it is installed.
+#: Folder of scenes and measured data: next to the packages in the source tree, inside this package when installed.
 ASSETS = next(place for place in (_PACKAGE / "assets", _PACKAGE.parent / "assets") if place.is_dir())
 
 
 def _read(name: str) -> dict[str, Any]:
-    """The TOML of one preset merged over its ancestors, section by section."""
+    """Return the TOML of one preset merged over its ancestors, section by section."""
     return _over_parent(toml_of(ASSETS / "scenes" / f"{name}.toml"))
 
 
 def _over_parent(data: dict[str, Any]) -> dict[str, Any]:
-    """The sections of a scene merged over those of its parent, if it has one."""
+    """Return the sections of a scene merged over those of its parent, if it has one."""
     if "parent" not in data:
         return data
     base = _read(data["parent"])
@@ -42,12 +42,12 @@ def _over_parent(data: dict[str, Any]) -> dict[str, Any]:
 
 @functools.cache
 def scene_names() -> tuple[str, ...]:
-    """Names of all presets, in teaching order.
+    """Return the names of all presets, in teaching order.
 
     Returns
     -------
     tuple of str
-        Names that `scene` takes.
+        Names that `scene` accepts.
 
     Examples
     --------
@@ -60,29 +60,28 @@ def scene_names() -> tuple[str, ...]:
 
 
 def question_of(name: str) -> str:
-    """The question that the scene of this name puts to its viewer."""
+    """Return the question that this scene asks its viewer."""
     return str(toml_of(ASSETS / "scenes" / f"{name}.toml").get("question", ""))
 
 
 def scene(name: str | os.PathLike[str]) -> Scene:
-    """A preset by its name, or the scene in a file.
+    """Return a preset by its name, or the scene in a file.
 
     Parameters
     ----------
     name : str or path-like
-        One of `scene_names()`: "sec2", "fig3a", "rig", … (files in assets/scenes); or a `pathlib.Path` to a scene file
-        (docs/scene-file.md); the scene in "mine.toml" is called "mine". A string is never taken as a path.
+        One of `scene_names()`: "sec2", "fig3a", "rig", … (files in assets/scenes), or a `pathlib.Path` to a scene file
+        (docs/scene-file.md). The scene in "mine.toml" is called "mine". A string is never interpreted as a path.
 
     Returns
     -------
     Scene
-        A frozen description in SI; `evolve` gives one with other knobs.
+        A frozen description in SI units; `evolve` returns one with other knobs.
 
     Raises
     ------
     BadInput
-        There is no such scene, and the message names the nearest one; or the file cannot be used, and the message says
-        why.
+        There is no such scene (the message suggests the nearest one), or the file is unusable (the message says why).
 
     Examples
     --------
@@ -106,7 +105,7 @@ def _preset(name: str) -> Scene:
 
 
 def _from_file(path: Path) -> Scene:
-    """The scene in a user's file: read anew each time; texts that it does not have are not those of its parent."""
+    """Return the scene in a user's file, read again each time; its texts are not inherited from its parent."""
     data, name = toml_of(path), path.stem
     try:
         if name in scene_names():

@@ -1,6 +1,6 @@
-"""The table of knobs: symbol, unit, range, LaTeX and meaning of each.
+"""The table of knobs, with symbol, unit, range, LaTeX and meaning of each.
 
-Sliders, command line, share links and HDF5 attributes read it, and a test compares the pages with it.
+Sliders, command line, share links and HDF5 attributes read it, and a test compares the documentation with it.
 """
 
 from __future__ import annotations
@@ -18,17 +18,17 @@ from .laws import LAWS
 
 @dataclass(frozen=True)
 class Quantity:
-    """One knob of a scene, in SI.
+    """One knob of a scene, in SI units.
 
-    `low` and `high` limit the accepted values; the narrower range of a slider belongs to the scene. `scale` says how
-    a slider goes through its range: "linear", "log", or "cubic" for knobs that start at 0 and span decades: the value
-    is the cube of the position, fine near 0. `step` is the fine step of the keyboard; 0 stands for half a decade.
+    `low` and `high` limit the accepted values; the narrower range of a slider belongs to the scene. `scale` says how a
+    slider covers its range: "linear", "log", or "cubic" for knobs that start at 0 and span decades (the value is the
+    cube of the position, with fine steps near 0). `step` is the fine step of the keyboard; 0 stands for half a decade.
     `choices` is set for knobs that are words; `numeric` says whether a plain number is accepted too. `main` knobs are
-    always on the page, the others under "more knobs"; those with `main_if_set` are on the page of a scene whose preset
-    has another value than the default. `short` is the label beside a number where `label` is too long.
-    `at_zero` says in a few words what 0 means if 0 switches something off. `shown_in` is the factor and unit on
-    the page if that is not `unit`. `changes_motion` is False for a knob of the computation alone, `at_start` true for
-    one that changes where a motion begins and not the chain.
+    always on the page, the others under "more knobs"; those with `main_if_set` are on the page if the scene's preset
+    differs from the default. `short` is the label next to a number where `label` is too long. `at_zero` says in a few
+    words what 0 means if 0 switches something off. `shown_in` is the factor and unit on the page if the unit is not
+    `unit`. `changes_motion` is False for a knob of the computation alone. `at_start` is True for a knob that changes
+    the start of a motion, not the chain.
     """
 
     name: str
@@ -59,11 +59,11 @@ class Quantity:
 
     @property
     def is_continuous(self) -> bool:
-        """Whether a branch can follow it: an axis without named values, of the chain itself."""
+        """Whether a branch can follow it: it is an axis without named values, and belongs to the chain itself."""
         return self.is_axis and not self.choices and not self.at_start
 
     def check(self, value: object) -> float | int | str:
-        """`value` as this knob's type, or `BadInput` saying what is allowed and what is nearest."""
+        """Return `value` as this knob's type. Raises `BadInput` with the allowed range and the nearest valid value."""
         if isinstance(value, str) and value.strip() in self.choices:
             return value.strip()
         if not self.numeric:
@@ -86,7 +86,7 @@ class Quantity:
 
     @property
     def _called(self) -> str:
-        """Label and name of the quantity, once where they are the same word."""
+        """Label and name of the quantity, or one of them if they are the same word."""
         return self.name if self.label == self.name else f"{self.label} {self.name}"
 
     def _number(self, value: object) -> float:
@@ -147,8 +147,8 @@ _TABLE = (
              "Force at rest in every contact; the wall stays in place. 0 is the sonic vacuum.",
              0.0, 1e4, "linear", 0.1, at_zero="nothing presses the beads"),
     Quantity("dimer", "m₂/m₁", "1", "m_2/m_1", "mass of every second bead",
-             "Mass of beads 2, 4, … over the mass of the others. All are of one material, so the radius goes with its "
-             "cube root. 1 is a chain of equal beads.", 1e-3, 1e3, "log", short="dimer", main_if_set=True),
+             "Mass of beads 2, 4, … over the mass of the others. All are of one material, so the radius scales with "
+             "its cube root. 1 is a chain of equal beads.", 1e-3, 1e3, "log", short="dimer", main_if_set=True),
     Quantity("taper", "R_N/R₁", "1", "R_N/R_1", "taper",
              "Radius of the last bead over the radius of the first; the radii form a geometric sequence.",
              0.01, 100.0, "log", main_if_set=True),
@@ -161,7 +161,7 @@ _TABLE = (
              "Mass of bead j relative to a regular bead at its place; 1 means no impurity.", 1e-3, 1e3, "log",
              short="impurity", main_if_set=True),
     Quantity("drive", "", "", "", "drive", "Whether the driver moves: harmonic, or at rest as a fixed bead. Without a "
-             "drive 1/f is only the time that is shown.", choices=DRIVES, numeric=False, main_if_set=True),
+             "drive, 1/f is only the time that is shown.", choices=DRIVES, numeric=False, main_if_set=True),
     Quantity("strike", "v₁", "m/s", "v_1", "initial velocity of bead 1",
              "Speed at which bead 1 moves towards the wall at time 0.", 0.0, 100.0, "cubic", 0.001, short="strike",
              at_zero="bead 1 starts at rest", at_start=True, main_if_set=True),

@@ -1,4 +1,4 @@
-"""The state of a chain at one instant, in SI."""
+"""The state of a chain at one instant, in SI units."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ class State:
     Attributes
     ----------
     displacement : numpy.ndarray, shape (N,)
-        Displacement of each bead from its rest position [m]: under preload from the compressed rest, else from where
-        neighbours first touch.
+        Displacement of each bead from its rest position [m]: under preload, from the compressed rest, otherwise from
+        where neighbours first touch.
     velocity : numpy.ndarray, shape (N,)
         Velocity of each bead [m/s].
     phase : float
-        Drive phase as a fraction of a period, 0 to 1. A recorded motion begins at one of its samples, so that
-        `run` takes multiples of 1/samples; `settle` and others go on to phase 0 first and take k/n with n up to 10,000.
+        Drive phase as a fraction of a period, 0 to 1. A recorded motion starts at one of its samples, so `run` accepts
+        multiples of 1/samples; `settle` and others first advance to phase 0, and accept k/n with n up to 10,000.
 
     Examples
     --------
@@ -39,10 +39,9 @@ class State:
 
 
 def checked_start(scene: Scene, start: State) -> State:
-    """`start` with arrays of floats, if a motion of the scene can begin there.
+    """Return `start` with arrays of floats, if a motion of the scene can start there.
 
-    Raises `BadInput` for what is not a state, another number of beads, numbers that are not finite, or a phase outside
-    0 to 1.
+    Raises `BadInput` for anything but a state, another number of beads, non-finite numbers, or a phase outside 0 to 1.
     """
     if not isinstance(start, State):
         raise BadInput(f"A start must be a State, not {type(start).__name__}.")
@@ -63,5 +62,5 @@ def checked_start(scene: Scene, start: State) -> State:
 
 
 def rest(scene: Scene) -> State:
-    """The scene's start: at rest at drive phase 0, except for beads that are given a velocity."""
+    """Return the scene's start: at rest at drive phase 0, except for beads with a start velocity."""
     return State(np.zeros(scene.N), scene.velocities_at_start())

@@ -1,6 +1,6 @@
-"""Warnings about a scene: limits of the model, an impurity that is missing, a κ that has changed.
+"""Warnings about a scene: limits of the model, a missing impurity, a changed κ.
 
-Hertz contact needs small overlaps and elastic steel.
+Hertz contact requires small overlaps and elastic steel.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ YIELD_STRESS = 2.28e9
 
 
 def contact_geometry(scene: Description) -> tuple[np.ndarray, np.ndarray]:
-    """E* [Pa] and R* [m] of every contact (N+1,); the driver is a bead like bead 1.
+    """Return E* [Pa] and R* [m] of every contact (N+1,); the driver is a bead like bead 1.
 
-    The walls "same-material" and "rigid" are flat, and a rigid one has no compliance of its own; a wall that is given
+    The walls "same-material" and "rigid" are flat, and a rigid wall has no compliance of its own. A wall that is given
     by a number counts as a bead.
     """
     beads = (scene.beads[0], *scene.beads, scene.beads[-1])
@@ -38,13 +38,13 @@ def contact_geometry(scene: Description) -> tuple[np.ndarray, np.ndarray]:
 
 
 def peak_pressures(scene: Description, overlaps: np.ndarray) -> np.ndarray:
-    """Hertz's peak pressure p0 = (1/π)(6 F E*²/R*²)^{1/3} = (2E*/π)√(δ/R*) of contacts (N+1,) pressed by `overlaps`."""
+    """Return Hertz's peak pressures p0 = (1/π)(6 F E*²/R*²)^{1/3} = (2E*/π)√(δ/R*) at these overlaps (N+1,)."""
     modulus, radius = contact_geometry(scene)
     return 2.0 * modulus / np.pi * np.sqrt(np.maximum(overlaps, 0.0) / radius)
 
 
 def overlap_warnings(scene: Description, largest_overlap: float | np.ndarray) -> list[str]:
-    """Sentences for a chain whose contacts reached these overlaps [m], one number or one for each contact."""
+    """Return warnings for a chain whose contacts reached these overlaps [m], one number or one for each contact."""
     overlaps = np.broadcast_to(np.asarray(largest_overlap, dtype=float), scene.N + 1)
     warnings, largest = [], float(overlaps.max())
     fraction = largest / min(b.radius for b in scene.beads)
@@ -61,13 +61,13 @@ def overlap_warnings(scene: Description, largest_overlap: float | np.ndarray) ->
 
 
 def warnings(scene: Description) -> list[str]:
-    """Sentences known before anything is run: the drive amplitude and the preload already overlap the beads."""
+    """Return warnings that need no run: the drive amplitude and the preload alone overlap the beads too far."""
     listed = overlap_warnings(scene, np.maximum(scene.drive_amplitude, scene.static_overlap()))
     return [*listed, *([missing] if (missing := missing_impurity(scene)) else [])]
 
 
 def missing_impurity(scene: Description) -> str:
-    """A sentence where the impurity's place is behind the last bead; otherwise empty."""
+    """Return a warning if the impurity's place is beyond the last bead; otherwise empty."""
     if scene.impurity == 1.0 or scene.site <= scene.N:
         return ""
     return (f"The impurity's place, bead {scene.site}, is not in this chain of {scene.N} beads, so there is no "
@@ -75,7 +75,7 @@ def missing_impurity(scene: Description) -> str:
 
 
 def moved_kappa(before: Description, after: Description) -> str:
-    """κ before A₀ changed at constant k, in words; empty if A₀ did not change, k did, or there is no foundation."""
+    """State κ before A₀ changed at constant k; empty if A₀ did not change, k did, or there is no foundation."""
     if after.A0 == before.A0 or after.k != before.k or after.k == 0.0:
         return ""
     return f"κ was {before.kappa:.4g} before A₀ changed at constant k"

@@ -1,6 +1,6 @@
-"""Result files: every kind of result saved as HDF5 with labelled axes, which other programs open, and loaded again.
+"""Result files: every kind of result saved as HDF5 with labelled axes, readable by other programs, and loaded again.
 
-Each kind of result has its own module, imported at first use: saving a run does not load orbits and observers.
+Each kind of result has its own module, imported at first use, so that saving a run does not load orbits and observers.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """A function, with its module, when it is first used."""
+    """Import a function, with its module, at its first use."""
     if name not in _MODULE_OF:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(importlib.import_module(f".{_MODULE_OF[name]}", __name__), name)

@@ -7,8 +7,8 @@
                  criticality, coefficient, coefficient_error, undecided (special), which older files lack
 /special_before, /special_after   the two orbits around each special point, as in /branch
 /turns           extrema of the overlaps on each half-branch's last orbit, with which the next step is compared
-The root's attribute `amplitude` describes A0 over f where it is not the scene's. `coordinate` says that p is linear in
-the static overlap; in older files over F0, which lack it, p is linear in F0, and their branches go on so.
+The root's attribute `amplitude` describes A0 over f if it is not the scene's. `coordinate` says that p is linear in the
+static overlap. Older files over F0 lack it: there, p is linear in F0, and their branches continue that way.
 Components are the beads' displacements, then their w, scaled by the chain's own A0 and A0·φ (docs/model.md).
 """
 
@@ -36,19 +36,19 @@ from .writing import write_file, write_result
 
 #: Ends of half-branches.
 _ENDS = ("", "reached", "returned", "closed", "merged", "lost")
-#: The interval that a contact gains, by its word in files.
+#: The interval that a contact gains, by its name in files.
 _GAINED = {event: gained for gained, event in EVENTS.items()}
 #: Numbers of one extremum of an overlap.
 _EXTREMUM = 4
 
 
 def save_branch(branch: Branch, path: str | Path) -> Path:
-    """Write a branch, finished or not; returns the path. Raises `BadInput` where it cannot be written."""
+    """Write a branch, finished or not, and return the path. Raises `BadInput` if it cannot be written."""
     return write_file(path, lambda file: write_branch(file, branch))
 
 
 def write_branch(file: h5py.File, branch: Branch) -> None:
-    """Write a branch with what its continuation needs to go on."""
+    """Write a branch with everything needed to continue it."""
     write_result(file, branch)
     turns = file.create_group("turns")
     for place, half in enumerate(branch.half_branches):
@@ -56,7 +56,7 @@ def write_branch(file: h5py.File, branch: Branch) -> None:
 
 
 def load_branch(path: str | Path) -> Branch:
-    """The branch that `save_branch` wrote, ready to be continued. Raises `BadInput` for a file that is not one."""
+    """Return the branch that `save_branch` wrote, ready to be continued. Raises `BadInput` for any other file."""
     with opened(path, "is not a branch written by granchain") as file:
         file.schema()
         return _read(file)
@@ -90,7 +90,7 @@ def _read(file: File) -> Branch:
 
 
 def _header(attribute: Any) -> dict[str, Any]:
-    """The attribute `branch`, each entry of its kind; one half-branch or two."""
+    """Return the attribute `branch`, with checked entries and one or two half-branches."""
     half_branches = attribute.pop("arms", None) if isinstance(attribute, dict) else None
     header = entries("branch", attribute, {"knob": "text", "start": "number", "end": "number", "period": "whole"})
     if not isinstance(half_branches, list) or not 1 <= len(half_branches) <= 2:
@@ -108,7 +108,7 @@ def _header(attribute: Any) -> dict[str, Any]:
 
 
 def _places(file: File, path: str, count: int, half_branches: int) -> np.ndarray:
-    """The half-branch of each row."""
+    """Return the number of each row's half-branch."""
     return within(f"/{path}", file.numbers(path, (count,), "i"), 0, half_branches - 1)
 
 

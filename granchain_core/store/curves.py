@@ -6,8 +6,7 @@
         regime, status, period (frequency); the evidence for the regime, which older files lack in part or whole:
         periods_run, decay, multiplier, lyapunov, lyapunov_error, lyapunov_periods, and followed, approaches, distance,
         return_distance, return_limit, smallest_window_ratio, largest_window_ratio (frequency);
-        drive_amplitude (frequency, m) where A0 depends on the frequency, which the root's attribute `amplitude`
-        describes
+        drive_amplitude (frequency, m) if A0 depends on the frequency, as the root's attribute `amplitude` describes
 """
 
 from __future__ import annotations
@@ -38,14 +37,14 @@ _OUTCOMES = ("done", *FAILURES)
 
 
 def save_curve(curve: Curve, path: str | Path) -> Path:
-    """Write a resonance curve to `path`; returns the path. Raises `BadInput` where it cannot be written."""
+    """Write a resonance curve to `path` and return the path. Raises `BadInput` if it cannot be written."""
     return write_file(path, lambda file: write_result(file, curve))
 
 
 def load_curve(path: str | Path) -> Curve:
-    """The curve in a file: forces, errors, regimes with their evidence; no states, and in old files no evidence.
+    """Return the curve in a file: forces, errors, and regimes with evidence (missing in old files), without states.
 
-    Raises `BadInput` for a file that is not one.
+    Raises `BadInput` for any other file.
     """
     with opened(path, "is not a curve written by granchain") as file:
         file.schema()
@@ -53,7 +52,7 @@ def load_curve(path: str | Path) -> Curve:
 
 
 def _read(file: File) -> Curve:
-    """The curve in a file."""
+    """Return the curve in a file."""
     scene, shape = file.scene(), file.shape("curve/frequency")
     if len(shape) != 1:
         raise Refused(f"/curve/frequency has shape {shape}, expected one row of frequencies")
@@ -69,7 +68,7 @@ def _read(file: File) -> Curve:
 
 
 def _evidence(file: File, shape: tuple[int, ...]) -> list[dict[str, Any]]:
-    """Regime and evidence of each point; evidence that an older file does not have is not known."""
+    """Return regime and evidence of each point; evidence that an older file lacks is unknown."""
     numbers = {name: file.numbers(f"curve/{name}", shape, "any") if file.has(f"curve/{name}")
                else np.full(shape, np.nan) for name in EVIDENCE | MORE_EVIDENCE}
     run, followed, approaches = (_whole(file, name, shape, most) for name, most in (
@@ -87,20 +86,20 @@ def _evidence(file: File, shape: tuple[int, ...]) -> list[dict[str, Any]]:
 
 
 def _whole(file: File, name: str, shape: tuple[int, ...], most: int) -> np.ndarray:
-    """Whole numbers from 0 to `most`; 0 in files without them."""
+    """Return whole numbers from 0 to `most`; 0 in files without them."""
     path = f"curve/{name}"
     return within(f"/{path}", file.numbers(path, shape, "i"), 0, most) if file.has(path) else np.zeros(shape, np.int64)
 
 
 def _count(number: float) -> int | None:
-    """A number of drive periods, where it is known. Refuses what is none."""
+    """Return a number of drive periods; None if unknown. Refuses anything else."""
     if np.isnan(number):
         return None
     return int(within("/curve/lyapunov_periods", np.array([number]), 1, np.iinfo(np.int32).max)[0])
 
 
 def _pair(first: float, second: float) -> tuple[float, float] | None:
-    """Two numbers that are known together."""
+    """Return two numbers that are known only together."""
     return None if np.isnan(first) else (float(first), float(second))
 
 

@@ -1,4 +1,4 @@
-"""The group /measured of a result's file: the measurement drawn over it, with units and source."""
+"""The group /measured of a result file: the measurement drawn over the result, with units and source."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ _SERIES = (("velocity", "drive_velocity", "m/s", "velocity of the shaker"),
 
 
 def write_measured(file: h5py.File, measured: Measured | Series) -> None:
-    """Write the group `measured`; its attributes say whether anything was measured at all."""
+    """Write the group `measured`; its attributes say whether the data were really measured."""
     write_table(file, measured_table(measured))
     file["measured"].attrs.update({"understood": measured.understood, "source": measured.source, "note": measured.note,
                                    "virtual": int(measured.virtual)})
 
 
 def measured_table(measured: Measured | Series) -> Table:
-    """The columns that were measured, in SI."""
+    """Return the measured columns, in SI units."""
     kinds: tuple[tuple[str, str, str, str], ...]
     if isinstance(measured, Measured):
         name, along, kinds = "frequency", axis("frequency", measured.frequency, "Hz", "drive frequency"), _CURVE

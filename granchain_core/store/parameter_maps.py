@@ -4,7 +4,7 @@
         their relative errors error_estimate_input, error_estimate (of the output force; docs/result-files.md, "Which
         name is which error"), error_estimate_elastic,
         decay, multiplier, lyapunov, lyapunov_error, lyapunov_periods, regime, period, periods_run (y, x)
-The root's attribute `amplitude` describes A0 over f where it is not the scene's.
+The root's attribute `amplitude` describes A0 over f if it is not the scene's.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ from .writing import write_file, write_result
 
 
 def save_parameter_map(parameter_map: ParameterMap, path: str | Path) -> Path:
-    """Write a parameter map to `path`; returns the path. Raises `BadInput` where it cannot be written."""
+    """Write a parameter map to `path` and return the path. Raises `BadInput` if it cannot be written."""
     return write_file(path, lambda file: write_result(file, parameter_map))
 
 
 def load_parameter_map(path: str | Path) -> ParameterMap:
-    """The parameter map that `save_parameter_map` wrote. Raises `BadInput` for a file that is not one."""
+    """Return the parameter map that `save_parameter_map` wrote. Raises `BadInput` for any other file."""
     with opened(path, "is not a map written by granchain") as file:
         file.schema()
         return _read(file)
@@ -55,13 +55,13 @@ def _read(file: File) -> ParameterMap:
     kept = [name for name in CELL.names or () if file.has(f"map/{name}")]
     for name in kept:  # earlier versions kept fewer columns
         cells[name] = _column(file, name, shape)
-    if "decay" not in kept:  # files written before the two were told apart
+    if "decay" not in kept:  # files from before the two were distinguished
         cells["decay"], cells["multiplier"] = cells["multiplier"].copy(), np.nan
     return ParameterMap(grid, cells, file.number("wall_s"))
 
 
 def _column(file: File, name: str, shape: tuple[int, ...]) -> np.ndarray:
-    """One column of all cells; a number that does not fit into its place in the table is refused."""
+    """Return one column of all cells; a number that does not fit the table's type is refused."""
     kind, path = CELL[name], f"map/{name}"
     if kind.kind == "f":
         return file.numbers(path, shape).reshape(-1)

@@ -4,7 +4,8 @@
         drive_displacement, input_force, output_force, output_force_elastic (time)
         jump; jump_time (s), jump_contact, jump_force (N) (jump): closings at which the force jumps from 0
         max_input_force, max_output_force, max_output_force_elastic (N), their errors, regime, period: one of each
-The root carries the largest forces with their errors, cost, regime, status and start, besides what every root has.
+In addition to the attributes of every root, a run's root has the largest forces, their errors, cost, regime, status and
+start.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ from .writing import or_none
 STATUSES = ("done", "accuracy-not-reached", "over-budget")
 #: Spelling of `GIVEN_STATE` in older files of a steady state.
 _PREVIOUS_STATE = "previous state"
-#: Functions of granchain_core.store that read other results, by a table of the file.
+#: Functions of granchain_core.store that read other results, by a table in the file.
 _LOADED = {"curve": "load_curve", "branch": "load_branch"}
 
 
@@ -68,7 +69,7 @@ def load(path: str | Path) -> Run:
 
 
 def _other_result(file: File) -> str:
-    """The tables of a file of another result than a run, and what reads them; empty for a run."""
+    """Describe the tables of a file with another result than a run, and what reads them; empty for a run."""
     if file.has("run/time"):
         return ""
     groups = sorted({name.partition("/")[0] for name in file.names() if "/" in name})
@@ -80,7 +81,7 @@ def _other_result(file: File) -> str:
 
 
 def _read(file: File) -> Run:
-    """The run in a file."""
+    """Return the run in a file."""
     scene, rows = file.scene(), _rows(file)
     file.expect_units({**motion_units("run"), **units_by_path("run", Jumps().columns())})
     arrays = {name: file.numbers(f"run/{name}", (rows, *width)) for name, width in (
@@ -95,12 +96,12 @@ def _read(file: File) -> Run:
         displacement_error=or_none(file.number("accuracy_reached")),
         energy_residual=or_none(file.number("energy_residual")),
         force_errors=ForceErrors(*(or_none(file.number(name, absent=np.nan)) for name in RUN_ERRORS)),
-        **arrays, **largest,  # type: ignore[arg-type]  # names of its fields
+        **arrays, **largest,  # type: ignore[arg-type]  # the run's fields
     )
 
 
 def _start(file: File) -> str:
-    """The start of a run; files without this entry, from older versions, are of runs from rest."""
+    """Return the start of a run; older files, which lack this entry, are of runs from rest."""
     if not file.stated("start"):
         return AT_REST
     text = file.text("start")
@@ -108,7 +109,7 @@ def _start(file: File) -> str:
 
 
 def _rows(file: File) -> int:
-    """Number of samples of a run, at least one."""
+    """Return the number of samples of a run, at least one."""
     shape = file.shape("run/time")
     if len(shape) != 1 or shape[0] < 1:
         raise Refused(f"/run/time has shape {shape}, expected one row of samples")
@@ -122,7 +123,7 @@ def _cost(file: File) -> Cost:
 
 def _regime(file: File) -> Regime:
     regime = file.json("regime")
-    if isinstance(regime, dict) and "decay" not in regime:  # files written before decay and |μ| were told apart
+    if isinstance(regime, dict) and "decay" not in regime:  # files from before decay and |μ| were distinguished
         regime["decay"] = regime.pop("multiplier", None)
     lyapunov, ratios = ((regime.pop(name, None) for name in ("lyapunov", "window_ratios")) if isinstance(regime, dict)
                         else (None, None))
@@ -141,7 +142,7 @@ def _regime(file: File) -> Regime:
 
 
 def _pair(place: str, values: object, first: str, second: str) -> tuple[float, ...]:
-    """Two numbers of a regime."""
+    """Return two numbers of a regime."""
     if not isinstance(values, list) or len(values) != 2:
         raise Refused(f"{place} is not a pair of numbers")
     return tuple(entries(place, dict(zip((first, second), values, strict=True)),
@@ -149,7 +150,7 @@ def _pair(place: str, values: object, first: str, second: str) -> tuple[float, .
 
 
 def _read_jumps(file: File, beads: int) -> Jumps:
-    """The jumps of a run; files written before they were kept have none."""
+    """Return the jumps of a run; files from before they were recorded have none."""
     if not file.has("run/jump_time"):
         return Jumps()
     count = file.shape("run/jump_time")[:1]

@@ -1,4 +1,4 @@
-"""`save`: writes any result."""
+"""`save`, which writes any result."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ def save(result: Labelled, path: str | Path, measured: Measured | Series | None 
     Parameters
     ----------
     result : Run, Curve, Orbit, Branch, ParameterMap, Observation, Fit or any other result
-        What a function of granchain returned.
+        A result returned by one of granchain's functions.
     path : str or pathlib.Path
-        The file; one that is there is replaced when the new one is complete.
+        The file. An existing file is replaced once the new one is complete.
     measured : Measured or Series, optional
-        A measurement that belongs to it (`granchain_core.experiment.read_experiment`), kept in the group `measured`.
+        A measurement to be kept with it (`granchain_core.experiment.read_experiment`), in the group `measured`.
 
     Returns
     -------
@@ -48,7 +48,7 @@ def save(result: Labelled, path: str | Path, measured: Measured | Series | None 
     True
     """
     if not isinstance(result, Labelled):
-        raise BadInput("What is saved is a result of granchain, such as `run` returns, not a value of type "
+        raise BadInput("`save` writes a result of granchain, for example of `run`, not a value of type "
                        f"{type(result).__name__}.")
 
     def write(file: h5py.File) -> None:

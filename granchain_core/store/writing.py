@@ -1,8 +1,8 @@
-"""Writing a file from a result's tables and attributes, first under a temporary name.
+"""Writing of a file from a result's tables and attributes, first under a temporary name.
 
-The root carries schema version, scene, method, accuracy asked and reached, versions, machine and time of writing
+The root has schema version, scene, method, requested and reached accuracy, versions, machine and time of writing
 (tables/provenance.py). A file is written under a temporary name, sealed with its checksum (hdf5/seal.py), synced and
-renamed: there is never half a file under its own name.
+renamed, so that there is never half a file under the final name.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from ..hdf5 import VERSIONS, seal
 from ..hdf5.border import SCHEMA
 from ..tables import Column, Labelled, Table
 
-#: File systems take 255 bytes; the temporary name needs some of them.
+#: File systems allow 255 bytes, of which the temporary name needs some.
 _LONGEST_NAME = 230
 
 
 def or_none(value: float) -> float | None:
-    """A number from a file."""
+    """Return a number from a file; None for NaN."""
     return None if np.isnan(value) else float(value)
 
 
@@ -55,7 +55,7 @@ def _dataset(group: h5py.Group, name: str, column: Column) -> h5py.Dataset:
 
 
 def check_writable(path: str | Path) -> None:
-    """Raise `BadInput` if no file can be written at `path`; nothing is left there. Ask before a long computation."""
+    """Raise `BadInput` if no file can be written at `path`; leave nothing there. Call it before long computations."""
     temporary = _temporary(Path(path))
     try:
         temporary.touch(exist_ok=False)
@@ -65,7 +65,7 @@ def check_writable(path: str | Path) -> None:
 
 
 def _temporary(path: Path) -> Path:
-    """The name a file has while it is written, in the folder it will stand in."""
+    """Return the name of a file while it is being written, in its final folder."""
     if len(os.fsencode(path.name)) > _LONGEST_NAME:
         raise BadInput(f"Cannot write {str(path)[:60]}…: the name has more than {_LONGEST_NAME} bytes.")
     if not path.name or path.name == ".." or path.is_dir():
@@ -74,9 +74,9 @@ def _temporary(path: Path) -> Path:
 
 
 def write_file(path: str | Path, write: Callable[[h5py.File], None]) -> Path:
-    """Write a file by `write` under a temporary name, seal it, and give it its own name; returns the path.
+    """Write a file with `write` under a temporary name, seal it, rename it, and return the path.
 
-    Raises `BadInput` where it cannot be written.
+    Raises `BadInput` if it cannot be written.
     """
     path = Path(path)
     temporary = _temporary(path)

@@ -1,7 +1,7 @@
-"""Results as tables: names, units, axes and provenance of all numbers, for files, xarray, pandas and a notebook's cell.
+"""Results as tables: names, units, axes and provenance of all numbers, for files, xarray, pandas and notebooks.
 
-A result says once, in `tables` and `attributes`, what its numbers are called and in which units they are. The HDF5
-files of granchain_core/store are written from that, and `to_xarray` and `to_pandas` give the same.
+A result states the names and units of its numbers once, in `tables` and `attributes`. The HDF5 files of
+granchain_core/store are written from these, and `to_xarray` and `to_pandas` return the same.
 """
 
 from .labelled import Labelled

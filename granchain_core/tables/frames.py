@@ -1,4 +1,4 @@
-"""Tables as xarray datasets and pandas data frames; both libraries are imported only on demand."""
+"""Tables as xarray datasets and pandas data frames; both libraries are imported on demand."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def dataset(table: Table, attributes: Mapping[str, Any]) -> xarray.Dataset:
-    """A table as a dataset: every column a variable with `units` and `long_name`, every axis a coordinate."""
+    """Convert a table to a dataset: columns become variables with `units` and `long_name`, axes coordinates."""
     library = _imported("xarray", "to_xarray")
 
     def variable(column: Column) -> tuple[tuple[str, ...], np.ndarray, dict[str, Any]]:
@@ -32,9 +32,9 @@ def dataset(table: Table, attributes: Mapping[str, Any]) -> xarray.Dataset:
 
 
 def frame(table: Table, rows: tuple[str, ...], attributes: Mapping[str, Any]) -> pandas.DataFrame:
-    """The columns of a table over the axes `rows`; one over other axes too becomes a column for each place on them.
+    """Return the columns of a table over the axes `rows`; further axes of a column become one column for each place.
 
-    `attrs` has `units` and `long_names` by column, beside the attributes.
+    `attrs` has `units` and `long_names` by column, in addition to the attributes.
     """
     library = _imported("pandas", "to_pandas")
     columns: dict[str, np.ndarray] = {}
@@ -55,9 +55,9 @@ def frame(table: Table, rows: tuple[str, ...], attributes: Mapping[str, Any]) ->
 
 
 def _pieces(table: Table, name: str, column: Column, rows: tuple[str, ...]) -> list[tuple[str, np.ndarray]]:
-    """A column as one row of values for each place on its axes that are not rows: displacement_1, displacement_2, …
+    """Split a column by its place on the axes that are not rows: displacement_1, displacement_2, …
 
-    One that does not depend on every axis of the rows is repeated along the others.
+    A column that does not depend on every row axis is repeated along the others.
     """
     others = [axis_name for axis_name in column.axes if axis_name not in rows]
     along = [axis_name for axis_name in rows if axis_name in column.axes]

@@ -1,4 +1,4 @@
-"""The base class of results: conversion to a dataset or data frame, and a summary in a notebook's cell."""
+"""The base class of results: conversion to a dataset or data frame, and a summary in notebooks."""
 
 from __future__ import annotations
 
@@ -21,53 +21,53 @@ if TYPE_CHECKING:
 class Labelled:
     """A result whose numbers have names, units and axes.
 
-    A class of results says in `tables` what its numbers are, in `attributes` what it has one of, and in `summary` what
-    is worth reading first. A dataclass among them has `repr=False`, so that `print` shows the summary.
+    A subclass describes its arrays in `tables`, its single values in `attributes`, and the main findings in `summary`.
+    Dataclasses among them have `repr=False`, so that `print` shows the summary.
     """
 
     if TYPE_CHECKING:
         @property
         def scene(self) -> Scene:
-            """The chain that was computed."""
+            """The computed chain."""
             raise NotImplementedError
 
     def tables(self) -> tuple[Table, ...]:
-        """The tables of the result, the main one first; each is a group of its file."""
+        """Return the tables of the result, the main one first; each is a group of its file."""
         raise NotImplementedError
 
     def attributes(self) -> dict[str, Attribute]:
-        """Single numbers and words of the result, and its provenance: the attributes of its file's root."""
+        """Return the result's single numbers and words, and its provenance: the attributes of its file's root."""
         raise NotImplementedError
 
     def summary(self) -> Sequence[str]:
-        """The main results in short sentences with units and errors."""
+        """Return the main results in short sentences with units and errors."""
         raise NotImplementedError
 
     @property
     def varied(self) -> tuple[str, ...]:
-        """The knobs that the result varies; their values in the scene were not used."""
+        """Return the knobs that the result varies; their values in the scene were not used."""
         return ()
 
     def heading(self) -> str:
-        """The kind of result and its scene, without the knobs that it varies."""
+        """Return the kind of result and its scene, without the knobs that it varies."""
         return f"{type(self).__name__} of {scene_in_words(self.scene, self.varied)}"
 
     def to_xarray(self, table: str = "") -> xarray.Dataset:
-        """A table as a dataset of xarray, the main one if none is named.
+        """Return a table, by default the main one, as an xarray dataset.
 
-        Its variables have `units` and `long_name`, errors and regimes are variables beside the numbers, and its `attrs`
-        say where it comes from. Raises `BadInput` where there is no such table or no xarray.
+        Variables have `units` and `long_name`, errors and regimes are variables too, and `attrs` has the provenance.
+        Raises `BadInput` if there is no such table or no xarray.
         """
         from .frames import dataset
 
         return dataset(self._table(table), self.attributes())
 
     def to_pandas(self, table: str = "", rows: str = "") -> pandas.DataFrame:
-        """A table as a data frame of pandas, the main one if none is named.
+        """Return a table, by default the main one, as a pandas data frame.
 
-        A row for each place on the table's first axis, or on the axis `rows`; what has a value for each bead has a
-        column for each: displacement_1, displacement_2, … `attrs` has `units` and `long_names` by column, and where it
-        comes from. Raises `BadInput` where there is no such table or axis, or no pandas.
+        It has a row for each place on the table's first axis, or on the axis `rows`. Quantities with a value for each
+        bead have a column for each: displacement_1, displacement_2, … `attrs` has `units` and `long_names` by column,
+        and the provenance. Raises `BadInput` if there is no such table or axis, or no pandas.
         """
         from .frames import frame
 
@@ -85,13 +85,13 @@ class Labelled:
         return tables[name or next(iter(tables))]
 
     def __repr__(self) -> str:
-        """Heading and summary, which `print` shows; a dataclass would show whole arrays."""
+        """Return heading and summary for `print`, where a dataclass would show whole arrays."""
         return as_text(self.heading(), self.summary())
 
     def _repr_html_(self) -> str:
-        """The result as HTML, which a notebook shows."""
+        """Return the result as HTML for a notebook."""
         return as_html(self.heading(), self.summary(), self.tables())
 
     def _repr_mimebundle_(self, include: object = None, exclude: object = None) -> dict[str, Any]:
-        """Heading and summary for a notebook and for a terminal."""
+        """Return heading and summary for notebooks and terminals."""
         return {"text/html": self._repr_html_(), "text/plain": repr(self)}

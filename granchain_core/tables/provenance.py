@@ -1,4 +1,4 @@
-"""Provenance of numbers: scene, method, accuracy asked for and reached, versions, machine, time."""
+"""Provenance of numbers: scene, method, requested and reached accuracy, versions, machine, time."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ Attribute = str | int | float
 
 
 def provenance(scene: Scene, method: str, reached: float | None) -> dict[str, Attribute]:
-    """The attributes that every result carries.
+    """Return the attributes that every result has.
 
-    `reached` is the relative error of the displacements of a motion, or the largest one of an output force in a table
-    of steady states; None where none is stated. `accuracy_asked` is the scene's own; batches of curves and maps do not
-    use it.
+    `reached` is the relative error of a motion's displacements, or the largest relative error of an output force in a
+    table of steady states; None if none is stated. `accuracy_asked` is the scene's accuracy; batches of curves and maps
+    do not use it.
     """
     entries = {
         **made(), "scene_name": scene.name, "scene": json.dumps(scene.to_json()), "scene_digest": scene.digest,
@@ -41,12 +41,12 @@ def provenance(scene: Scene, method: str, reached: float | None) -> dict[str, At
 
 
 def amplitude_attribute(amplitude: Amplitude | None) -> dict[str, Attribute]:
-    """A drive amplitude that depends on the frequency, as JSON; nothing where it is the scene's own."""
+    """Return a drive amplitude that depends on the frequency as JSON; nothing if it is the scene's own."""
     return {} if amplitude is None else {"amplitude": json.dumps(amplitude.to_json())}
 
 
 def made() -> dict[str, Attribute]:
-    """Attributes that say with which versions, on which machine and when a result was made."""
+    """Return the attributes that say with which versions, on which machine and when a result was computed."""
     return {"Conventions": "CF-1.10", "granchain_version": __version__,
             "created": datetime.now(UTC).isoformat(timespec="seconds"),
             "versions": json.dumps({**{name: version(name) for name in _LIBRARIES},
@@ -57,10 +57,10 @@ def made() -> dict[str, Attribute]:
 
 @cache
 def kernels_digest() -> str:
-    """Hash of the kernels' sources, which tells commits of one version apart where their numbers may differ.
+    """Return the hash of the kernels' sources, which distinguishes commits of one version whose numbers may differ.
 
-    It is that of the files' bytes: unlike the hash by which compiled code is found (kernels/compiling/sources.py) it
-    needs no compiler, and is the same on every machine.
+    It is a hash of the files' bytes. Unlike the hash by which compiled code is found (kernels/compiling/sources.py), it
+    needs no compiler and is the same on every machine.
     """
     digest = sha256()
     for path in sorted(_KERNELS.rglob("*.py")):
@@ -69,5 +69,5 @@ def kernels_digest() -> str:
 
 
 def or_nan(value: float | None) -> float:
-    """A number for a table, in which None is NaN."""
+    """Return a number for a table, with NaN for None."""
     return np.nan if value is None else value

@@ -13,12 +13,12 @@ _ROW = "text-align:left;background:none"
 
 
 def as_text(heading: str, sentences: Sequence[str]) -> str:
-    """For a terminal."""
+    """Return the summary for a terminal."""
     return "\n".join([heading, *(f"  {sentence}" for sentence in sentences)])
 
 
 def as_html(heading: str, sentences: Sequence[str], tables: Sequence[Table]) -> str:
-    """For a notebook: no more than fits a cell, in its own colours; what it holds is folded away."""
+    """Return the summary for a notebook: short enough for a cell, in the notebook's colours, with folded contents."""
     lines = "".join(f"<div>{html.escape(sentence)}</div>" for sentence in sentences)
     listed = "".join(_held(table) for table in tables)
     return (f"<div style='line-height:1.5'><b>{html.escape(heading)}</b>{lines}"
@@ -26,9 +26,9 @@ def as_html(heading: str, sentences: Sequence[str], tables: Sequence[Table]) -> 
 
 
 def scene_in_words(scene: Scene, varied: Sequence[str] = ()) -> str:
-    """A scene, its frequency and the knobs that are not those of its preset, all without those that are `varied`.
+    """Describe a scene, its frequency and the knobs that differ from its preset, except those that are `varied`.
 
-    Without a drive f is no frequency of the motion, and 1/f is the unit of the recorded time.
+    Without a drive, f is not a frequency of the motion, and 1/f is the unit of the recorded time.
     """
     knobs = {name: value for name, value in {"f": scene.f, **scene.differences()}.items() if name not in varied}
     if "k" in varied or "kappa" in varied:  # one quantity with two names
@@ -48,7 +48,7 @@ def _unit(knob: str) -> str:
 
 
 def _held(table: Table) -> str:
-    """The axes and columns of a table."""
+    """List the axes and columns of a table."""
     rows = "".join(
         _row(f"<code>{html.escape(name)}</code>", ", ".join(column.axes), "" if column.unit == "1" else column.unit,
              html.escape(column.meaning)) for name, column in {**table.axes, **table.columns}.items())

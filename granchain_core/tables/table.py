@@ -1,4 +1,4 @@
-"""A table: columns over common axes, each with its unit and meaning."""
+"""Tables: columns over common axes, each with a unit and a meaning."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ import numpy as np
 class Column:
     """Values over axes.
 
-    `unit` is in SI, "1" for a plain number and "" for words; `meaning` is the long name. `more` are further attributes,
-    such as CF's flag_values and flag_meanings of numbers that stand for words.
+    `unit` is an SI unit, "1" for a plain number and "" for words; `meaning` is the long name. `more` has further
+    attributes, for example CF's flag_values and flag_meanings of numbers that stand for words.
     """
 
     values: np.ndarray
@@ -28,16 +28,16 @@ class Column:
 
     @property
     def holds_words(self) -> bool:
-        """Whether its values are words."""
+        """Whether the values are words."""
         return self.values.dtype.kind in "OU"
 
     @property
     def attributes(self) -> dict[str, Any]:
-        """Unit, meaning and what else there is, under the names of the netCDF conventions."""
+        """Return unit, meaning and further attributes, under the names of the netCDF conventions."""
         return {"units": self.unit, "long_name": self.meaning, **self.more}
 
     def words(self) -> np.ndarray:
-        """The values, words in place of CF's flags."""
+        """Return the values, with CF flags replaced by words."""
         if "flag_meanings" not in self.more:
             return self.values
         meanings = dict(zip(self.more["flag_values"].tolist(), self.more["flag_meanings"].split(), strict=True))
@@ -45,16 +45,16 @@ class Column:
 
 
 def axis(name: str, values: Any, unit: str, meaning: str) -> dict[str, Column]:
-    """An axis by its name."""
+    """Return an axis under its name."""
     return {name: Column(np.asarray(values), (name,), unit, meaning)}
 
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """Columns by name over axes by name: a group of a file, a dataset of xarray.
+    """Named columns over named axes: a group of a file, or an xarray dataset.
 
-    `rows` are the axes that number the rows of a data frame, the first axis if not given; a column over these and
-    others becomes several there. Raises `ValueError` where a column does not fit its axes.
+    `rows` are the axes that number the rows of a data frame, by default the first axis. A column over further axes
+    becomes several columns there. Raises `ValueError` if a column does not fit its axes.
     """
 
     name: str
@@ -72,10 +72,10 @@ class Table:
 
     @property
     def units(self) -> dict[str, str]:
-        """The units of its axes and columns by their paths in a file, without words and flags, which have none."""
+        """Return the units of axes and columns by their paths in a file, without words and flags, which have none."""
         return units_by_path(self.name, {**self.axes, **self.columns})
 
 
 def units_by_path(group: str, columns: Mapping[str, Column]) -> dict[str, str]:
-    """The units of columns by their paths in a group of a file, without words and flags, which have none."""
+    """Return the units of columns by their paths in a group of a file, without words and flags, which have none."""
     return {f"{group}/{name}": column.unit for name, column in columns.items() if column.unit}

@@ -1,4 +1,4 @@
-"""Columns that several results have: largest forces, their errors, multipliers, states; axes of beads and contacts."""
+"""Columns shared by several results: largest forces, their errors, multipliers, states; axes of beads and contacts."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 
 from .table import Column, axis
 
-#: Columns with the largest forces, in this order everywhere.
+#: Columns with the largest forces, in the order used everywhere.
 MAXIMA = ("max_input_force", "max_output_force", "max_output_force_elastic")
 _MEANT = ("largest force of the driver on bead 1", "largest force on the wall, elastic and damping",
           "largest elastic force on the wall, the paper's F_out")
@@ -17,30 +17,30 @@ _FORCES = ("input", "output", "elastic output")
 
 
 def force_columns(forces: np.ndarray, axes: tuple[str, ...], when: str = "in the steady state") -> dict[str, Column]:
-    """Largest forces (…, 3) [N] in the order of `MAXIMA`; `when` says over which time."""
+    """Return columns of largest forces (…, 3) [N] in the order of `MAXIMA`; `when` says over which time."""
     return {name: Column(forces[..., i], axes, "N", f"{_MEANT[i]}, {when}") for i, name in enumerate(MAXIMA)}
 
 
 def error_columns(errors: np.ndarray, axes: tuple[str, ...]) -> dict[str, Column]:
-    """Relative errors (…, 3) in the same order, NaN where none is stated."""
+    """Return columns of relative errors (…, 3) in the same order, NaN where none is stated."""
     return {name: Column(errors[..., i], axes, "1",
                          f"relative error of the largest {_FORCES[i]} force, NaN where none is claimed")
             for i, name in enumerate(ERRORS)}
 
 
 def bead_axis(beads: int) -> dict[str, Column]:
-    """Numbers of the beads."""
+    """Return the axis of bead numbers."""
     return axis("bead", np.arange(1, beads + 1), "1", "bead number from the driver")
 
 
 def contact_axis(beads: int) -> dict[str, Column]:
-    """Numbers of the contacts."""
+    """Return the axis of contact numbers."""
     return axis("contact", np.arange(beads + 1), "1", "contact number; c joins bodies c and c + 1")
 
 
 def multiplier_columns(multipliers: np.ndarray, axes: tuple[str, ...], errors: np.ndarray | None = None,
                        prefix: str = "") -> dict[str, Column]:
-    """Real and imaginary parts of multipliers (netCDF has no complex numbers), and their errors where known."""
+    """Return real and imaginary parts of multipliers (netCDF has no complex numbers), and their errors if known."""
     of = "the observer's multiplier" if prefix else "multiplier"
     columns = {f"{prefix}multiplier_real": Column(multipliers.real, axes, "1", f"{of}, real part"),
                f"{prefix}multiplier_imag": Column(multipliers.imag, axes, "1", f"{of}, imaginary part")}
@@ -50,6 +50,6 @@ def multiplier_columns(multipliers: np.ndarray, axes: tuple[str, ...], errors: n
 
 
 def state_columns(displacement: np.ndarray, velocity: np.ndarray, axes: tuple[str, ...]) -> dict[str, Column]:
-    """Displacements [m] and velocities [m/s] of beads at drive phase 0."""
+    """Return displacements [m] and velocities [m/s] of the beads at drive phase 0."""
     return {"displacement": Column(displacement, axes, "m", "bead displacement from its rest position, at phase 0"),
             "velocity": Column(velocity, axes, "m/s", "bead velocity, at phase 0")}

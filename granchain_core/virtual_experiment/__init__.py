@@ -1,4 +1,4 @@
-"""Virtual experiments: what a rig's sensors would record of the model's motion, always marked as virtual."""
+"""Virtual experiments: records of the model's motion by a rig's sensors, always marked as virtual."""
 
 from ..experiment.sensors import Sensors
 from .recorded import virtual_curve_csv, virtual_series_csv

@@ -1,8 +1,8 @@
-"""A record that begins before the shaker does: a drive period at rest, then a shaker whose amplitude rises.
+"""A record that starts before the shaker does: a drive period at rest, then a shaker whose amplitude rises.
 
 Equation   u_0(t) = A0 sin(ωτ) s(τ),   τ = t − 1/f ≥ 0,   s = sin²(π τ f/4) over two periods, then 1
 Note       Chain and driver start at rest, so `granchain run --drive` on the record needs no other start. Nothing jumps:
-           the acceleration of the driver begins at zero.
+           the driver's acceleration starts at zero.
 """
 
 from __future__ import annotations
@@ -19,17 +19,17 @@ from ..prescribed_drive.signal import KNOTS
 from ..results.recorded_motion import MOST_RECORDED
 from ..scene import Scene
 
-#: Drive periods at rest, and those over which the amplitude rises.
+#: Drive periods at rest, and drive periods over which the amplitude rises.
 _AT_REST, _RISING = 1.0, 2.0
-#: Times the drive frequency that the formula of the drive holds while it rises.
+#: Highest frequency in the formula of the rising drive, in drive frequencies.
 _HIGHEST = 2.0
 
 
 def from_rest(scene: Scene, times: np.ndarray, rate: float, sensors: Sensors,
               stop: Stop | None) -> tuple[np.ndarray, list[np.ndarray]]:
-    """Velocity and both forces at `times` [s] from 0 on, as perfect velocity and given force sensors record them.
+    """Return perfect velocity, and both forces as the sensors record them, at `times` [s] from 0 on.
 
-    `rate` is the number of samples of the model a second that the forces need [Hz].
+    `rate` is the number of model samples per second that the forces need [Hz].
     """
     signal = _rising(scene, float(times[-1]) + 1.0 / sensors.rate, rate)
     if len(signal.time) * scene.N > MOST_RECORDED:
@@ -42,7 +42,7 @@ def from_rest(scene: Scene, times: np.ndarray, rate: float, sensors: Sensors,
 
 
 def _rising(scene: Scene, duration: float, rate: float) -> Signal:
-    """The motion of the shaker over `duration` [s], with at least `rate` knots a second [Hz]."""
+    """Return the motion of the shaker over `duration` [s], with at least `rate` knots per second [Hz]."""
     omega, begin, rise = 2.0 * math.pi * scene.f, _AT_REST / scene.f, _RISING / scene.f
 
     def window(t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

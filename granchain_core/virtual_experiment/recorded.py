@@ -1,7 +1,7 @@
-"""The record of a virtual experiment: a time series, or a resonance curve with repeats, as the text of a CSV file.
+"""Records of virtual experiments: a time series, or a resonance curve with repeats, as the text of a CSV file.
 
-The text is what an experiment would leave behind, and its first line says that nothing was measured. It is read back
-by the reader of every measurement (experiment/reader.py), which keeps that mark.
+The text has the form of an experiment's data, and its first line says that nothing was measured. It is read by the
+reader of all measurements (experiment/reader.py), which keeps that mark.
 """
 
 from __future__ import annotations
@@ -30,26 +30,26 @@ from ..steady.settling.settle import settle
 from ..version import __version__
 from .from_rest import from_rest
 
-#: Samples of the model per sample of the sensors.
+#: Model samples per sensor sample.
 _PER_SAMPLE = 4
-#: Samples of the model over the shortest pulse of the force, which suffice for any bandwidth: straight lines between
-#: them are within (π/64)²/8 of its height, 0.03 %.
+#: Model samples over the shortest pulse of the force, which suffice for any bandwidth: linear interpolation is accurate
+#: to (π/64)²/8 of the pulse's height, 0.03 %.
 _PER_PULSE = 64
-#: Least samples of the model per drive period.
+#: Smallest number of model samples per drive period.
 _LEAST_SAMPLES = 96
-#: Relative error of the state that a record begins with.
+#: Relative error of a record's initial state.
 _START_ACCURACY = 1e-5
-#: Steps of a record for one default step.
+#: Steps of a record per default step.
 _STEPS_PER_DEFAULT = 2
-#: Most samples of a series.
+#: Largest number of samples in a series.
 MOST_SAMPLES = 1_000_000
-#: Most records of a curve.
+#: Largest number of records in a curve.
 MOST_RECORDS = 10_000
-#: Most values of the model's motion behind one record, beads times samples.
+#: Largest number of values in the model's motion for one record, beads times samples.
 MOST_VALUES = 20_000_000
-#: Most drive periods of a record.
+#: Largest number of drive periods in a record.
 MOST_RECORD_PERIODS = 10_000
-#: Possible beginnings of a series.
+#: Possible starts of a series.
 STARTS = ("settled", "rest")
 #: Largest seed.
 _LARGEST_SEED = 2**63 - 1
@@ -57,7 +57,7 @@ _LARGEST_SEED = 2**63 - 1
 
 def virtual_series_csv(scene: Scene, periods: int, sensors: Sensors, seed: int = 0, stop: Stop | None = None,
                        start: str = "settled") -> str:
-    """The sensors' record over some drive periods: time, velocity, input and output force.
+    """Return the sensors' record over several drive periods: time, velocity, input and output force.
 
     Parameters
     ----------
@@ -72,8 +72,8 @@ def virtual_series_csv(scene: Scene, periods: int, sensors: Sensors, seed: int =
     stop : Stop, optional
         Ends the computation when another thread sets it.
     start : str
-        "settled": the record is of the steady state and begins at a random phase. "rest": it begins before the shaker
-        does, with a drive period at rest and two in which the amplitude of the shaker rises.
+        "settled": the record is of the steady state and starts at a random phase. "rest": it starts before the shaker
+        does, with one drive period at rest and two in which the shaker's amplitude rises.
 
     Returns
     -------
@@ -114,9 +114,9 @@ def virtual_series_csv(scene: Scene, periods: int, sensors: Sensors, seed: int =
 def virtual_curve_csv(scene: Scene, frequencies: Sequence[float] | np.ndarray, sensors: Sensors, repeats: int = 3,
                       scatter: float = 0.0, periods: int = 20, seed: int = 0, stop: Stop | None = None,
                       progress: Callable[[int, int], None] | None = None) -> str:
-    """A measured resonance curve: at each frequency, several times, the largest output force that the sensor records.
+    """Return a "measured" resonance curve: the largest output force recorded, several times per frequency.
 
-    The largest of noisy samples is too large on average, as in the laboratory.
+    As in the laboratory, the largest of noisy samples is too large on average.
 
     Parameters
     ----------
@@ -129,7 +129,7 @@ def virtual_curve_csv(scene: Scene, frequencies: Sequence[float] | np.ndarray, s
     repeats : int
         Records at each frequency, 1 to 100.
     scatter : float
-        Standard deviation of the drive amplitude between them, over its mean, 0 to 0.5.
+        Standard deviation of the drive amplitude between the records, over its mean, 0 to 0.5.
     periods : int
         Length of each record in drive periods.
     seed : int
@@ -137,7 +137,7 @@ def virtual_curve_csv(scene: Scene, frequencies: Sequence[float] | np.ndarray, s
     stop : Stop, optional
         Ends the computation when another thread sets it.
     progress : callable, optional
-        Called with the numbers of records that are done, and of all.
+        Called with the number of finished records and the number of all records.
 
     Returns
     -------
@@ -192,7 +192,7 @@ def _head(scene: Scene, sensors: Sensors, seed: int) -> str:
 
 def _recorded(scene: Scene, count: int, sensors: Sensors, random: np.random.Generator,
               stop: Stop | None) -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:
-    """Time, velocity, and both forces of `count` samples that begin at a random phase of the steady state."""
+    """Return time, velocity, and both forces of `count` samples that start at a random phase of the steady state."""
     begun = random.random() / scene.f + sensors.lead_in
     motion, fine = _motion(scene, begun + (count + 1) / sensors.rate, sensors, stop)
     times = np.arange(count) / sensors.rate
@@ -210,7 +210,7 @@ def _recorded(scene: Scene, count: int, sensors: Sensors, random: np.random.Gene
 
 def _from_rest(scene: Scene, count: int, sensors: Sensors, random: np.random.Generator,
                stop: Stop | None) -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:
-    """Time, velocity, and both forces of `count` samples that begin at rest."""
+    """Return time, velocity, and both forces of `count` samples that start at rest."""
     settled, times = _settled(scene, stop), np.arange(count) / sensors.rate
     largest = max(settled.run.max_input_force, settled.run.max_output_force)
     velocity, forces = from_rest(_quick(scene), times, _fastest(scene, largest, sensors), sensors, stop)
@@ -219,7 +219,7 @@ def _from_rest(scene: Scene, count: int, sensors: Sensors, random: np.random.Gen
 
 
 def _quick(scene: Scene) -> Scene:
-    """The scene with an accuracy that suffices for a record."""
+    """Return the scene with an accuracy that suffices for a record."""
     return scene.evolve(accuracy=max(scene.accuracy, _START_ACCURACY))
 
 
@@ -228,9 +228,9 @@ def _settled(scene: Scene, stop: Stop | None) -> Settled:
 
 
 def _fastest(scene: Scene, force: float, sensors: Sensors) -> float:
-    """Samples of the model a second [Hz]: enough for the filter and, where there is none, for a sample.
+    """Return the model samples per second [Hz]: enough for the filter or, without one, for the sensor samples.
 
-    No pulse is shorter than that with the largest `force` [N].
+    No pulse is shorter than the one with the largest `force` [N].
     """
     pulses = _PER_PULSE / shortest_pulse(scene, force) if force > 0.0 else 0.0
     needed = min(SAMPLES_PER_BANDWIDTH * sensors.bandwidth, pulses)
@@ -238,7 +238,7 @@ def _fastest(scene: Scene, force: float, sensors: Sensors) -> float:
 
 
 def _motion(scene: Scene, length: float, sensors: Sensors, stop: Stop | None) -> tuple[Run, float]:
-    """The steady state from phase 0 on, over `length` [s] and a little more, and its samples a second [Hz]."""
+    """Return the steady state from phase 0 over slightly more than `length` [s], and its samples per second [Hz]."""
     settled = _settled(scene, stop)
     largest = max(settled.run.max_input_force, settled.run.max_output_force)
     samples = max(_LEAST_SAMPLES, math.ceil(_fastest(scene, largest, sensors) / scene.f))

@@ -50,7 +50,7 @@ def error(found: WorkPrecision, method: str, place: int) -> float:
 
 
 def test_two_solvers_agree_on_the_reference(measured: WorkPrecision) -> None:
-    # SciPy's DOP853 at 1e-14, started anew at contact events; 7e-12 was measured
+    # SciPy's DOP853 at 1e-14, restarted at contact events; 7e-12 was measured
     assert measured.agreement < 1e-10 and measured.disagreement == ""
 
 

@@ -1,4 +1,4 @@
-"""Figures of app/plots in the browser: the data of their sources, and where on the screen a point is."""
+"""Figures of app/plots in the browser: the data of their sources, and positions of points on the screen."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from typing import Any
 
 from playwright.sync_api import Page, TimeoutError
 
-#: What tests use of BokehJS beyond its documentation, as `figures` in every page that they open: the document of a
-#: figure by the figure's name, the first model of a name, the view of a model, and all models.
+#: Undocumented parts of BokehJS that tests use, as `figures` in every page that they open: the document of a figure by
+#: the figure's name, the first model of a name, the view of a model, and all models.
 FIGURES = """
 window.figures = {
   documentOf: (name) => Bokeh.documents.find((one) => one.roots()[0]?.name === name),
   model: (name) => Bokeh.documents.map((one) => one.get_model_by_name(name)).find(Boolean),
   viewOf: (model) => Bokeh.index.find_one(model),
-  // The view of a figure by name; `large` is the one with tools, not that of its tab.
+  // The view of a figure by name; `large` is the figure with tools, not its tab's.
   view: (name, large) => Object.values(Bokeh.index.roots ?? Bokeh.index)
     .filter(({ model }) => model.name === name && (model.toolbar_location !== null) === large).at(-1),
   models: () => (window.Bokeh?.documents ?? []).flatMap((one) => [...(one.all_models ?? one._all_models.values())]),
@@ -24,15 +24,14 @@ window.figures = {
 
 
 def source(page: Page, figure: str, name: str, large: bool = True) -> dict[str, Any]:
-    """The data of a source of a figure, empty until that is there; `large` is the one with tools, not that of its tab.
-    """
+    """Return the data of a figure's source, empty until it exists; `large` is the figure with tools, not its tab's."""
     return dict(page.evaluate("""([name, source, large]) => {
       const view = figures.view(name, large);
       return view?.model.document?.get_model_by_name(source)?.data ?? {}; }""", [figure, name, large]))
 
 
 def place(page: Page, figure: str, x: float, y: float) -> tuple[float, float]:
-    """Where a point of a large figure is on the screen."""
+    """Return the position of a large figure's point on the screen."""
     across, down = page.evaluate("""([name, large, x, y]) => {
       const view = figures.view(name, large);
       const box = view.el.getBoundingClientRect(), { x_scale, y_scale } = view.frame;
@@ -40,7 +39,7 @@ def place(page: Page, figure: str, x: float, y: float) -> tuple[float, float]:
     return across, down
 
 
-# The words of all tooltips that are shown.
+# The text of all visible tooltips.
 _TOOLTIPS = """() => {
   const found = [], look = (node) => {
     for (const one of node.querySelectorAll("*")) {
@@ -54,19 +53,19 @@ _TOOLTIPS = """() => {
   return found.join(" ");
 }"""
 _SHOWN = f"(words) => {{ const shown = ({_TOOLTIPS})(); return words.every((one) => shown.includes(one)); }}"
-#: How long one hover may take to show its tooltip, before the pointer comes again [ms].
+#: Time that one hover may take to show its tooltip before the pointer is moved again [ms].
 _ONE_HOVER = 2000
 
 
 def tooltips(page: Page) -> str:
-    """The words of all tooltips that are shown."""
+    """Return the text of all visible tooltips."""
     return str(page.evaluate(_TOOLTIPS))
 
 
 def hover(page: Page, where: Callable[[], tuple[float, float]], *words: str) -> None:
     """Move the pointer to a point until tooltips with these words are shown.
 
-    While a figure is drawn anew a hover may be lost, and the point may move: then the pointer comes again.
+    While a figure is redrawn, a hover may be lost and the point may move. In that case, the pointer is moved again.
     """
     end = time.monotonic() + 60.0
     while True:

@@ -1,7 +1,7 @@
 """One dashboard and one Chromium for all browser tests of a worker. A test opens its own page (`visit`), navigates the
-page that the tests of its file share (`at`), or looks at one that stays open (`shared`).
+page shared by the tests of its file (`at`), or inspects a page that stays open (`shared`).
 
-A test that fails leaves what its pages showed and said in a folder that its report names (evidence.py).
+A failed test saves screenshots and messages of its pages in a folder named in its report (evidence.py).
 """
 
 from __future__ import annotations
@@ -21,21 +21,21 @@ from server import dashboard, launch_with_profile
 
 HERE = Path(__file__).parent
 
-#: How most pages are opened.
+#: Options with which most pages are opened.
 USUAL: dict[str, Any] = {"viewport": ViewportSize(width=1280, height=800), "reduced_motion": "reduce"}
 
-#: Whether a test has failed.
+#: Stash key: whether a test has failed.
 FAILED = pytest.StashKey[bool]()
-#: Those of a context's options that a page can have by itself.
+#: Options of a context that can be set for a single page.
 MEDIA = ("reduced_motion", "color_scheme")
 
-# Two workers with a browser and a server each share two processors: what is waited for comes, but not within
+# Two workers, each with a browser and a server, share two processors: results arrive, but not always within
 # Playwright's five seconds.
 expect.set_options(timeout=60_000)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """A test of `POINTER_TESTS` that fails is run once more; `.ci/run` allows few repetitions."""
+    """Let failed tests of `POINTER_TESTS` run once more; `.ci/run` allows few repetitions."""
     for item in items:
         if item.path.is_relative_to(HERE) and getattr(item, "originalname", "") in POINTER_TESTS.get(item.path.stem, ()):
             item.add_marker(pytest.mark.flaky(reruns=1))
@@ -44,7 +44,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_makereport(item: pytest.Item,
                               call: pytest.CallInfo[None]) -> Generator[None, pytest.TestReport, pytest.TestReport]:
-    """While its pages are still open: leave the evidence of a test that has failed."""
+    """Save the evidence of a failed test while its pages are still open."""
     report = yield
     item.stash[FAILED] = report.failed
     if report.failed and item.stash.get(WATCHED, None):
@@ -55,13 +55,13 @@ def pytest_runtest_makereport(item: pytest.Item,
 
 @pytest.fixture(scope="session")
 def log(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The log of the dashboard that all tests share."""
+    """Return the log file of the dashboard that all tests share."""
     return tmp_path_factory.mktemp("dashboard") / "log"
 
 
 @pytest.fixture(scope="session")
 def address(log: Path) -> Iterator[str]:
-    """The address of the running dashboard; in the end none of the pages' messages may have been refused."""
+    """Yield the address of the running dashboard; in the end, none of the pages' messages may have been refused."""
     with dashboard(log) as url:
         yield url
         with urllib.request.urlopen(url + "metrics", timeout=60) as answer:
@@ -70,16 +70,16 @@ def address(log: Path) -> Iterator[str]:
 
 @pytest.fixture(scope="session")
 def chromium(profile: BrowserContext) -> Browser:
-    """The running Chromium."""
+    """Return the running Chromium."""
     assert profile.browser is not None
     return profile.browser
 
 
 @pytest.fixture(scope="session")
 def profile(tmp_path_factory: pytest.TempPathFactory) -> Iterator[BrowserContext]:
-    """The context of a profile on the disk, in a Chromium of its own: there scripts are kept as they were compiled.
+    """Yield the context of an on-disk profile in a separate Chromium, which caches compiled scripts.
 
-    A context without one compiles four megabytes of scripts for every page: a third of a page's processor time.
+    A context without a profile compiles four megabytes of scripts for every page, a third of its processor time.
     """
     with sync_playwright() as playwright:
         context = launch_with_profile(playwright, tmp_path_factory.mktemp("profile"), **USUAL)
@@ -90,10 +90,10 @@ def profile(tmp_path_factory: pytest.TempPathFactory) -> Iterator[BrowserContext
 
 @pytest.fixture(scope="session")
 def prepared(profile: BrowserContext, address: str) -> str:
-    """The address, once the first scene's curve and its names are kept: a page that is closed before drops them.
+    """Return the address once the first scene's curve and names are cached; a page that is closed earlier drops them.
 
-    A small page of the server's stays open, and with it the process that draws all pages of the profile: each new one
-    finds its scripts compiled there.
+    A small page of the server stays open, and with it the process that renders all pages of the profile, so that each
+    new page finds its scripts compiled.
     """
     profile.pages[0].goto(address + "liveness")
     page = profile.new_page()
@@ -104,7 +104,7 @@ def prepared(profile: BrowserContext, address: str) -> str:
 
 
 class Pages:
-    """Pages of the dashboard, with what they have complained of."""
+    """Pages of the dashboard, with their errors and warnings."""
 
     def __init__(self, profile: BrowserContext, url: str) -> None:
         self.complaints: list[str] = []
@@ -112,7 +112,7 @@ class Pages:
         self._opened: list[Page | BrowserContext] = []
 
     def open(self, query: str = "", url: str = "", script: str = "", **options: Any) -> Page:
-        """A page that shows a picture."""
+        """Open a page and wait until it shows a picture."""
         url = url or self._url
         of_the_page = {name: options.pop(name) for name in ("viewport", *MEDIA) if name in options}
         if options:
@@ -139,18 +139,18 @@ class Pages:
         return page
 
     def close(self) -> None:
-        """Close all of them."""
+        """Close all pages."""
         while self._opened:
             self._opened.pop().close()
 
 
 @pytest.fixture
 def visit(profile: BrowserContext, prepared: str, log: Path, request: pytest.FixtureRequest) -> Iterator[Callable[..., Page]]:
-    """Opens the dashboard; at the end no page may have complained or asked another host for anything.
+    """Yield a function that opens the dashboard. At the end, no page may have logged errors or contacted another host.
 
-    The visitor has asked the browser for less motion, so that pages begin paused and leave the processor to the tests;
-    `reduced_motion="no-preference"` opens one that plays. A page is in the browser's profile, where nothing is left of
-    the pages before; only one with options of a context is in a context of its own.
+    The browser is set to reduced motion, so that pages start paused and leave the processor to the tests;
+    `reduced_motion="no-preference"` opens one that plays. A page is in the browser's profile, where nothing remains of
+    earlier pages; only a page with context options has its own context.
     """
     pages = Pages(profile, prepared)
 
@@ -166,9 +166,9 @@ def visit(profile: BrowserContext, prepared: str, log: Path, request: pytest.Fix
 
 @pytest.fixture(scope="module")
 def shared(profile: BrowserContext, prepared: str) -> Iterator[Callable[..., Page]]:
-    """Opens a page for several tests of a file, each of which shows one fact about it and leaves it as it was.
+    """Yield a function that opens a page for several tests of a file, which each check one fact and change nothing.
 
-    A test `watch`es the page (evidence.py); at the end of the file none of these pages may have complained.
+    A test `watch`es the page (evidence.py). At the end of the file, none of these pages may have logged errors.
     """
     pages = Pages(profile, prepared)
     yield pages.open
@@ -178,7 +178,7 @@ def shared(profile: BrowserContext, prepared: str) -> Iterator[Callable[..., Pag
 
 @pytest.fixture(scope="module")
 def kept(profile: BrowserContext, prepared: str) -> Iterator[tuple[Pages, list[Page]]]:
-    """The page that `at` moves, once there is one."""
+    """Yield the pages of a file, and a list with the page that `at` navigates, once there is one."""
     pages = Pages(profile, prepared)
     yield pages, []
     pages.close()
@@ -186,11 +186,11 @@ def kept(profile: BrowserContext, prepared: str) -> Iterator[tuple[Pages, list[P
 
 @pytest.fixture
 def at(kept: tuple[Pages, list[Page]], log: Path, request: pytest.FixtureRequest) -> Iterator[Callable[..., Page]]:
-    """A page at an address, for tests that do not care how they came there. Nothing may complain there either.
+    """Yield a function that navigates a page to an address, for tests that do not depend on the way. No errors either.
 
-    All tests of a file have the same page, moved as by a step of the browser's history: to open one takes two seconds
-    of processor time. The address has scene, knobs, curves, scale, pins, look, tab, page and story; what else a test
-    has changed, it changes back. After a test that has failed there is a new page.
+    All tests of a file share a page, which is navigated like a step of the browser's history, because opening one takes
+    two seconds of processor time. The address has scene, knobs, curves, scale, pins, look, tab, page and story; a test
+    must undo any other change. After a failed test, a new page is opened.
     """
     pages, pair = kept
 
@@ -216,14 +216,14 @@ def at(kept: tuple[Pages, list[Page]], log: Path, request: pytest.FixtureRequest
     assert complaints == []
 
 
-# As a step back: the page goes where the address says.
+# Like a step back: the page goes to the address.
 MOVE = """(query) => {
   window.sent = [];
   history.pushState({ at: granchain.steps.at }, "", query);
   dispatchEvent(new PopStateEvent("popstate", { state: history.state }));
 }"""
 
-# Once in a page, before anything of its own runs.
+# Runs once in a page, before its own scripts.
 NOTHING_KEPT = """
 try {
   if (!sessionStorage.getItem("granchain-test")) localStorage.clear();
@@ -238,9 +238,9 @@ window.painted = [];
 document.addEventListener("DOMContentLoaded", () => {
   if (window.granchain) granchain.on("painted", (event) => window.painted.push(event));
 });
-// The messages that the page has sent, by their "do", name and value, so that a test can tell that something was not asked for.
+// The messages that the page has sent (their "do", name and value), so that a test can check that something was not requested.
 window.sent = [];
-// Resolves when what was drawn last is on the screen.
+// Resolves when the last drawing is on the screen.
 window.shown = () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(true))));
 window.canvasIn = (id) => {
   const find = (node) => {
@@ -260,7 +260,7 @@ window.pixels = (id) => {
   for (let i = 0; i < data.length; i += 7) sum = (sum * 31 + data[i]) >>> 0;
   return sum;
 };
-// What a visitor's own script could do: another value in the next message of a knob.
+// A stand-in for a visitor's own script: forges the value in the next message of a knob.
 const send = WebSocket.prototype.send;
 WebSocket.prototype.send = function (data) {
   if (typeof data === "string")

@@ -1,4 +1,4 @@
-"""What a failed browser test leaves behind: a screenshot, the console's messages and the server's log."""
+"""Evidence of a failed browser test: a screenshot, the console's messages and the server's log."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from playwright.sync_api import Error, Page
 
 @dataclass
 class Watched:
-    """A page of a test, what its console has said, and the log of its server."""
+    """A page of a test, its console messages, and the log of its server."""
 
     page: Page
     log: Path
     messages: list[str] = field(default_factory=list)
 
 
-#: The pages of a test, in the order in which they were opened.
+#: Stash key: the pages of a test, in the order in which they were opened.
 WATCHED = pytest.StashKey[list[Watched]]()
 
 
 def watch(item: pytest.Item, page: Page, log: Path) -> None:
-    """Keep what the page says, for the case that the test fails."""
+    """Record the page's console messages in case the test fails."""
     one = Watched(page, log)
     page.on("console", lambda message: one.messages.append(f"{message.type}: {message.text}"))
     page.on("pageerror", lambda error: one.messages.append(f"error: {error}"))
@@ -33,13 +33,13 @@ def watch(item: pytest.Item, page: Page, log: Path) -> None:
 
 
 def folder_of(item: pytest.Item) -> Path:
-    """Where the evidence of a test goes: below `build/`, which git ignores."""
+    """Return the folder for a test's evidence, below `build/`, which git ignores."""
     name = re.sub(r"[^\w.=-]+", "-", item.nodeid.rpartition("/")[2]).strip("-")
     return item.config.rootpath / "build" / "browser-failures" / name
 
 
 def leave(watched: list[Watched], folder: Path) -> str:
-    """Write the evidence into a folder, in place of that of an earlier run; returns the names of its files."""
+    """Write the evidence into a folder, replacing that of an earlier run, and return the names of its files."""
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     for number, one in enumerate(watched, 1):

@@ -1,4 +1,4 @@
-"""What tests do with the page: read a knob, type into it, wait for the final picture or the address, see who looks."""
+"""Helpers for tests on the page: read or set a knob, wait for the final picture or the address, check visibility."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from playwright.sync_api import Locator, Page, expect
 
 #: The fixture `visit` of conftest.py.
 Visit = Callable[..., Page]
-#: Long enough for a first visit that has to compile kernels, on a machine that runs tests [ms].
+#: Long enough for a first visit that has to compile kernels on a machine busy with tests [ms].
 COMPILED = 240_000
 
 
-#: The popovers: the name of the opening button, the element that gets the focus, and a width of the window at which
-#: the button is on the bar.
+#: The popovers: name of the opening button, element that gets the focus, and a window width at which the button is on
+#: the bar.
 POPOVERS = {"Help and keys (?)": (".popover.help", 1920),
             "Export: pictures, tables, a program": (".popover .export-menu :is(button, select) >> nth=0", 1920),
             "Link to this picture": ("input[aria-label='link to this picture']", 1920),
@@ -23,20 +23,20 @@ POPOVERS = {"Help and keys (?)": (".popover.help", 1920),
 
 
 def look_seldom(page: Page) -> None:
-    """Look every 50 ms for what is waited for.
+    """Poll every 50 ms in waits.
 
-    Playwright looks at every frame, and asks the browser for sixty a second.
+    By default, Playwright polls at every frame, and makes the browser draw sixty per second.
     """
     setattr(page, "wait_for_function", partial(page.wait_for_function, polling=50))  # noqa: B010
 
 
 def field(page: Page, name: str) -> Locator:
-    """The number field of a knob."""
+    """Return the number field of a knob."""
     return page.locator(f'[data-knob="{name}"] input[type="text"]')
 
 
 def knob(page: Page, name: str) -> str:
-    """What stands in the number field of a knob."""
+    """Return the text in the number field of a knob."""
     return field(page, name).input_value()
 
 
@@ -47,18 +47,18 @@ def type_into(page: Page, name: str, text: str) -> None:
 
 
 def play_button(page: Page) -> Locator:
-    """The button that plays or pauses the replay; its name says which of the two it does now."""
+    """Return the button that plays or pauses the replay; its name says which of the two it does."""
     return page.get_by_role("button", name=re.compile(r"^(Play|Pause) \(space\)$"))
 
 
 def settled(page: Page) -> None:
-    """Wait until the final picture of the knobs as they are is painted, and the status line has it."""
+    """Wait until the final picture for the current knobs is painted, and the status line agrees."""
     page.wait_for_function("granchain.address.isSettled() && painted.at(-1)?.number === granchain.shown.number", timeout=COMPILED)
     expect(page.locator("#foot #regime")).not_to_contain_text("preview")
 
 
 def looks(page: Page, name: str) -> list[str]:
-    """What the page has told the server: that somebody looks at the tab or the page, "true", or nobody does."""
+    """Return the page's messages about a tab or page: "true" when it is being looked at, "false" when it is not."""
     return [one.split()[2] for one in page.evaluate("sent") if one.startswith(f"visible {name} ")]
 
 

@@ -1,10 +1,10 @@
-"""What is cut, hidden or covered on a page, measured in the browser."""
+"""Elements that are cut, hidden or covered on a page, measured in the browser."""
 
 from __future__ import annotations
 
 from playwright.sync_api import Page
 
-#: Controls that leave the window, are covered or lie on one another, and words that are cut; each as a sentence.
+#: Controls that leave the window, are covered or overlap, and text that is cut, each as a sentence.
 FAULTS = """() => {
   const faults = [];
   const all = function* (node) {
@@ -20,7 +20,7 @@ FAULTS = """() => {
     && one.getClientRects().length > 0;
   const named = (one) => (one.ariaLabel || one.textContent || one.value || one.id).trim().slice(0, 40);
   const words = (one) => `${one.tagName.toLowerCase()} “${named(one)}”`;
-  const styles = new Map(); // each is asked for many times
+  const styles = new Map(); // each is needed many times
   const styleOf = (one) => {
     if (!styles.has(one)) {
       const { overflowX, overflowY } = getComputedStyle(one);
@@ -46,7 +46,7 @@ FAULTS = """() => {
   const wide = innerWidth, high = scrolling ? Infinity : innerHeight;
   const cut = (one, box, slack) => {
     const part = shown(one, box);
-    if (part.scrolls && part.bottom < box.bottom - slack) return ""; // one scrolls to it
+    if (part.scrolls && part.bottom < box.bottom - slack) return ""; // it can be scrolled to
     if (part.scrolls && part.top > box.top + slack) return "";
     if (box.left < -slack || box.right > wide + slack) return "leaves the window sideways";
     if (box.bottom > high + slack || box.top < -slack - (scrolling ? scrollY : 0)) return "leaves the window";
@@ -56,7 +56,7 @@ FAULTS = """() => {
   };
   const elements = [...all(document.body)].filter(seen)
     .filter((one) => !inside(one, document.getElementById("lost")) && !one.closest(".unseen"));
-  const bars = ["bar", "foot", "side"].map((id) => document.getElementById(id)); // on a phone what scrolls passes under them
+  const bars = ["bar", "foot", "side"].map((id) => document.getElementById(id)); // on a phone, scrolling content passes under them
   const passes = (a, b) => scrolling && bars.some((bar) => inside(a, bar) !== inside(b, bar));
   const controls = elements.filter((one) => one.matches("button, input, select, summary, a[href]"));
   for (const one of controls) {
@@ -110,5 +110,5 @@ FAULTS = """() => {
 
 
 def faults(page: Page) -> list[str]:
-    """A sentence for everything on the page that is cut, hidden or covered."""
+    """Return a sentence for everything on the page that is cut, hidden or covered."""
     return list(page.evaluate(FAULTS))

@@ -1,8 +1,8 @@
-"""The tests of this folder that move the pointer to coordinates, where Playwright cannot check what is under it.
+"""The tests in this folder that move the pointer to coordinates, where Playwright cannot check the element under it.
 
-On two busy processors Chromium loses such an event now and then, which says nothing of the page. These tests alone are
-run once more if they fail (conftest.py); any other failure counts at once. `tests/architecture/test_browser_tests.py`
-compares the list with the tests.
+On two busy processors, Chromium occasionally loses such an event, which says nothing about the page. Only these tests
+are run once more if they fail (conftest.py); any other failure counts at once.
+`tests/architecture/test_browser_tests.py` compares the list with the tests.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A really started dashboard and a really started browser, for the browser tests and the latency figures."""
+"""A real dashboard process and a real browser, for the browser tests and the latency figures."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from playwright.sync_api import Browser, BrowserContext, Error, Page, Playwright
 
 from app.plots.chromium import installed_browser
 
-#: A number for every call of `at_rest`: what an earlier call has seen says nothing of this one.
+#: A number for every call of `at_rest`, so that a call ignores values seen by earlier ones.
 _CALLS = count()
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -30,7 +30,7 @@ CHROMIUM_OPTIONS = [
 
 
 def until(page: Page, holds: Callable[[], bool], seconds: float = 60.0) -> None:
-    """Wait until something holds that the browser alone cannot tell. While the page navigates it does not hold."""
+    """Wait until a condition is true that the browser alone cannot check; during navigation, it counts as false."""
     def holds_now() -> bool:
         try:
             return holds()
@@ -48,7 +48,7 @@ def until(page: Page, holds: Callable[[], bool], seconds: float = 60.0) -> None:
 def at_rest(page: Page, value: str, still: int = 700) -> Any:
     """Wait until a JavaScript expression has kept its value for `still` milliseconds, and return that value.
 
-    What was under way when the page was told to stop may still arrive; what goes on for good fails here.
+    Results that were under way when the page was told to stop may still arrive; endless changes fail here.
     """
     page.wait_for_function(f"""([still, call]) => {{
       const now = performance.now(), value = JSON.stringify({value});
@@ -59,7 +59,7 @@ def at_rest(page: Page, value: str, still: int = 700) -> Any:
 
 
 def free_port() -> int:
-    """A port nobody listens on."""
+    """Return a free port."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         return int(probe.getsockname()[1])
@@ -67,7 +67,7 @@ def free_port() -> int:
 
 @contextmanager
 def dashboard(log: Path, **environment: str) -> Iterator[str]:
-    """The address of a dashboard that runs until the block ends."""
+    """Yield the address of a dashboard that runs until the block ends."""
     server = Server(log, **environment)
     server.start()
     try:
@@ -78,9 +78,9 @@ def dashboard(log: Path, **environment: str) -> Iterator[str]:
 
 
 class Server:
-    """A dashboard on a port of its own that can be ended, and started again on the same port.
+    """A dashboard on its own port that can be stopped and started again on the same port.
 
-    `before` is Python that runs before it is served, as to set a constant.
+    `before` is Python code that runs before serving, for example to set a constant.
     """
 
     process: subprocess.Popen[bytes]
@@ -91,7 +91,7 @@ class Server:
         self.address = f"http://127.0.0.1:{self._port}/"
 
     def start(self) -> None:
-        """Start it and wait until it answers."""
+        """Start the dashboard and wait until it answers."""
         code = f"{self._before}\nfrom app.server import serve\nserve(port={self._port})"
         with self.log.open("ab") as output:
             self.process = subprocess.Popen([sys.executable, "-c", code], cwd=ROOT, stdout=output, stderr=output,
@@ -103,7 +103,7 @@ class Server:
             raise
 
     def kill(self) -> None:
-        """End it at once, stopped or not."""
+        """Kill the process at once, even if it is stopped."""
         self.process.kill()
         self.process.wait(timeout=60)
 
@@ -122,15 +122,15 @@ def _wait_until_alive(process: subprocess.Popen[bytes], address: str, log: Path)
 
 
 def launch(playwright: Playwright) -> Browser:
-    """The system's Chromium, or the one playwright installed; without one this fails, it never skips.
+    """Launch the system's Chromium, or the one installed by Playwright. Without one, this fails instead of skipping.
 
-    With `GRANCHAIN_HEADED=1` in the environment its window is shown.
+    With `GRANCHAIN_HEADED=1` in the environment, its window is shown.
     """
     return playwright.chromium.launch(**_how(playwright))
 
 
 def launch_with_profile(playwright: Playwright, profile: Path, **options: Any) -> BrowserContext:
-    """The same with a profile in this folder, and the context of that profile. One process draws all its pages."""
+    """Launch it with a profile in this folder, and return the profile's context. One process renders all its pages."""
     how = _how(playwright)
     how["args"] = [*how["args"], "--process-per-site"]
     return playwright.chromium.launch_persistent_context(profile, **how, **options)
@@ -146,6 +146,6 @@ def _how(playwright: Playwright) -> dict[str, Any]:
 
 
 def resize(page: Page, width: int, height: int) -> None:
-    """Give the window a size, and wait until the page is as wide: figures follow a little later."""
+    """Resize the window, and wait until the page has this width; figures follow a little later."""
     page.set_viewport_size({"width": width, "height": height})
     page.wait_for_function("(width) => document.documentElement.scrollWidth === width", arg=width)

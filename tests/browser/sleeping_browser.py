@@ -1,4 +1,4 @@
-"""A Chromium that can be hidden, frozen and put to sleep. Playwright tells every page that it is looked at."""
+"""A Chromium that can be hidden, frozen and put to sleep; Playwright tells every page that it is visible."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from tornado.websocket import WebSocketClientConnection, websocket_connect
 
 from app.plots.chromium import installed_browser
 
-#: Longest wait for anything [s].
+#: Timeout of all waits [s].
 _PATIENCE = 120.0
 
 
 class SleepingBrowser:
-    """One page in a Chromium of its own, driven by the Chrome DevTools Protocol. Its event loop has its own thread."""
+    """One page in a separate Chromium, driven by the Chrome DevTools Protocol. Its event loop has its own thread."""
 
     def __init__(self, profile: Path) -> None:
         self._loop = asyncio.new_event_loop()
@@ -55,20 +55,20 @@ class SleepingBrowser:
         return dict(answer["result"])
 
     def evaluate(self, expression: str) -> Any:
-        """The value of a JavaScript expression in the page."""
+        """Return the value of a JavaScript expression in the page."""
         answer = self.send("Runtime.evaluate", expression=expression, returnByValue=True)
         assert "exceptionDetails" not in answer, answer
         return answer["result"].get("value")
 
     def until(self, expression: str) -> None:
-        """Wait until an expression holds; one that fails does not hold yet."""
+        """Wait until an expression is true; one that fails counts as false."""
         end = time.monotonic() + _PATIENCE
         while not self.evaluate(f"(() => {{ try {{ return Boolean({expression}); }} catch {{ return false; }} }})()"):
             assert time.monotonic() < end, f"did not come: {expression}"
             time.sleep(0.05)
 
     def open(self, address: str, script: str) -> None:
-        """Open an address in the page; `script` runs before anything of its own."""
+        """Open an address in the page; `script` runs before the page's own scripts."""
         self.send("Page.addScriptToEvaluateOnNewDocument", source=script)
         self.send("Page.enable")
         self.send("Page.navigate", url=address)
@@ -88,11 +88,11 @@ class SleepingBrowser:
         self.send("Page.setWebLifecycleState", state="frozen")
 
     def resume(self) -> None:
-        """End the freezing."""
+        """Resume a frozen page."""
         self.send("Page.setWebLifecycleState", state="active")
 
     def sleep(self, seconds: float) -> None:
-        """Stop all processes of the browser for so long, as a computer does that sleeps."""
+        """Stop all processes of the browser for this long, as in a sleeping computer."""
         os.killpg(self._process.pid, signal.SIGSTOP)
         try:
             time.sleep(seconds)
@@ -100,7 +100,7 @@ class SleepingBrowser:
             os.killpg(self._process.pid, signal.SIGCONT)
 
     def close(self) -> None:
-        """End the browser, all its processes: the first may be a script that started it."""
+        """Kill all processes of the browser; the first may be a script that started it."""
         with suppress(ProcessLookupError):
             os.killpg(self._process.pid, signal.SIGKILL)
         self._process.wait(timeout=60)
@@ -115,7 +115,7 @@ def _chromium() -> str:
 
 
 def _page(port_file: Path) -> str:
-    """The address of the first page's websocket, once the browser has written its port and answers."""
+    """Return the address of the first page's websocket, once the browser has written its port and answers."""
     end = time.monotonic() + _PATIENCE
     while True:
         try:

@@ -1,4 +1,4 @@
-"""The Accuracy page as a visitor meets it: points appear, a measurement is stopped, a moved knob greys it."""
+"""The Accuracy page as a visitor sees it: points appear, a measurement is stopped, and a moved knob greys the page."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from playwright.sync_api import Locator, Page, expect
 from server import at_rest, resize, until
 from test_axe import violations
 
-#: The figure of the page, and how many points each method has in it.
+#: The figure of the page, and the number of points of each method.
 FIGURE = 'figures.view("accuracy", true)?.model'
 POINTS = f"""() => Object.fromEntries(({FIGURE}?.renderers ?? [])
   .filter((one) => one.glyph.type === "Scatter" && one.data_source.data.setting?.length)
@@ -20,12 +20,12 @@ POINTS = f"""() => Object.fromEntries(({FIGURE}?.renderers ?? [])
 
 
 def marked(page: Page, name: str) -> int:
-    """How many points the source of this name has."""
+    """Return the number of points in the source of this name."""
     return len(source(page, "accuracy", name).get("ms", []))
 
 
 def naive_line(page: Page) -> dict[str, Any]:
-    """Length and dash of the naive force that is drawn."""
+    """Return length and dash of the naive force's line."""
     return dict(page.evaluate("""() => {
       const [accurate, naive] = figures.model("naive forces").renderers;
       return { accurate: accurate.data_source.data.force.length, naive: naive.data_source.data.force.length,
@@ -34,7 +34,7 @@ def naive_line(page: Page) -> dict[str, Any]:
 
 
 def opened(page: Page) -> Locator:
-    """The Accuracy page, opened from the status line once its words no longer change, with its first points."""
+    """Open the Accuracy page from the status line once its text is stable, and wait for the first points."""
     settled(page)
     page.get_by_role("button", name="asked").click()
     page.get_by_role("button", name="What accuracy costs in time").click()
@@ -45,12 +45,12 @@ def opened(page: Page) -> Locator:
 
 
 def test_the_status_line_says_what_is_asked_reached_and_how_long_it_took(visit: Visit) -> None:
-    """For the accuracy as it is and for another one."""
+    """This is true of the current accuracy and of another one."""
     page = visit()
     line = page.get_by_role("button", name="asked")
     expect(line).to_contain_text("asked 1e-6 · reached")
     type_into(page, "accuracy", "1e-9")
-    # the time has room once the words for the place on the curve, which is computed anew, are short again
+    # the time fits once the words for the place on the recomputed curve are short again
     expect(line).to_have_text(re.compile(r"asked 1e-9 · reached [^·]+ · in \S+ m?s$"), timeout=COMPILED)
     reached = line.inner_text().split(" · ")[1].removeprefix("reached ").split(" (")[0]
     assert float(reached) <= 1e-9
@@ -58,7 +58,7 @@ def test_the_status_line_says_what_is_asked_reached_and_how_long_it_took(visit: 
 
 @pytest.fixture(scope="module")
 def measured(shared: Visit) -> Page:
-    """A page whose tab of the accuracy has measured: three beads, as eleven take longer and show nothing more."""
+    """A page whose Accuracy tab has measured a chain of three beads; eleven take longer and show nothing more."""
     page = shared("?v=1&scene=sec2&N=3")
     page.get_by_role("tab", name="accuracy").click()
     expect(page.locator("#tabs .small canvas").first).to_be_visible(timeout=COMPILED)
@@ -95,8 +95,8 @@ def test_points_appear_and_the_cheapest_way_is_told(measured: Page) -> None:
     rows = sheet.locator("tbody tr")
     expect(rows.filter(has_text="rk4-split")).to_contain_text("two events of one inner contact")
     expect(rows.filter(has_text="dop853").first).to_contain_text("Hairer")
-    # hovering tells the point, wherever the figure has moved to by now
-    tip = page.locator(".bk-tooltip-content")  # it stands over the whole page
+    # hovering describes the point, wherever the figure has moved meanwhile
+    tip = page.locator(".bk-tooltip-content")  # it is above the whole page
 
     def told() -> bool:
         x, y = page.evaluate("""() => {
@@ -114,7 +114,7 @@ def test_points_appear_and_the_cheapest_way_is_told(measured: Page) -> None:
         expect(tip).to_contain_text(words)
     page.mouse.move(0, 0)
     naive_force_lies_over_the_accurate_one(page, sheet)
-    assert violations(page, "#overlay") == {}  # with all its points and rows; test_axe.py has only the first ones
+    assert violations(page, "#overlay") == {}  # with all points and rows; test_axe.py has only the first ones
     fits(page, sheet)
 
 
@@ -133,11 +133,11 @@ def test_a_moved_knob_greys_the_page_until_it_is_measured_again(measured: Page) 
     sheet.get_by_role("button", name="measure again").click()
     expect(sheet.locator(".stale")).to_have_count(0)
     page.wait_for_function(f"Object.keys(({POINTS})()).length > 0", timeout=COMPILED)
-    sheet.locator("button:text-is('stop')").first.evaluate("one => one.click()")  # hidden where all is measured already
+    sheet.locator("button:text-is('stop')").first.evaluate("one => one.click()")  # hidden if all is measured already
 
 
 def naive_force_lies_over_the_accurate_one(page: Page, sheet: Locator) -> None:
-    """It is dashed, has as many points, and its error is said for the chosen steps."""
+    """Check that it is dashed, has as many points, and has its error stated for the chosen steps."""
     expect(sheet.locator(".naive canvas").first).to_be_visible()
     drawn = naive_line(page)
     assert drawn["accurate"] == drawn["naive"] > 50 and drawn["dash"] not in ("", "solid")
@@ -150,7 +150,7 @@ def naive_force_lies_over_the_accurate_one(page: Page, sheet: Locator) -> None:
 
 
 def fits(page: Page, sheet: Locator) -> None:
-    """At every size the figure is inside the window."""
+    """Check that the figure is inside the window at every size."""
     for width, height in ((1280, 800), (1920, 1080), (390, 844)):
         resize(page, width, height)
         box = sheet.locator(".work .figure").bounding_box()
@@ -160,14 +160,14 @@ def fits(page: Page, sheet: Locator) -> None:
 def test_steps_that_blow_up_are_told_and_a_stopped_measurement_keeps_its_points(visit: Visit) -> None:
     page = visit("?v=1&scene=rig")
     sheet = opened(page)
-    # at once: the button is there as long as it is measured, however long anything else takes
+    # at once: the button is there during the measurement, however long anything else takes
     sheet.get_by_role("button", name="stop").click()
     expect(sheet).to_contain_text("stopped", timeout=COMPILED)
     expect(sheet.get_by_role("button", name="measure again")).to_be_visible()
     assert sum(at_rest(page, f"({POINTS})()", still=1500).values()) > 0
-    # the next one begins: the stopped one, which would take minutes, has really ended
+    # the next one starts: the stopped one, which would take minutes, has really ended
     sheet.get_by_role("button", name="measure again").click()
     expect(sheet).to_contain_text("measuring")
-    sheet.get_by_label("its steps in a drive period").select_option("100")  # steps that blow up are told
+    sheet.get_by_label("its steps in a drive period").select_option("100")  # steps that blow up are reported
     expect(sheet.locator(".naive p")).to_contain_text("nothing would have been drawn", timeout=COMPILED)
     assert naive_line(page)["naive"] == 0

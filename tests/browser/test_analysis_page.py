@@ -1,4 +1,4 @@
-"""The page "Analysis" as a visitor meets it: a question is asked, computed, drawn, refused, and given up when a knob
+"""The page "Analysis" as a visitor sees it: a question is asked, computed, drawn, refused, and abandoned when a knob
 moves.
 """
 
@@ -13,7 +13,7 @@ from server import resize, until
 from granchain_core import lyapunov_spectrum, scene, settle, spectrum
 
 Visit = Callable[..., Page]
-#: Long enough for a first visit that has to compile kernels, on a machine that runs tests.
+#: Long enough for a first visit that has to compile kernels on a machine busy with tests.
 COMPILED = 150_000
 
 
@@ -29,7 +29,7 @@ def test_the_first_question_is_answered_unasked_and_follows_the_knobs(visit: Vis
     type_into(page, "f", "1140")
     drawn(1140)
     page.keyboard.press("Escape")
-    type_into(page, "f", "1150")  # nobody looks
+    type_into(page, "f", "1150")  # the page is hidden
     page.locator("#tabs").get_by_role("tab", name="analysis").click()
     page.locator("#tabs").get_by_role("button", name="open the page").click()
     drawn(1150)
@@ -75,10 +75,10 @@ def test_questions_are_answered_refused_and_given_up(visit: Visit) -> None:
     expect(sheet.get_by_role("button", name="stop")).to_be_visible()
     type_into(page, "f", "1140")
     expect(sheet.locator(".status")).to_have_text("stopped")
-    expect(sheet.get_by_label("starts along each")).to_have_value("40")  # what was typed stays
+    expect(sheet.get_by_label("starts along each")).to_have_value("40")  # the typed value remains
     expect(sheet.locator(".figure")).to_be_hidden()
 
-    until(page, lambda: "starts%3D40" in page.url)  # the address has the question and what was chosen
+    until(page, lambda: "starts%3D40" in page.url)  # the address has the question and the chosen values
     page.reload()
     expect(sheet.get_by_role("button", name="Which start leads where?")).to_have_attribute("aria-pressed", "true")
     expect(sheet.get_by_label("starts along each")).to_have_value("40")

@@ -1,4 +1,4 @@
-"""axe-core finds nothing on any tab, page and popover, nor in the tour, an error, a bubble and a story."""
+"""axe-core finds no violation on any tab, page or popover, nor in the tour, an error, a bubble or a story."""
 
 from __future__ import annotations
 
@@ -11,16 +11,17 @@ from playwright.sync_api import Page, expect
 
 from app.plots.theme import THEMES
 
-#: Its `granchainViolations` is what axe-core finds within an element, and words that are too faint in other themes.
+#: Its `granchainViolations` finds axe-core's violations within an element, and words that are too faint in other
+#: themes.
 SCRIPT = Path(__file__).with_name("violations.js").read_text(encoding="utf-8")
 
 
 def violations(page: Page, within: str | None = None) -> dict[str, list[str]]:
-    """Rule and element of everything that axe-core finds in light, and of words without contrast in the other themes,
-    on the whole page or within one element. A theme's colours are all in the style sheet (app/plots/theme.py).
+    """Return rule and element of all violations that axe-core finds in light, and of low-contrast words in other
+    themes, on the whole page or within one element. A theme's colours are all in the style sheet (app/plots/theme.py).
     """
     if not page.evaluate("'axe' in window"):
-        page.evaluate(Axe().axe_script)  # once: it is half a megabyte, and many places are looked at
+        page.evaluate(Axe().axe_script)  # only once: it is half a megabyte, and many elements are checked
         page.evaluate(SCRIPT)
     found = page.evaluate("(given) => granchainViolations(given)", [within, list(THEMES)[1:]])
     return {theme: what for theme, what in found.items() if what}
@@ -32,17 +33,17 @@ def test_axe_finds_nothing(visit: Visit) -> None:
     page.wait_for_selector(".peak-names button", timeout=COMPILED)
     places = everywhere(page)
     assert len(places) > 20 and {where: what for where, what in places.items() if what} == {}
-    # so it would be found, also in one of the other themes alone
+    # a violation would be found, even in only one of the other themes
     page.add_style_tag(content=":root[data-theme=dark] { --ink: #555 }")
     assert list(violations(page, "#bar")) == ["dark"]
-    page.add_style_tag(content=":root { --ink: #999 !important }")  # enough on dark cards
+    page.add_style_tag(content=":root { --ink: #999 !important }")  # sufficient on dark cards
     found = violations(page, "#bar")
     assert list(found) == [name for name, theme in THEMES.items() if theme.scheme == "light"]
     assert all("color-contrast" in one for rules in found.values() for one in rules)
 
 
 def everywhere(page: Page) -> dict[str, dict[str, list[str]]]:
-    """What axe-core finds on the page as it is, on every page and tab, and in every popover, then in a bubble,
+    """Return what axe-core finds on the current page, on every page and tab, in every popover, and then in a bubble,
     the tour, an error and a story.
     """
     page.evaluate("shown()")
@@ -51,7 +52,7 @@ def everywhere(page: Page) -> dict[str, dict[str, list[str]]]:
         page.evaluate("(name) => granchain.openPage(name)", name)
         page.evaluate("shown()")
         found[f"page {name}"] = violations(page, "#overlay")
-        if name in ("accuracy", "branches"):  # they go on although nobody looks, which takes a processor
+        if name in ("accuracy", "branches"):  # they continue when hidden, which occupies a processor
             page.locator("#overlay").get_by_role("button", name="stop").click()
     page.evaluate("granchain.closePage()")
     for tab in page.get_by_role("tab").all():

@@ -1,5 +1,5 @@
-"""What the page needs of BokehJS beyond its documentation: one module has it (app/parts/figures/bokeh.js), and the
-release has it.
+"""Undocumented parts of BokehJS that the page needs: only one module uses them (app/parts/figures/bokeh.js), and the
+release has them.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from knobs import Visit, settled
 
 import app
 
-#: Each as an expression that is true where the release has it.
+#: Each as an expression that is true if the release has it.
 NEEDED = {
     "documents": "Array.isArray(Bokeh.documents) && Bokeh.documents.every((one) => one.get_model_by_name && one.on_event)",
     "views": "Boolean(view.el && view.export)",
@@ -38,7 +38,7 @@ def test_the_release_has_what_the_page_needs(visit: Visit) -> None:
 
 
 def test_no_other_script_touches_bokehjs() -> None:
-    """Connection.js is not a module: it is told by each document that its socket is closed."""
+    """The exception is connection.js, which is not a module: each document notifies it when its socket closes."""
     users = {path.name for path in Path(app.__file__).parent.rglob("*.js") if re.search(r"\bBokeh\.", path.read_text(encoding="utf-8"))}
     assert users == {"bokeh.js", "connection.js"}
 

@@ -1,5 +1,4 @@
-"""The Branches page as a visitor meets it: a branch grows, tells its orbits, is stopped, gone on with, and loads one.
-"""
+"""The Branches page as a visitor sees it: a branch grows, describes its orbits, stops, continues, and loads one."""
 
 from __future__ import annotations
 
@@ -11,9 +10,9 @@ from knobs import COMPILED, Visit, field
 from playwright.sync_api import Locator, Page, expect
 from server import at_rest, resize, until
 
-#: A short chain whose branch is followed in seconds.
+#: A short chain whose branch takes seconds.
 SHORT = "?v=1&scene=sec2&f=2000&N=3"
-#: The kinds of special points that were found; how many orbits the large figure has; the orbits of an arm.
+#: The kinds of special points found; the number of orbits in the large figure; the orbits of an arm.
 SPECIAL = ("['fold', 'period_doubling', 'neimark_sacker', 'grazing']"
            ".filter((kind) => granchain.pages.get('branches').data.rows[kind]?.x.length)")
 COUNT = '(figures.view("branches", true)?.model.document?.get_model_by_name("orbits")?.data.x ?? []).length'
@@ -21,21 +20,21 @@ ORBITS = "granchain.pages.get('branches').data.rows.orbits"
 
 
 def opened(page: Page) -> Locator:
-    """The Branches page, opened from its tab."""
+    """Open the Branches page from its tab."""
     page.get_by_role("tab", name="branches").click()
     page.locator("#tabs").get_by_role("button", name="open the page").click()
     return page.locator('[data-overlay="branches"]')
 
 
 def stop(sheet: Locator) -> None:
-    """Stop what is followed; where it is complete already, the button is hidden and its click does nothing."""
+    """Stop the computation of the branch; if it is already complete, the button is hidden and a click has no effect."""
     expect(sheet.get_by_role("button", name=re.compile("^(stop|follow from here)$")).first).to_be_visible()
     sheet.locator("button:text-is('stop')").first.evaluate("one => one.click()")
     expect(sheet.get_by_role("button", name="follow from here")).to_be_visible()
 
 
 def followed(page: Page) -> Locator:
-    """The page with a branch that has a special point; it begins by itself."""
+    """Return the page with a branch that has a special point; the branch starts automatically."""
     sheet = opened(page)
     page.wait_for_function(f"{SPECIAL}.length > 0", timeout=COMPILED)
     until(page, lambda: len(source(page, "branches", "orbits").get("x", [])) > 1)
@@ -43,9 +42,9 @@ def followed(page: Page) -> Locator:
 
 
 def grows_without_being_made_anew(page: Page) -> None:
-    """Its figure takes new orbits as they come; another theme is another figure, with the same points."""
+    """Check that the figure takes new orbits as they arrive; another theme is a new figure with the same points."""
     grown = f"() => {COUNT} > %d"
-    # in braces, so that it has no value: Playwright would take half a minute to describe the document
+    # in braces, so that it has no value: Playwright would take half a minute to serialize the document
     page.evaluate("{ window.kept = granchain.pages.get('branches').figures[0].document }")
     before = page.evaluate(COUNT)
     page.wait_for_function(grown % (before + 5), polling=100)
@@ -71,7 +70,7 @@ def test_a_branch_grows_is_stopped_and_goes_on(visit: Visit) -> None:
     sheet.get_by_role("button", name="continue").click()
     page.wait_for_function(f"{ORBITS}?.arm.filter((arm) => arm === 0).length > {arms.count(0) + 5}")
     sheet.get_by_role("button", name="stop").click()
-    # the figure holds what the page has been sent piece by piece, and so does the small one in its tab
+    # the figure has everything that the page was sent piece by piece, and so does the small one in its tab
     for kind in ("stable", "unstable"):
         assert len(source(page, "branches", kind)["x"]) == page.evaluate(f"granchain.pages.get('branches').data.lines.{kind}.x.length") > 0
     page.keyboard.press("Escape")
@@ -85,13 +84,13 @@ def test_a_link_to_the_page_begins_by_itself_over_the_resonance_curve(visit: Vis
     until(page, lambda: len(source(page, "branches", "curve").get("x", [])) > 50)
     curve = source(page, "branches", "curve")
     assert curve["x"] == sorted(curve["x"])
-    # the settled motion lies on the curve and on the branch: the same force, in the same unit
+    # the settled motion is on the curve and on the branch: the same force, in the same unit
     row = min(range(len(curve["x"])), key=lambda i: abs(curve["x"][i] - 2000))
     orbits = at_rest(page, ORBITS)
     near = min(range(len(orbits["x"])), key=lambda i: abs(orbits["x"][i] - curve["x"][row]))
-    assert orbits["y"][near] == pytest.approx(curve["y"][row], rel=0.05)  # neighbours on a grid of some 40 Hz
+    assert orbits["y"][near] == pytest.approx(curve["y"][row], rel=0.05)  # neighbours on a grid of about 40 Hz
     stop(sheet)
-    # another chain has another curve, and greys the branch; nothing begins again by itself
+    # another chain has another curve, and greys the branch; nothing starts again automatically
     damping = field(page, "D")
     damping.fill("90")
     damping.press("Enter")
@@ -119,7 +118,7 @@ def test_hover_tells_and_a_click_loads_orbits_stable_and_unstable(visit: Visit) 
     sheet.get_by_role("button", name="stop").click()
     expect(sheet).to_contain_text("stopped; the orbits found so far are kept")
 
-    sheet.get_by_role("button", name="zoom in").click()  # beside the whole curve the orbits lie close together
+    sheet.get_by_role("button", name="zoom in").click()  # next to the whole curve, the orbits are close together
 
     def at(name: str, row: int) -> tuple[float, float]:
         columns = source(page, "branches", name)
@@ -134,15 +133,15 @@ def test_hover_tells_and_a_click_loads_orbits_stable_and_unstable(visit: Visit) 
         row = page.evaluate(LONELY, stable)
         frequency = source(page, "branches", "orbits")["x"][row]
         hover(page, lambda row=row: at("orbits", row), "elastic output force")
-        page.wait_for_timeout(600)  # two clicks within 300 ms are a double click to Bokeh, wherever they are
+        page.wait_for_timeout(600)  # Bokeh takes two clicks within 300 ms for a double click, wherever they are
         page.mouse.click(*at("orbits", row))
         expect(sheet.locator(".chosen")).to_contain_text(words)
         expect(page.locator("#foot")).to_contain_text(regime)
         shown = field(page, "f").input_value()
-        assert float(shown) == pytest.approx(frequency, rel=1e-5)  # six figures are written
+        assert float(shown) == pytest.approx(frequency, rel=1e-5)  # six digits are written
 
 
-#: The orbit that is farthest from all special points, so that a click means it and no other.
+#: The orbit that is farthest from all special points, so that a click on it is unambiguous.
 LONELY = """(stable) => {
   const { orbits, curve, ...rows } = granchain.pages.get('branches').data.rows;
   const special = Object.values(rows).flatMap(({ x }) => x);

@@ -8,7 +8,7 @@ from server import until
 
 from app.plots.theme import THEMES
 
-#: How many pixels of the canvas in an element have a colour.
+#: Counts the pixels of a colour in an element's canvas.
 PIXELS = """([id, colour]) => {
   const canvas = canvasIn(id), { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
   let count = 0;

@@ -1,4 +1,4 @@
-"""A page that has lost its server says so at once, lets no knob move, and builds itself again from its knobs."""
+"""A page that has lost its server says so at once, blocks its knobs, and is rebuilt from its knobs."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from server import Server
 
 @contextmanager
 def running(folder: Path) -> Iterator[Server]:
-    """A dashboard that runs until the block ends, or is killed before."""
+    """Yield a dashboard that runs until the block ends or it is killed."""
     server = Server(folder / "log")
     server.start()
     try:
@@ -32,7 +32,7 @@ def running(folder: Path) -> Iterator[Server]:
 
 @contextmanager
 def opened(chromium: Browser, server: Server, node: pytest.Item) -> Iterator[Page]:
-    """Its page, paused at 1130 Hz with another damping, its pictures drawn."""
+    """Yield its page, paused at 1130 Hz with another damping, with its pictures drawn."""
     context = chromium.new_context(viewport={"width": 1280, "height": 800})
     context.set_default_timeout(60_000)
     page = context.new_page()
@@ -47,19 +47,19 @@ def opened(chromium: Browser, server: Server, node: pytest.Item) -> Iterator[Pag
 
 @pytest.fixture(scope="module")
 def living(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
-    """A dashboard for several tests, none of which ends it: stopped by one of them, it goes on."""
+    """A dashboard for several tests, none of which kills it: if one stops it, it is resumed."""
     with running(tmp_path_factory.mktemp("living")) as one:
         yield one
 
 
 @pytest.fixture
 def page(chromium: Browser, living: Server, request: pytest.FixtureRequest) -> Iterator[Page]:
-    """A page of the dashboard that goes on."""
+    """A page of the dashboard that keeps running."""
     with opened(chromium, living, request.node) as one:
         yield one
 
 
-# What stands on a page that was built again before it has pictures of its own.
+# The contents of a rebuilt page before it has its own pictures.
 FIRST = """addEventListener("DOMContentLoaded", () => setTimeout(() => {
   const image = document.getElementById("last-pictures");
   const rest = image && [getComputedStyle(image).filter, document.getElementById("lost").textContent];
@@ -67,7 +67,7 @@ FIRST = """addEventListener("DOMContentLoaded", () => setTimeout(() => {
 }));"""
 
 
-# Whether the pictures show whole drive periods of a frequency [Hz]; the time axis of all of them is one, in ms.
+# Whether the pictures show whole drive periods of a frequency [Hz]; they share one time axis, in ms.
 BELONGS = """(frequency) => {
   for (const model of figures.models()) {
     if (model.type !== "Plot" || model.y_range?.start === 1 || !(model.y_range?.start > model.y_range?.end)) continue;
@@ -83,9 +83,9 @@ def value(page: Page, name: str = "f") -> str:
 
 
 def looks_lost(page: Page) -> None:
-    """A sentence, grey pictures, and no knob or button that takes anything.
+    """Check for a sentence, grey pictures, and disabled knobs and buttons.
 
-    How soon: a silent server is noticed after `PING_TIMEOUT` of connection.js, counted while the page itself runs.
+    A silent server is noticed after `PING_TIMEOUT` of connection.js, counted while the page itself is running.
     """
     page.wait_for_selector("#dashboard.lost")
     expect(page.get_by_role("alert").filter(has_text="Connection lost – trying again")).to_be_visible()
@@ -96,14 +96,14 @@ def looks_lost(page: Page) -> None:
 
 
 def starts_again(server: Server, page: Page) -> None:
-    """The server is started on its old port; the page opens itself anew, nobody else does."""
+    """Start the server on its old port; the page reopens itself without help."""
     page.evaluate("window.before = true")
     server.start()
     page.wait_for_function("window.granchain && !window.before")
 
 
 def drag_slider(page: Page) -> None:
-    """What a hand on the mouse does to the slider of f, whether it is disabled or not."""
+    """Drag the slider of f with the mouse, whether or not it is disabled."""
     box = page.locator('[data-knob="f"] input[type="range"]').bounding_box()
     assert box is not None
     page.mouse.move(box["x"] + 0.6 * box["width"], box["y"] + box["height"] / 2)
@@ -114,7 +114,7 @@ def drag_slider(page: Page) -> None:
 
 @dataclass(frozen=True)
 class Restarted:
-    """A page whose server was killed and started again, and the knob f that a hand moved meanwhile."""
+    """A page whose server was killed and restarted, and the knob f after an attempt to move it meanwhile."""
 
     page: Page
     moved_while_lost: str
@@ -122,7 +122,7 @@ class Restarted:
 
 @pytest.fixture(scope="module")
 def restarted(chromium: Browser, tmp_path_factory: pytest.TempPathFactory, request: pytest.FixtureRequest) -> Iterator[Restarted]:
-    """A page at 700 Hz, paused, with another speed and uploaded data, after a restart; it shows pictures of its own."""
+    """A page at 700 Hz, paused, with another speed and uploaded data, which has its pictures again after a restart."""
     with running(tmp_path_factory.mktemp("restarted")) as server, opened(chromium, server, request.node) as page:
         type_into(page, "f", "700")
         page.wait_for_function(BELONGS, arg=700)
@@ -193,7 +193,7 @@ def test_a_page_whose_server_was_silent_goes_on(living: Server, page: Page) -> N
 
 
 def test_a_silent_socket_is_given_up_while_the_server_answers(page: Page) -> None:
-    """As behind a proxy that forgot it: neither side learns that it is closed."""
+    """This happens behind a proxy that forgot the socket: neither side learns that it is closed."""
     page.evaluate("window.before = true")
     page.evaluate("granchain.connection.answerReceived = () => {}")
     looks_lost(page)
@@ -203,7 +203,7 @@ def test_a_silent_socket_is_given_up_while_the_server_answers(page: Page) -> Non
 
 
 def test_what_the_server_never_heard_of_comes_back_too(chromium: Browser, tmp_path: Path, request: pytest.FixtureRequest) -> None:
-    """The knobs are what the visitor saw last, not what the server was told last."""
+    """The knobs have the values that the visitor saw last, not those that the server received last."""
     moved = {"f": "700", "kappa": "0.002"}
     with running(tmp_path) as server, opened(chromium, server, request.node) as page:
         type_into(page, "k", "100")
@@ -222,7 +222,7 @@ def test_what_the_server_never_heard_of_comes_back_too(chromium: Browser, tmp_pa
 
 def test_a_page_that_has_lost_its_place_before_it_connects_comes_back(chromium: Browser, living: Server,
                                                                       request: pytest.FixtureRequest) -> None:
-    """Its token is used up here, so its websocket is refused as that of a page that made room for a newer one."""
+    """Its token is used up here, so its websocket is refused like that of a page that made room for a newer one."""
     context = chromium.new_context(viewport={"width": 1280, "height": 800})
     page = context.new_page()
     watch(request.node, page, living.log)

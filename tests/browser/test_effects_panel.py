@@ -1,4 +1,4 @@
-"""The effects panel: a switch changes equation, slots and cost, and what is computed now is told as it is."""
+"""The effects panel: a switch changes equation, slots and cost, and current computations are listed correctly."""
 
 from __future__ import annotations
 
@@ -12,23 +12,23 @@ from playwright.sync_api import Locator, Page, expect
 
 
 def panel(page: Page) -> Locator:
-    """The effects tab, enlarged."""
+    """Open the Effects tab, enlarged."""
     page.get_by_role("tab", name="effects").click()
     page.get_by_title("Larger: cover the curve").click()
     return page.locator("#tabs")
 
 
 def effect(tab: Locator, name: str) -> Locator:
-    """One effect's row."""
+    """Return one effect's row."""
     return tab.locator(f'[data-effect="{name}"]')
 
 
 def activity(tab: Locator, name: str) -> Locator:
-    """One line of what is computed now."""
+    """Return one line of the list of current computations."""
     return tab.locator(f'[data-activity="{name}"]')
 
 
-# Keeps what the row of an effect has said since its tab was opened, each time it was drawn.
+# Records the text of an effect's row each time it is drawn since its tab was opened.
 ROWS_SEEN = """(body, name) => {
   window.rowsSeen = [];
   const look = () => {
@@ -41,7 +41,7 @@ ROWS_SEEN = """(body, name) => {
 
 @pytest.fixture(scope="module")
 def measured(shared: Visit) -> Page:
-    """A page with the costs of account and dashpot, and what the row of the account has said."""
+    """A page with the costs of account and dashpot, and the recorded texts of the account's row."""
     page = shared()
     page.locator("[role=tabpanel]").evaluate(ROWS_SEEN, "account")
     tab = panel(page)
@@ -52,7 +52,7 @@ def measured(shared: Visit) -> Page:
 
 @pytest.fixture
 def page(measured: Page, request: pytest.FixtureRequest, log: Path) -> Page:
-    """That page, for one more test."""
+    """The same page, for one more test."""
     watch(request.node, measured, log)
     return measured
 
@@ -99,7 +99,7 @@ def test_the_energy_account_is_told_in_the_status_line(page: Page) -> None:
 
 @pytest.mark.long
 def test_what_is_computed_is_what_is_asked_for(visit: Visit) -> None:
-    """With three beads: a whole sweep of eleven took four minutes on a busy machine."""
+    """The chain has three beads, because a whole sweep of eleven took four minutes on a busy machine."""
     page = visit("?v=1&scene=sec2&N=3")
     page.get_by_role("tab", name="effects").click()
     tab = page.locator("#tabs")

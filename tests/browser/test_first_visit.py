@@ -1,4 +1,4 @@
-"""A first visit: a page that is slow to say that it is ready, one that fits, kernels that are still to be compiled."""
+"""A first visit: a page that is late to report that it is ready, one that fits, kernels that are not compiled."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ WebSocket.prototype.send = function (frame) {
 
 
 def test_a_page_that_says_late_that_it_is_ready_gets_everything(visit: Visit) -> None:
-    """Parts of the page send requests before the page is ready; Panel loses changes made then, so the answers wait."""
+    """Parts of the page send requests before the page is ready. Panel loses changes made then, so the answers wait."""
     page = visit(script=SAYS_LATE_THAT_IT_IS_READY)
     expect(field(page, "f")).to_have_value("340")
     settled(page)
@@ -44,7 +44,7 @@ window.release = () => {
   for (const [socket, frame] of held) socket.send(frame);
 };
 """
-# What stands in each part before it is there; what is written over the pictures and can be seen.
+# The placeholder of each part before it exists, and the number of visible texts over the pictures.
 SKELETON = """() => ["chain", "left", "map", "right", "curve"]
   .map((id) => getComputedStyle(document.getElementById(id), "::before").content)"""
 OVER = """() => [...document.querySelectorAll("#stage :is(.title, .peak, #key, #scale)")]
@@ -52,7 +52,7 @@ OVER = """() => [...document.querySelectorAll("#stage :is(.title, .peak, #key, #
 
 
 def test_before_the_first_picture_every_part_says_what_is_coming(chromium: Browser, prepared: str) -> None:
-    """No text overlaps another: the titles appear together with the pictures."""
+    """No texts overlap: the titles appear together with the pictures."""
     page = chromium.new_page(reduced_motion="reduce")
     page.add_init_script(HOLDS_ITS_MESSAGES)
     page.goto(prepared)
@@ -70,7 +70,7 @@ def test_before_the_first_picture_every_part_says_what_is_coming(chromium: Brows
 @pytest.mark.long
 def test_cold_kernels_are_announced_and_the_picture_follows(visit: Visit, chromium: Browser,
                                                             tmp_path: Path) -> None:
-    """All kernels are there but those of one file: to compile the others as well tells nothing more."""
+    """Only the kernels of one file are missing: compiling the others as well would test nothing more."""
     assert CACHE_FOLDER is not None
     shutil.copytree(CACHE_FOLDER, tmp_path / "cache" / CACHE_FOLDER.name, copy_function=os.link,
                     ignore=shutil.ignore_patterns(f"{MARK}*", "*.rk4.run", "*.lock", "*.tmp"))
@@ -97,7 +97,7 @@ def test_pictures_of_another_scene_are_grey_until_its_own_come(visit: Visit) -> 
 
 
 def pointed_at(page: Page, term: Locator) -> bool:
-    """Move the pointer from elsewhere to a term; whether its meaning is shown."""
+    """Move the pointer from elsewhere to a term; return whether its definition is shown."""
     page.mouse.move(0, 0)
     term.hover()
     return page.get_by_role("tooltip").is_visible()
@@ -111,14 +111,14 @@ def test_a_first_visit_is_shown_round_once(visit: Visit) -> None:
         expect(tour).to_contain_text(f"{number} of 5")
         expect(page.locator(".toured")).to_have_id(part)
         here, there = tour.bounding_box(), page.locator(f"#{part}").bounding_box()
-        assert here and there  # beside what it tells about, not over it
+        assert here and there  # next to the element that it describes, not over it
         assert (here["x"] >= there["x"] + there["width"] or here["x"] + here["width"] <= there["x"]
                 or here["y"] >= there["y"] + there["height"] or here["y"] + here["height"] <= there["y"])
         tour.get_by_role("button", name="next" if number < 5 else "to the stories").click()
     expect(tour).to_be_hidden()
     expect(page.locator(".toured")).to_have_count(0)
     settled(page)
-    until(page, lambda: pointed_at(page, page.locator("#tabs dfn").first))  # until what comes late has moved the tab
+    until(page, lambda: pointed_at(page, page.locator("#tabs dfn").first))  # until late content has moved the tab
     expect(page.get_by_role("tooltip")).to_contain_text("a peak of the largest output force")
     page.reload()
     page.wait_for_function("window.painted.length > 0")
@@ -131,7 +131,7 @@ def test_a_first_visit_is_shown_round_once(visit: Visit) -> None:
 
 
 def test_a_meaning_stays_when_the_tab_is_made_anew_under_the_pointer(visit: Visit) -> None:
-    """A tab is made anew with every scene; within a second of a first visit, too."""
+    """A tab is rebuilt with every scene, also within a second of a first visit."""
     page = visit()
     settled(page)
     term = page.locator("#tabs dfn").first

@@ -1,4 +1,4 @@
-"""With the colours of the system (forced colours) the focus, what is chosen, and the pictures can still be seen."""
+"""With the system's colours (forced colours), the focus, the selection and the pictures remain visible."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from playwright.sync_api import Locator, Page
 
 @pytest.fixture
 def page(visit: Visit) -> Iterator[Page]:
-    """A page whose visitor has chosen dark colours of the system."""
+    """A page whose visitor has chosen dark system colours."""
     one = visit("?v=1&scene=sec2&look=light")
     settled(one)
     one.emulate_media(forced_colors="active", color_scheme="dark")
@@ -20,7 +20,7 @@ def page(visit: Visit) -> Iterator[Page]:
 
 
 def style(element: Locator, name: str) -> str:
-    """A property as it is drawn."""
+    """Return the computed value of a style property."""
     return str(element.evaluate("(one, name) => getComputedStyle(one)[name]", name))
 
 

@@ -1,4 +1,4 @@
-"""The page "Hard cases" as a visitor meets it: found from its tab, still until asked, run, drawn, stopped."""
+"""The page "Hard cases" as a visitor sees it: opened from its tab, idle until asked, run, drawn, stopped."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from server import resize
 
 from granchain_core.hard_cases import CASES
 
-#: A case that has a picture and, once its kernels are compiled, takes a second.
+#: A case that has a picture and takes a second once its kernels are compiled.
 QUICK = "solitary wave, Hertz collision, cradle, a bead on a chain"
 LONG = "near a bifurcation"
-#: The lines and titles of the picture that is drawn, as the browser has them.
+#: The lines and titles of the picture in the browser.
 DRAWN = """() => {
   const figure = figures.documentOf("check")?.roots()[0];
   if (!figure) return null;
@@ -24,7 +24,7 @@ DRAWN = """() => {
 
 
 def opened(page: Page) -> Locator:
-    """The page, opened from its tab."""
+    """Open the page from its tab."""
     page.get_by_role("tab", name="hard-cases").click()
     page.locator("#tabs").get_by_role("button", name="open the page").click()
     sheet = page.locator('[data-overlay="hard-cases"]')
@@ -33,7 +33,7 @@ def opened(page: Page) -> Locator:
 
 
 def card(sheet: Locator, name: str) -> Locator:
-    """The card of one case."""
+    """Return the card of one case."""
     return sheet.locator(f'[data-case="{name}"]')
 
 
@@ -42,7 +42,7 @@ def test_a_case_runs_when_asked_and_shows_rows_and_picture(visit: Visit) -> None
     sheet = opened(page)
     expect(sheet.locator("article")).to_have_count(len(CASES))
     expect(sheet.locator("article").first).to_contain_text("Naive:")
-    assert not [one for one in page.evaluate("sent") if one.startswith("hard-cases-")]  # nothing was asked to run
+    assert not [one for one in page.evaluate("sent") if one.startswith("hard-cases-")]  # no case was asked to run
     expect(sheet.locator("table")).to_have_count(0)
     one = card(sheet, QUICK)
     one.get_by_role("button", name="run").click()
@@ -57,13 +57,13 @@ def test_a_case_runs_when_asked_and_shows_rows_and_picture(visit: Visit) -> None
         assert verdict == ("✓ holds" if float(figure) <= float(bar.removeprefix("≤ ")) else "✕ FAILED")
     page.wait_for_function(f"({DRAWN})()", timeout=COMPILED)
     picture = page.evaluate(DRAWN)
-    assert len(picture["dashes"]) == 4 and len(set(picture["dashes"])) == 4  # told apart without colour
+    assert len(picture["dashes"]) == 4 and len(set(picture["dashes"])) == 4  # distinguishable without colour
     assert picture["titles"] == ["velocity over the first bead's", "scaled time"]
     box = one.locator(".drawn canvas").first.bounding_box()
     assert box is not None and box["width"] > 300 and box["height"] > 250
     expect(one.get_by_role("button", name="run")).to_have_text("run again")
     expect(sheet).to_contain_text(f"1 of {len(CASES)} cases run")
-    # what was found is told in its tab and stays
+    # the result is reported in its tab and stays
     page.keyboard.press("Escape")
     expect(page.locator("#tabs")).to_contain_text(f"1 of {len(CASES)} cases run")
 

@@ -1,5 +1,4 @@
-"""A page that nobody looks at: hidden, frozen, or of a computer that sleeps ("What happens when" of docs/dashboard.md).
-"""
+"""A page that is hidden, frozen, or on a sleeping computer ("What happens when" in docs/dashboard.md)."""
 
 from __future__ import annotations
 
@@ -15,7 +14,7 @@ from sleeping_browser import SleepingBrowser
 
 #: `PING_INTERVAL` of this server [s].
 PING_INTERVAL = 1
-#: What the page does, for the tests: the messages that it sends, and whether it is still the same page.
+#: Records the messages that the page sends.
 SENT = """window.sent = [];
 const send = WebSocket.prototype.send;
 WebSocket.prototype.send = function (data) {
@@ -26,7 +25,7 @@ WebSocket.prototype.send = function (data) {
 
 @pytest.fixture(scope="module")
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
-    """A dashboard that soon notices a browser that no longer answers."""
+    """A dashboard that quickly notices a browser that no longer answers."""
     one = Server(tmp_path_factory.mktemp("pinging") / "log",
                  before=f"import app.server; app.server.PING_INTERVAL = {PING_INTERVAL}")
     one.start()
@@ -36,7 +35,7 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
 
 @pytest.fixture
 def page(server: Server, tmp_path: Path) -> Iterator[SleepingBrowser]:
-    """A page with its pictures, and the browser around it."""
+    """A page with its pictures, in its browser."""
     browser = SleepingBrowser(tmp_path)
     browser.open(f"{server.address}?v=1&scene=sec2&f=1130", SENT)
     browser.until("granchain.shown.final && granchain.address.isSettled()")
@@ -61,7 +60,7 @@ def sessions(server: Server) -> float:
 
 
 def goes_on(page: SleepingBrowser) -> None:
-    """The same page takes a knob and shows its picture."""
+    """Check that the same page accepts a knob and shows its picture."""
     page.until("document.getElementById('lost').hidden")
     page.evaluate("""(() => {
       const find = (root) => root.querySelector('[data-knob="f"] input[type="text"]')
@@ -77,7 +76,7 @@ def goes_on(page: SleepingBrowser) -> None:
 
 
 def comes_back(page: SleepingBrowser) -> None:
-    """The page has opened its own link: it is a new one with the same knobs."""
+    """Check that the page has opened its own link: it is a new page with the same knobs."""
     page.until("!window.same && granchain.shown.f === 1130 && granchain.shown.final")
 
 
@@ -108,7 +107,7 @@ def test_a_running_chain_waits_for_a_hidden_page(server: Server, page: SleepingB
 
 
 def test_a_frozen_page_keeps_its_session_and_then_opens_its_link(server: Server, page: SleepingBrowser) -> None:
-    """The browser answers the server's pings for the page, and closes the websocket when the freezing ends."""
+    """The browser answers the server's pings for the page, and closes the websocket when the page is resumed."""
     page.evaluate("document.addEventListener('freeze', () => { sessionStorage.frozen = true; })")
     page.hide()
     page.freeze()

@@ -1,4 +1,4 @@
-"""The keyboard: what Tab reaches, the keys of the help, and the focus after an overlay or a popover is closed."""
+"""The keyboard: elements that Tab reaches, the keys of the help, and the focus after overlays and popovers close."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from server import until
 
 from app.dashboard.table import PAGES
 
-#: Gives every control that can be seen and used a number; of the tabs only the open one is in the order of Tab.
+#: Numbers every visible and enabled control; of the tabs, only the open one is in the Tab order.
 CONTROLS = """() => {
   const controls = [];
   const collect = (root) => {
@@ -27,7 +27,7 @@ CONTROLS = """() => {
 
 
 def opener(page: Page, name: str) -> Locator:
-    """The button that opens the overlay of a tab."""
+    """Return the button that opens the overlay of a tab."""
     page.get_by_role("tab", name=name, exact=True).click()
     return page.locator("#tabs").get_by_role("button", name="open the page")
 
@@ -49,7 +49,7 @@ def test_the_focus_moves_to_an_overlay_and_back(name: str, at: Visit) -> None:
 
 @pytest.mark.parametrize("overlaid", [False, True], ids=["tab", "overlay"])
 def test_the_focus_stays_at_a_button_that_is_drawn_again(overlaid: bool, at: Visit) -> None:
-    """The open tab is made anew whenever the state of the tabs changes, such as by a warning about the amplitude."""
+    """The open tab is rebuilt whenever the state of the tabs changes, for example by a warning about the amplitude."""
     page = at()
     settled(page)
     button = opener(page, "analysis")
@@ -90,7 +90,7 @@ def test_tab_reaches_every_control(at: Visit) -> None:
     names = page.evaluate(CONTROLS)
     page.evaluate("document.activeElement?.blur()")
     reached = set()
-    for _ in range(len(names) + 10):  # the browser itself and the ends of the page take some
+    for _ in range(len(names) + 10):  # the browser itself and the ends of the page use some
         page.keyboard.press("Tab")
         reached.add(page.evaluate("granchain.focused?.controlNumber ?? -1"))
     assert [name for number, name in enumerate(names) if number not in reached] == []

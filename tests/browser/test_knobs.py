@@ -1,4 +1,4 @@
-"""The knobs: dragged, typed into, put back, set by a click on the curve; what is wrong gets a sentence."""
+"""The knobs: dragged, typed into, reset, set by a click on the curve; wrong values get a sentence."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def test_a_click_on_the_curve_turns_f(at: Visit) -> None:
 
 
 def test_kappa_is_shown_for_every_k_and_amplitude(at: Visit) -> None:
-    """An amplitude that was moved alone is said beside kappa; without foundation there is no frequency of one."""
+    """A change of only the amplitude is stated next to kappa; without a foundation, its frequency is not shown."""
     page = at("?v=1&scene=rig")
     assert float(knob(page, "kappa")) == pytest.approx(1e-3)
     expect(page.locator("#knobs .kept")).to_be_empty()
@@ -67,7 +67,7 @@ def test_kappa_is_shown_for_every_k_and_amplitude(at: Visit) -> None:
 
 
 def test_a_knob_that_turns_nothing_says_so(at: Visit) -> None:
-    """Without dissipation there is no D in the equation."""
+    """Without dissipation, there is no D in the equation."""
     page = at("?v=1&scene=impact")
     damping = page.locator('[data-knob="D"]')
     expect(damping).to_contain_text("no effect: the law, under “more knobs”, is “none”")
@@ -82,7 +82,7 @@ def test_wrong_values_get_their_sentence(at: Visit) -> None:
     page = at()
     settled(page)
     expect(page.locator("#foot #regime")).not_to_contain_text("the curve is being computed")
-    regime = page.locator("#foot #regime").inner_text().split(",")[0]  # the exact picture says again how soon it settled
+    regime = page.locator("#foot #regime").inner_text().split(",")[0]  # the exact picture states again how fast it settled
     frequency = page.locator('[data-knob="f"] input[type="range"]')
     for value in ("1e15", '{"type":"number","value":"nan"}', '"three"', "null", "[1]", "-5"):
         page.evaluate("value => { window.forged = value; }", value)

@@ -1,6 +1,4 @@
-"""What somebody who sees the page for the first time reads off it: scales, the largest forces, which bead is which
-column.
-"""
+"""What a first-time visitor can read from the page: scales, the largest forces, and the column of each bead."""
 
 from __future__ import annotations
 
@@ -18,7 +16,7 @@ def test_scales_and_the_largest_forces_are_said_where_they_are(at: Visit) -> Non
     page = at("?v=1&scene=sec2&f=850")
     settled(page)
     peaks = page.locator("#stage .peak")
-    expect(peaks).to_contain_text(["max 0.591 N", "max 0.237 N"])  # small on axes that end at the scene's largest
+    expect(peaks).to_contain_text(["max 0.591 N", "max 0.237 N"])  # small on axes that end at the scene's largest value
     scale = page.locator("#scale .segments button")
     expect(scale).to_have_text(["same scale for all f", "fit"])
     expect(page.locator("#scale .colours")).to_have_text("square-root scale 0 100 400 nJ", use_inner_text=True)
@@ -33,7 +31,7 @@ def test_scales_and_the_largest_forces_are_said_where_they_are(at: Visit) -> Non
     expect(page.get_by_text("√ scale")).to_be_visible()
 
 
-# Where the link begins and ends on the screen, and the frame around the column; null while there is none.
+# Start and end of the link on the screen, and the frame around the column; null while there is none.
 LINK = """() => {
   const link = document.getElementById("link"), stage = document.getElementById("stage").getBoundingClientRect();
   if (link.hasAttribute("hidden")) return null;
@@ -44,16 +42,16 @@ LINK = """() => {
 
 
 def test_a_bead_that_is_pointed_at_is_joined_to_its_column_and_a_column_to_its_bead(at: Visit) -> None:
-    """The chain is wider than the map: no bead stands over its column."""
+    """The chain is wider than the map, so no bead is above its column."""
     page = at("?v=1&scene=sec2&f=340")
     settled(page)
     assert page.evaluate(LINK) is None
     home, top, left, width, high = page.evaluate("""() => {
       const chain = document.getElementById("chain").getBoundingClientRect(), map = document.getElementById("map").getBoundingClientRect();
-      const pitch = (chain.width - 62 - 26) / 11; // the room beside is the driver's and the wall's
+      const pitch = (chain.width - 62 - 26) / 11; // the space at the sides is for driver and wall
       return [chain.x + 62 + 3.5 * pitch, chain.y + 0.58 * chain.height, map.x + 6, map.width - 12, map.y + 0.5 * map.height]; }""")
     column = left + 3 / 11 * width
-    page.mouse.move(home, top)  # bead 4 at its place of rest
+    page.mouse.move(home, top)  # bead 4 at its rest position
     page.wait_for_function(f"({LINK})()")
     assert page.evaluate(LINK) == pytest.approx([home, column + width / 22, column, width / 11], abs=1.5)
     ringed = at_rest(page, "pixels('chain')")
@@ -66,7 +64,7 @@ def test_a_bead_that_is_pointed_at_is_joined_to_its_column_and_a_column_to_its_b
     assert at_rest(page, "pixels('chain')") == ringed
 
 
-# The word on every button of the bar that is on the screen, and the name of the button.
+# The word on every visible button of the bar, and the name of the button.
 BUTTONS = """() => {
   const found = [], look = (node) => {
     for (const one of node.querySelectorAll("*")) {
@@ -96,7 +94,7 @@ def test_on_a_phone_one_tap_puts_the_curve_under_the_picture(visit: Visit) -> No
     settled(page)
     curve, button = page.locator("#curve"), page.get_by_role("button", name="Resonance curve under the pictures")
     foot, below = page.locator("#foot").bounding_box(), curve.bounding_box()
-    assert foot and below and below["y"] >= foot["y"]  # under the line and the knob f
+    assert foot and below and below["y"] >= foot["y"]  # below the status line and the knob f
     button.tap()
     page.wait_for_selector(".peak-names button", timeout=COMPILED)
     for part in ("chain", "map", "curve"):
@@ -114,17 +112,17 @@ def test_a_scene_is_chosen_by_its_picture_with_the_keyboard(visit: Visit) -> Non
     page = visit(viewport={"width": 1920, "height": 1080})
     settled(page)
     assert "gallery" not in page.evaluate("sent")
-    assert page.locator(".gallery img").count() == 0  # nothing of it is part of the opening
+    assert page.locator(".gallery img").count() == 0  # none of it is loaded with the page
     scenes = page.get_by_role("button", name="Scenes with pictures")
     scenes.press("Enter")
     cards = page.locator(".gallery .card")
     expect(cards).to_have_count(len(scene_names()))
-    expect(page.locator('.gallery .card[value="sec2"]')).to_be_focused()  # the scene that is open
+    expect(page.locator('.gallery .card[value="sec2"]')).to_be_focused()  # the current scene
     whole = "(one) => one.loading === 'lazy' && one.complete && one.naturalWidth > 0"
     until(page, lambda: all(one.evaluate(whole) for one in cards.locator("img").all()[:4]))
     assert violations(page, "#bar") == {}
     page.set_viewport_size({"width": 390, "height": 844})
-    expect(cards.first).to_be_in_viewport()  # another size of the window leaves it open
+    expect(cards.first).to_be_in_viewport()  # it stays open when the window is resized
     assert page.evaluate("(card) => card.getBoundingClientRect().right", cards.first.element_handle()) < 390
     page.keyboard.press("Tab")
     page.keyboard.press("Enter")

@@ -1,4 +1,4 @@
-"""What enters the page: share links, other scenes, measured data."""
+"""Input to the page: share links, other scenes, measured data."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def test_a_shared_link_brings_the_picture_back(visit: Visit) -> None:
 
 
 def test_what_a_link_names_and_is_not_there_leaves_the_address(visit: Visit) -> None:
-    """A reload would complain again, and the theme would stay what it happened to be."""
+    """Otherwise, a reload would report it again, and the theme would stay as it happened to be."""
     page = visit("?v=1&scene=sec2&tab=foo&page=bar&look=pink")
     expect(page.locator("#foot .sentence")).to_contain_text("bar")
     page.wait_for_function("!/foo|bar|look/.test(location.search)")
@@ -96,7 +96,7 @@ def test_what_a_file_does_not_say_is_chosen_and_the_misfit_is_said(visit: Visit,
 
 
 def is_read_strictly(page: Page) -> None:
-    """A wrong line is named, and what is too large to be sent is refused before."""
+    """Check that a bad line is named, and that a file too large to be sent is refused beforehand."""
     chosen = page.locator('input[type="file"]')
     good = b"frequency_Hz,force_N,error_N\n40,5.5,0.4\n60,12.1,0.6\n"
     chosen.set_input_files({"name": "mine.csv", "mimeType": "text/csv", "buffer": good})
@@ -104,7 +104,7 @@ def is_read_strictly(page: Page) -> None:
     bad = b"frequency_Hz,force_N\n40,5.5\n60,twelve\n"
     chosen.set_input_files({"name": "mine.csv", "mimeType": "text/csv", "buffer": bad})
     expect(page.get_by_role("alert").filter(has_text="Line 3")).to_be_visible()
-    # the largest file that is sent, in the characters that take most room in a message: refused, not disconnected
+    # the largest file that is sent, with the characters that take most space in a message: refused, not disconnected
     chosen.set_input_files({"name": "no.csv", "mimeType": "text/csv", "buffer": b"\x01" * 2_000_000})
     expect(page.get_by_role("alert").filter(has_text="Line 1")).to_be_visible()
     chosen.set_input_files({"name": "no.csv", "mimeType": "text/csv", "buffer": b"\x01" * 2_000_001})
@@ -123,9 +123,9 @@ def test_a_virtual_experiment_lies_over_the_trains_until_it_is_removed(visit: Vi
 
 
 def test_a_tab_is_drawn_once_for_a_change_and_the_map_is_left_alone(visit: Visit) -> None:
-    """The map keeps itself up to date by messages: drawn anew, it would lose what the pointer is on."""
+    """The map updates itself by messages; if it were redrawn, it would lose the element under the pointer."""
     page = visit()
-    page.wait_for_selector(".peak-names button", timeout=COMPILED)  # the curve is whole: nothing else changes the tab
+    page.wait_for_selector(".peak-names button", timeout=COMPILED)  # the curve is complete: nothing else changes the tab
     page.get_by_role("tab", name="data").click()
     page.locator("[role=tabpanel]").evaluate("""(body) => {
       window.drawn = 0;
@@ -134,7 +134,7 @@ def test_a_tab_is_drawn_once_for_a_change_and_the_map_is_left_alone(visit: Visit
     content = b"frequency_Hz,force_N\n340,0.6\n1130,1.1\n"
     page.locator('input[type="file"]').set_input_files({"name": "mine.csv", "mimeType": "text/csv", "buffer": content})
     expect(page.locator("#tabs")).to_contain_text("Model − measured")
-    type_into(page, "f", "341")  # whatever the file had caused has come before the answer to this
+    type_into(page, "f", "341")  # all effects of the file arrive before the answer to this
     settled(page)
     assert page.evaluate("drawn") == 1
     page.get_by_role("tab", name="map").click()

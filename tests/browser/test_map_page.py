@@ -1,4 +1,5 @@
-"""The Map tab as a visitor meets it: it fills coarse first, tells values, a click sets f and A0, attractors are shown.
+"""The Map tab as a visitor sees it: it fills from coarse to fine and shows values, a click sets f and A0, and
+attractors are listed.
 """
 
 from __future__ import annotations
@@ -14,12 +15,12 @@ from knobs import COMPILED, Visit, field, type_into
 from playwright.sync_api import Locator, Page, expect
 from server import until
 
-#: A short chain far up: its diagram is there in a second or two.
+#: A short chain at high frequency: its map takes a second or two.
 SMALL = "?v=1&scene=sec2&N=2"
 
 
 def opened(page: Page) -> Locator:
-    """The tab with its picture."""
+    """Open the tab, and wait for its picture."""
     page.get_by_role("tab", name="map", exact=True).click()
     picture = page.locator("#tabs .maphost")
     expect(picture).to_be_visible()
@@ -28,23 +29,23 @@ def opened(page: Page) -> Locator:
 
 
 def visible(page: Page, name: str) -> bool:
-    """Whether a model of the figure is to be seen."""
+    """Return whether a model of the figure is visible."""
     return bool(page.evaluate("(name) => figures.documentOf('map').get_model_by_name(name).visible", name))
 
 
 def left_edge(page: Page) -> float:
-    """Where the figure's x axis begins."""
+    """Return the start of the figure's x axis."""
     return float(page.evaluate("figures.view('map', true).model.x_range.start"))
 
 
 def overflow(page: Page) -> int:
-    """Pixels by which the tab is wider than its place."""
+    """Return the number of pixels by which the tab is too wide."""
     return int(page.locator("#tabs .body").evaluate("body => body.scrollWidth - body.clientWidth"))
 
 
 @pytest.fixture(scope="module")
 def filled(shared: Visit) -> Page:
-    """A page with the whole map of a short chain."""
+    """A page with the complete map of a short chain."""
     page = shared(SMALL)
     opened(page)
     expect(page.locator('#tabs .maphost[data-done="1"]')).to_be_visible(timeout=COMPILED)  # complete
@@ -53,13 +54,13 @@ def filled(shared: Visit) -> Page:
 
 @pytest.fixture
 def page(filled: Page, request: pytest.FixtureRequest, log: Path) -> Page:
-    """That page, for one more test."""
+    """The same page, for one more test."""
     watch(request.node, filled, log)
     return filled
 
 
 def cell(page: Page) -> dict[str, Any]:
-    """A cell of the finest size in the middle of the map."""
+    """Return a cell of the finest size in the middle of the map."""
     cells = source(page, "map", "cells")
     x, y, spacing = (cells[name] for name in ("x", "y", "spacing"))
     row = max(range(len(x)), key=lambda i: (1900 < x[i] < 2300) * (spacing[i] == 1) * y[i] * (y[i] < 5))
@@ -138,7 +139,7 @@ def test_the_map_of_another_chain_is_grey_until_its_own_is_there(page: Page) -> 
       new MutationObserver(look).observe(host, { attributes: true, attributeFilter: ["class"] });
     }""")
     type_into(page, "D", "60")
-    page.wait_for_function("window.wasStale")  # the new one may be there before anybody looks again
+    page.wait_for_function("window.wasStale")  # the new map may be there before the next check
     expect(page.locator("#tabs .maphost.stale")).to_have_count(0)
 
 
@@ -164,7 +165,7 @@ def test_the_tab_fits_a_phone_attractors_are_listed_and_one_is_loaded(visit: Vis
     expect(rows.first).to_contain_text(re.compile(r"\d % \(\d+ to \d+ %\)"))
     irregular.get_by_role("button", name="show").click()
     expect(page.locator("#foot")).to_contain_text("quasi-periodic")
-    # what is not looked at is not computed, and what there is stays
+    # a hidden map is not computed, and finished cells stay
     page.get_by_role("tab", name="regimes").click()
     expect(page.locator("#curve")).to_be_visible()
     page.get_by_role("tab", name="map", exact=True).click()

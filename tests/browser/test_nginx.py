@@ -1,4 +1,4 @@
-"""Two processes behind nginx with the configuration of docs/nginx.conf: one page, one process, and a picture."""
+"""Two processes behind nginx with the configuration of docs/nginx.conf: each page has one process, and its pictures."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from server import ROOT, free_port
 NGINX = shutil.which("nginx") or shutil.which("nginx", path="/usr/sbin")
 pytestmark = pytest.mark.skipif(NGINX is None, reason="nginx is not installed")
 
-# What an installation of nginx has around the file; the answers name the process that gave them.
+# The configuration around the file in an installation of nginx; answers name the process that gave them.
 AROUND = """
 daemon off; pid {folder}/pid; error_log {folder}/error.log;
 events {{}}
@@ -35,7 +35,7 @@ http {{
 
 
 def below_a_path(port: int, cookie_port: int) -> str:
-    """A second server with the locations that docs/deployment.md has for a path."""
+    """Return a second server with the locations for a path from docs/deployment.md."""
     page = (ROOT / "docs" / "deployment.md").read_text(encoding="utf-8")
     (locations,) = re.findall(r"```nginx\n(.+?)```", page, re.DOTALL)
     whole = (ROOT / "docs" / "nginx.conf").read_text(encoding="utf-8")
@@ -46,20 +46,20 @@ def below_a_path(port: int, cookie_port: int) -> str:
 
 
 class SetsCookie(http.server.BaseHTTPRequestHandler):
-    """Answers with a cookie as Panel sets it."""
+    """A handler that answers with a cookie like Panel's."""
 
     def do_GET(self) -> None:
-        """The cookie alone."""
+        """Answer with only the cookie."""
         self.send_response(204)
         self.send_header("Set-Cookie", "user=ada; HttpOnly; Path=/")
         self.end_headers()
 
     def log_message(self, format: str, *args: object) -> None:
-        """Nothing."""
+        """Log nothing."""
 
 
 def adapted(port: int, plain: int, processes: list[int]) -> str:
-    """The configuration of the page, with ports of this test and without a certificate."""
+    """Return the configuration of the page, with this test's ports and without a certificate."""
     lines = (ROOT / "docs" / "nginx.conf").read_text(encoding="utf-8").splitlines()
     kept = [line for line in lines if not re.match(r"\s*(ssl_|server 127)", line)]
     assert len(lines) - len(kept) == 6  # four processes, a certificate and its key
@@ -71,12 +71,12 @@ def adapted(port: int, plain: int, processes: list[int]) -> str:
 
 
 def answers(port: int, path: str, source: str = "127.0.0.1") -> http.client.HTTPResponse:
-    """The answer to somebody at the address `source`, which this machine has like all of 127.0.0.0/8."""
+    """Return the answer to a client at the address `source`, which belongs to this machine like all of 127.0.0.0/8."""
     return asked(port, path, source).getresponse()
 
 
 def asked(port: int, path: str, source: str) -> http.client.HTTPConnection:
-    """A request that has been sent."""
+    """Send a request and return its connection."""
     connection = http.client.HTTPConnection("127.0.0.1", port, timeout=60, source_address=(source, 0))
     connection.request("GET", path)
     return connection
@@ -84,7 +84,7 @@ def asked(port: int, path: str, source: str) -> http.client.HTTPConnection:
 
 @pytest.fixture(scope="module")
 def port(ports: tuple[int, int, int]) -> int:
-    """The port of nginx, behind which two processes answer."""
+    """The port of nginx, in front of two processes."""
     return ports[0]
 
 
@@ -96,7 +96,7 @@ def path(ports: tuple[int, int, int]) -> str:
 
 @pytest.fixture(scope="module")
 def ports(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[int, int, int]]:
-    """The ports of nginx: one with the page alone, one with the page below a path, and the one without TLS."""
+    """The ports of nginx: one with only the page, one with the page below a path, and one without TLS."""
     folder = tmp_path_factory.mktemp("nginx")
     outside, below, plain, *processes = free_port(), free_port(), free_port(), free_port(), free_port()
     cookies = http.server.HTTPServer(("127.0.0.1", 0), SetsCookie)
@@ -123,7 +123,7 @@ def ports(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[int, int, 
 
 
 def alive(port: int) -> bool:
-    """Whether a process answers there."""
+    """Return whether a process answers on this port."""
     try:
         return answers(port, "/liveness").status == 200
     except OSError:
@@ -131,7 +131,7 @@ def alive(port: int) -> bool:
 
 
 def answers_a_knob(page: Page) -> None:
-    """Its picture comes, and another one after a knob; the connection stays."""
+    """Check that a picture arrives, and another one after a change of a knob, over the same connection."""
     settled(page)
     type_into(page, "f", "380")
     settled(page)
@@ -157,7 +157,7 @@ def test_the_path_without_a_slash_leads_to_the_page_and_keeps_the_link(ports: tu
 
 
 def test_pages_beyond_the_rate_are_asked_to_try_again_and_none_waits(port: int) -> None:
-    """A burst of sixty is answered at once; what is beyond it gets a page that opens itself again."""
+    """A burst of sixty is answered at once; further requests get a page that reloads itself."""
     source = "127.2.2.2"
     connections = [asked(port, "/", source) for _ in range(90)]
     found = [one.getresponse() for one in connections]
@@ -169,7 +169,7 @@ def test_pages_beyond_the_rate_are_asked_to_try_again_and_none_waits(port: int) 
 
 
 def test_attempts_to_sign_in_are_limited(port: int) -> None:
-    """For each address, however many there are from others; these processes ask nobody to sign in, and answer 404."""
+    """The limit is per address, whatever comes from others. These processes have no sign-in, and answer 404."""
     found = [answers(port, "/login", "127.3.3.3").status for _ in range(15)]
     assert found[:11] == [404] * 11 and 429 in found[11:]
     assert answers(port, "/login", "127.3.3.4").status == 404
@@ -180,7 +180,7 @@ def test_a_visitor_always_reaches_the_same_process_and_not_all_the_same_one(port
     def reached(source: str) -> str | None:
         return answers(port, "/liveness", source).headers["X-Process"]
 
-    sources = [f"127.1.1.{number}" for number in range(1, 41)]  # one network: its visitors are spread, too
+    sources = [f"127.1.1.{number}" for number in range(1, 41)]  # visitors from one network are distributed, too
     first = [reached(source) for source in sources]
     assert len(set(first)) == 2 and None not in first
     assert [reached(source) for source in sources] == first

@@ -1,5 +1,5 @@
-"""The Observer page as a visitor meets it: without foundation it breaks, with it it finds its chain, new starts are
-seen.
+"""The Observer page as a visitor sees it: the observer breaks down without a foundation, finds its chain with one, and
+shows new starts.
 """
 
 from __future__ import annotations
@@ -8,10 +8,10 @@ from knobs import COMPILED, Visit, field
 from playwright.sync_api import Locator, Page, expect
 from server import at_rest, until
 
-#: What the page drew last: period and distance.
+#: The last point drawn: period and distance.
 LAST = "granchain.pages.get('observer')?.history.at(-1)"
 
-#: How many pixels of a canvas have the colour of the input force.
+#: Counts the pixels of a canvas that have the colour of the input force.
 PUSH = """(canvas) => {
   const of = (drawn, width, height) => drawn.getContext("2d").getImageData(0, 0, width, height).data;
   const sample = Object.assign(document.createElement("canvas"), { width: 1, height: 1 });
@@ -26,13 +26,13 @@ PUSH = """(canvas) => {
 
 
 def drawn(source: str, points: int) -> str:
-    """Whether a line of the figure on the page has so many points or more."""
+    """Return an expression that is true if a line of the page's figure has at least this many points."""
     return f"""figures.view("observer", true)?.model.document
         ?.get_model_by_name("{source}")?.data.period.length >= {points}"""
 
 
 def opened(page: Page) -> Locator:
-    """The page with its first periods, opened from its tab, for the scene of figure 11."""
+    """Open the page from its tab for the scene of figure 11, and wait for the first periods."""
     page.get_by_label("scene").first.select_option("fig11-free")
     page.get_by_role("tab", name="observer").click()
     page.get_by_role("button", name="open the page").click()
@@ -49,26 +49,26 @@ def test_it_breaks_without_foundation_synchronises_with_it_and_rests_unseen(visi
                                   "nothing pulls them back", timeout=COMPILED)
     expect(sheet).to_contain_text("predicted × 4.418")  # docs/observers.md: one multiplier outside
     page.wait_for_function(f"{LAST}?.[1] > 0.5")
-    # as the main picture, which is the same chain
+    # as in the main picture, which shows the same chain
     expect(sheet.locator(".chains")).to_contain_text("as in the main picture; displacements drawn × 10\u202f000")
     chains = sheet.locator(".chains canvas")
     assert chains.count() == 3
-    # the force pushes the observer: an arrow in its colour, which is there in most of a drive period
+    # the force pushes the observer: an arrow in its colour, visible during most of a drive period
     until(page, lambda: int(chains.nth(2).evaluate(PUSH)) > 30)
     sheet.get_by_role("button", name="0.001").click()
     expect(sheet).to_contain_text("it synchronises with its chain", timeout=COMPILED)
     page.wait_for_function(drawn("prediction", 2))
     page.wait_for_function(f"{LAST}[1] < 0.1")
     expect(field(page, "kappa")).to_have_value("0.001")
-    # a new start is seen
+    # a new start is visible
     page.wait_for_function(f"{LAST}[1] < 3e-3")
     sheet.get_by_role("button", name="from rest").click()
     page.wait_for_function(f"{LAST}[1] > 0.05")
     page.keyboard.press("Escape")
     expect(sheet).to_be_hidden()
-    # in its tab it goes on, in small
+    # it continues in its tab, at a smaller size
     before = page.evaluate(f"{LAST}[0]")
     page.wait_for_function(f"{LAST}[0] > {before} + 2")
-    # on another tab nothing is computed
+    # nothing is computed while another tab is open
     page.get_by_role("tab", name="regimes").click()
     at_rest(page, f"{LAST}[0]", still=1000)

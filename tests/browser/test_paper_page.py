@@ -1,5 +1,5 @@
-"""The page "The paper" as a visitor meets it: a figure is drawn with caption and rows, in both themes, and given up
-when left.
+"""The page "The paper" as a visitor sees it: a figure is drawn with caption and rows, in both themes, and abandoned
+when the page is left.
 """
 
 from __future__ import annotations
@@ -11,12 +11,12 @@ from playwright.sync_api import Locator, Page, expect
 from server import resize, until
 
 Visit = Callable[..., Page]
-#: Long enough for a first visit that has to compile kernels, on a machine that runs tests.
+#: Long enough for a first visit that has to compile kernels on a machine busy with tests.
 COMPILED = 150_000
 
 
 def opened(page: Page) -> Locator:
-    """The page, opened from its tab."""
+    """Open the page from its tab."""
     page.get_by_role("tab", name="paper").click()
     page.locator("#tabs").get_by_role("button", name="open the page").click()
     return page.locator('[data-overlay="paper"]')
@@ -30,7 +30,7 @@ def chosen(sheet: Locator, number: str) -> None:
 def test_figures_are_drawn_with_caption_and_rows(visit: Visit) -> None:
     page = visit()
     sheet = opened(page)
-    expect(sheet.get_by_role("img", name="Figure 2")).to_be_visible(timeout=COMPILED)  # it does not begin empty
+    expect(sheet.get_by_role("img", name="Figure 2")).to_be_visible(timeout=COMPILED)  # it does not start empty
     chosen(sheet, "5")
     expect(sheet.locator(".caption")).to_contain_text("Figure 5: What the shaker does")
     expect(sheet.locator(".caption")).to_contain_text("are images, whose numbers we do not have")

@@ -1,4 +1,4 @@
-"""A bead that is clicked, in the chain or in the map: its phase portrait in the tab, six pictures on the page."""
+"""A clicked bead, in the chain or in the energy map: its phase portrait in the tab, six pictures on the page."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from server import until
 
 from app.parts.figures.figure_style import BOTTOM, GAP, TOP
 
-# Where on the screen a bead of the chain rests.
+# Rest position of a bead of the chain on the screen.
 BEAD = """(bead) => {
   const { left, top, width, height } = canvasIn("chain").getBoundingClientRect();
   const long = width - 62 - 26, pitch = Math.min(long / 11, 0.66 * height);
@@ -23,7 +23,7 @@ def test_a_bead_of_the_chain_is_probed(visit: Visit) -> None:
     page.mouse.click(*page.evaluate(BEAD, 5))
     expect(page.get_by_role("tab", name="probe")).to_have_attribute("aria-selected", "true")
     expect(page.locator("#tabs")).to_contain_text("Bead 5 of 11")
-    page.wait_for_function("granchain.pages.get('probe').drawn.phase.strobe.data.x.length === 3")  # one a drive period: 1:3
+    page.wait_for_function("granchain.pages.get('probe').drawn.phase.strobe.data.x.length === 3")  # one per drive period: 1:3
     page.locator("#tabs").get_by_role("button", name="open the page").click()
     expect(page.get_by_role("heading", name="One bead")).to_be_visible()
     for figure, name in (("probe displacement", "line"), ("probe forces", "before"), ("probe velocity", "line"),
@@ -31,7 +31,7 @@ def test_a_bead_of_the_chain_is_probed(visit: Visit) -> None:
         until(page, lambda one=figure, of=name: any(source(page, one, of).values()))
     page.get_by_role("button", name="the next bead").click()
     expect(page.locator("#overlay")).to_contain_text("Bead 6 of 11")
-    # it follows the knobs: at the 1:1 resonance every drive period is like the one before
+    # it follows the knobs: at the 1:1 resonance, every drive period equals the previous one
     type_into(page, "f", "340")
     page.wait_for_function("granchain.pages.get('probe').drawn.phase.strobe.data.x.length === 1")
 
@@ -47,7 +47,7 @@ def test_a_click_in_the_map_probes_the_bead_and_a_drag_moves_time(visit: Visit) 
     page.mouse.up()
     expect(page.locator("#column")).to_be_hidden()
     expect(page.get_by_role("tab", name="stories")).to_have_attribute("aria-selected", "true")
-    for bead, time in ((1, 0.5), (11, 0.3)):  # where the cursor lies, it is what a click takes hold of
+    for bead, time in ((1, 0.5), (11, 0.3)):  # a click on the cursor would grab that instead
         x = box["x"] + GAP + (box["width"] - 2 * GAP) * (bead - 0.5) / 11
         page.mouse.click(x, box["y"] + TOP + time * (box["height"] - TOP - BOTTOM))
         expect(page.locator("#tabs")).to_contain_text(f"Bead {bead} of 11")

@@ -1,6 +1,4 @@
-"""Nothing on the main page is cut: titles of axes, numbers of beads, the equation; on a laptop, a large screen, a
-phone.
-"""
+"""Nothing on the main page is cut (axis titles, bead numbers, the equation) on a laptop, a large screen or a phone."""
 
 from __future__ import annotations
 
@@ -14,14 +12,14 @@ from server import ROOT, at_rest, until
 
 from app.plots.theme import THEMES, style_sheet
 
-#: Laptops, screens, a beamer, a phone.
+#: Laptops, screens, a projector, a phone.
 SIZES = ((1024, 768), (1180, 820), (1280, 800), (1280, 720), (1366, 768), (1440, 900), (1536, 864), (1920, 1080),
          (2560, 1440), (390, 844))
-#: One on each side of every limit of the style sheets, at which the layout changes.
+#: One size on each side of every limit in the style sheets at which the layout changes.
 LAYOUTS = ((1024, 768), (1280, 800), (1920, 1080), (390, 844))
 WIDTHS = ((1280, 800), (1920, 1080), (390, 844))
 
-# The title of every horizontal axis beside the map: its words, and how far its box is inside its picture on both sides.
+# The title of every horizontal axis next to the map: its words, and its box's distance from both edges of its picture.
 TITLES = """() => [["left", "input force"], ["right", "output force"]].flatMap(([id, name]) => {
   const host = document.getElementById(id).getBoundingClientRect();
   const view = figures.viewOf(figures.model(name));
@@ -36,7 +34,7 @@ TITLES = """() => [["left", "input force"], ["right", "output force"]].flatMap((
   });
 })"""
 
-# Pixels between the numbers of two neighbouring beads above the map, less the width of the wider one.
+# Pixels between the numbers of two neighbouring beads above the map, minus the width of the wider one.
 BEADS = """() => {
   const map = figures.viewOf(figures.model("kinetic energy"));
   const pen = document.createElement("canvas").getContext("2d");
@@ -46,7 +44,7 @@ BEADS = """() => {
 }"""
 
 
-# Whether the title over each picture has one line, and all of its words or each its short form.
+# Whether all titles over the pictures have one line, and either all have their full text or all their short form.
 OVER = """() => {
   const titles = [...document.querySelectorAll("#stage .title")];
   const line = parseFloat(getComputedStyle(titles[0]).lineHeight);
@@ -55,15 +53,16 @@ OVER = """() => {
 
 
 def titles_are_whole(page: Page) -> None:
-    """Wait until the titles over the pictures have one line, as the axis below needs the second, and the titles of the
-    axes and the numbers of the beads are not cut; their step follows the width."""
+    """Wait until titles over the pictures have one line (the axis below needs the second), and axis titles and bead
+    numbers are not cut; the step between bead numbers follows the width.
+    """
     page.wait_for_function(OVER)
     page.wait_for_function(f"({TITLES})().every(([title, room]) => title && room >= 0)")
     page.wait_for_function(f"({BEADS})() > 0")
 
 
 def fits(page: Page) -> None:
-    """Wait until nothing is cut: titles and names follow a new size."""
+    """Wait until nothing is cut; titles and names adapt to a new size."""
     found: list[str] = []
 
     def whole() -> bool:
@@ -77,7 +76,7 @@ def fits(page: Page) -> None:
 
 
 def test_dark_differs_from_light_in_colours_only() -> None:
-    """The tests below look at the light theme only: with equal sizes, what fits there fits in the dark one."""
+    """The tests below only check the light theme: with equal sizes, everything that fits there fits in the dark one."""
     for role in ("line_scale", "text_size", "largest_text_size", "small_text_size", "largest_small_text_size"):
         assert getattr(THEMES["dark"], role) == getattr(THEMES["light"], role)
     dark = next(rule for rule in style_sheet().splitlines() if "data-theme=dark" in rule)
@@ -91,7 +90,7 @@ def test_dark_differs_from_light_in_colours_only() -> None:
 @pytest.mark.long
 @pytest.mark.parametrize(("scene", "sizes"), [("sec2", SIZES), ("fig11-founded", LAYOUTS)])
 def test_no_control_and_no_word_is_cut_hidden_or_covered(at: Visit, scene: str, sizes: tuple[tuple[int, int], ...]) -> None:
-    """At all sizes with one scene; with another, which has a longer equation, in each layout."""
+    """One scene is checked at all sizes, and another one, with a longer equation, in each layout."""
     page = at(f"?v=1&scene={scene}&look=light")
     page.wait_for_selector(".peak-names button", timeout=COMPILED)
     for theme in THEMES:
@@ -104,8 +103,8 @@ def test_no_control_and_no_word_is_cut_hidden_or_covered(at: Visit, scene: str, 
 
 
 def test_a_low_window_keeps_the_height_of_its_pictures(at: Visit) -> None:
-    """A phone held sideways, and a page enlarged to twice and 1.5 times its size."""
-    page = at("?v=1&scene=sec2&k=1234567&look=light")  # with as many digits as a knob ever has
+    """Such windows are a phone in landscape orientation, and a page zoomed to 200 % and 150 %."""
+    page = at("?v=1&scene=sec2&k=1234567&look=light")  # with the largest number of digits that a knob can have
     side = page.locator("#side").evaluate("(one) => one.getBoundingClientRect().right")
     knobs = page.locator("#knobs .knob *")
     assert knobs.evaluate_all("(all) => Math.max(...all.map((one) => one.getBoundingClientRect().right))") <= side - 9
@@ -117,7 +116,7 @@ def test_a_low_window_keeps_the_height_of_its_pictures(at: Visit) -> None:
 
 
 def test_the_projector_has_whole_titles_and_on_a_phone_a_menu(visit: Visit) -> None:
-    """The menu has what the bar has no room for."""
+    """The menu has the controls for which the bar has no room."""
     page = visit("?look=projector", viewport={"width": 390, "height": 844})
     for width, height in (WIDTHS[-1], *WIDTHS):  # the phone is the last of them, and the first here
         page.set_viewport_size({"width": width, "height": height})
@@ -134,7 +133,7 @@ def test_the_projector_has_whole_titles_and_on_a_phone_a_menu(visit: Visit) -> N
     expect(page.locator("select.scene option:checked")).to_have_text("sec2 — Section 2: eleven steel beads, driven")
 
 
-# Where each picture, the curve and the line at the bottom are; which words of the line are cut.
+# Positions of the pictures, the curve and the status line, and the words of that line that are cut.
 BOXES = """() => ["#left", "#map", "#right", "#curve", "#foot"].map((one) => {
   const { x, y, width, height } = document.querySelector(one).getBoundingClientRect();
   return [x, y, width, height].map(Math.round);
@@ -144,8 +143,8 @@ CUT = "(line) => [line, ...line.children].filter((one) => one.scrollWidth > one.
 
 @pytest.mark.parametrize("theme", ["light", "projector"])
 def test_a_moved_knob_moves_no_picture(at: Visit, theme: str) -> None:
-    """However long the words for the motion are, and whichever marks the curve has: a figure of another size is laid
-    out anew, which took most of the time of every picture.
+    """This is true for motions with words of any length, and for any marks on the curve. A figure whose size changes is
+    laid out again, which used to take most of the time of every picture.
     """
     page = at(f"?v=1&scene=sec2&look={theme}")
     settled(page)
@@ -159,17 +158,17 @@ def test_a_moved_knob_moves_no_picture(at: Visit, theme: str) -> None:
     assert max(map(len, said)) > min(map(len, said)) + 20
     line = page.locator("#foot .line")
     gone = page.locator("#foot #method")
-    expect(gone).to_be_hidden()  # it gave way
+    expect(gone).to_be_hidden()  # it made room
     assert gone.text_content() in page.locator("#foot #rest").get_attribute("title")
     few = len(line.inner_text())
-    page.set_viewport_size({"width": 2560, "height": 1440})  # type grows too, but less than the screen
+    page.set_viewport_size({"width": 2560, "height": 1440})  # text grows too, but less than the screen
     until(page, lambda: len(line.inner_text()) > few)
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("theme", ["light", "projector"])
 def test_what_the_paper_states_is_named_at_its_frequency(at: Visit, theme: str) -> None:
-    # more damping than the rig's 35.4: the curve has as many names and takes a sixth of the time
+    # with more damping than the rig's 35.4, the curve has as many names and takes a sixth of the time
     page = at(f"?v=1&scene=rig&D=65&look={theme}")
     stated = page.locator(".peak-names .stated")
     expect(stated).to_have_text(["1:1", "1:1 anti", "1:2"])
@@ -186,7 +185,7 @@ def test_what_the_paper_states_is_named_at_its_frequency(at: Visit, theme: str) 
     choice.uncheck()
     expect(stated).to_have_count(0)
     page.locator("select.scene").select_option("sec2")
-    expect(choice).to_be_hidden()  # the paper's frequencies are of other beads
+    expect(choice).to_be_hidden()  # the paper's frequencies are for other beads
 
 
 def test_titles_and_words_follow_the_window(at: Visit) -> None:

@@ -1,4 +1,4 @@
-"""What the page says to those who do not see it."""
+"""The page's content for screen readers."""
 
 from __future__ import annotations
 

@@ -1,6 +1,7 @@
-"""Functions of the page's scripts without the page: tables of values, steps of the history, a connection that is lost.
+"""Functions of the page's scripts without the page: tables of values, steps of the history, a lost connection.
 
-The modules come from `app` as they are, to a page that has nothing else; no server runs, and the time is the test's.
+The modules are served unchanged from `app` to an otherwise empty page, without a server, and the test controls the
+clock.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from app.session.page_constants import page_constants
 
 APP = Path(__file__).parents[2] / "app"
 ORIGIN = "http://scripts.test/"
-#: The elements that the scripts in the page ask for, and what it has of Bokeh.
+#: The elements that the inline scripts look up, and a minimal Bokeh.
 BLANK = """<!doctype html><div id="dashboard">
   <div id="lost" hidden></div><div id="bar"></div><div id="side"></div><div id="stage"></div><div id="curves"><div id="curve"></div></div>
   <div id="overlay"><div data-overlay="probe" hidden></div></div><div id="foot"></div></div>
@@ -29,7 +30,7 @@ BLANK = """<!doctype html><div id="dashboard">
 
 
 class Answers:
-    """What the address of the scripts answers: modules, the blank page, and `readiness` for whether there is room."""
+    """The answers at the address of the scripts: modules, the blank page, and `readiness` for whether there is room."""
 
     readiness = 502
     reason = ""
@@ -55,7 +56,7 @@ class Answers:
 
 @pytest.fixture(scope="module")
 def blank(profile: BrowserContext) -> Iterator[Page]:
-    """A page for the modules."""
+    """Yield a page for the modules."""
     page = profile.new_page()
     page.route(f"{ORIGIN}**", Answers())
     page.goto(ORIGIN)
@@ -64,7 +65,7 @@ def blank(profile: BrowserContext) -> Iterator[Page]:
 
 
 def called(page: Page, script: str, name: str, cases: list[Any]) -> list[Any]:
-    """What a function of a module returns for each list of arguments."""
+    """Call a function of a module with each list of arguments, and return the results."""
     return list(page.evaluate("""async ([script, name, cases]) => {
       const module = await import(`/${script}`);
       return cases.map((one) => module[name](...one));
@@ -83,7 +84,7 @@ def test_a_slider_goes_from_place_to_value_and_back(blank: Page, scale: str, low
     assert (values[0], values[2], values[-1]) == pytest.approx((low, middle, high))
 
 
-#: A value in SI, the factor of its unit, and what stands in the field.
+#: A value in SI units, the factor of its unit, and the text of the field.
 WRITTEN = [(340.0, 1.0, "340"), (0.0, 1.0, "0"), (5e-7, 1e-6, "0.5"), (1.23456789, 1.0, "1.23457"), (1e-4, 1.0, "1e-4"),
            (-2.5e-4, 1.0, "-2.5e-4"), (1234567.0, 1.0, "1.23457e6"), (193e9, 1e9, "193"), (0.1 + 0.2, 1.0, "0.3"),
            (999999.0, 1.0, "999999")]
@@ -110,7 +111,7 @@ def test_the_browser_takes_the_prefixes_that_the_server_takes(blank: Page) -> No
 
 
 def test_a_place_of_the_map_is_the_finest_cell_that_covers_it(blank: Page) -> None:
-    """A map of 4 × 3: the first cell of 4, one of 2 and one of its own."""
+    """A map of 4 × 3 has the first cell of spacing 4, one of spacing 2 and one of spacing 1."""
     found = blank.evaluate("""async () => {
       const { MAP, cellAt, finest, valuesOf } = await import("/pages/map/map_state.js");
       const none = cellAt(0, 0, (MAP.head = { x: [10, 20, 30, 40], y: [1, 2, 3] }));
@@ -122,13 +123,13 @@ def test_a_place_of_the_map_is_the_finest_cell_that_covers_it(blank: Page) -> No
 
 @pytest.fixture
 def answers() -> Answers:
-    """What the scripts in the page get from their address."""
+    """The answers that the inline scripts get from their address."""
     return Answers()
 
 
 @pytest.fixture
 def page(profile: BrowserContext, answers: Answers) -> Iterator[Page]:
-    """The scripts in the page, at an address, with a clock that the test moves; the server has sent a link."""
+    """A page with the inline scripts at an address; the test advances the clock, and the server has sent a link."""
     page = profile.new_page()
     page.route(f"{ORIGIN}**", answers)
     page.clock.install()
@@ -145,7 +146,7 @@ def page(profile: BrowserContext, answers: Answers) -> Iterator[Page]:
 
 
 def query(page: Page, expression: str = "granchain.address.url().search") -> str:
-    """The query of the address as it would be now."""
+    """Return the current query of the address."""
     return str(page.evaluate(expression)).removeprefix("?")
 
 
@@ -205,7 +206,7 @@ def test_undo_and_redo_go_to_the_server_and_wait_for_its_answer(page: Page) -> N
 
 
 def test_an_event_that_is_not_declared_is_an_error(page: Page) -> None:
-    """A misspelt name would otherwise be heard by nobody, without a word."""
+    """Otherwise, events with misspelt names would be silently ignored."""
     for call in ("on('step', () => {})", "emit('step')"):
         said = page.evaluate(f"() => {{ try {{ granchain.{call}; }} catch (error) {{ return error.message; }} }}")
         assert said == "there is no event step"
@@ -251,7 +252,7 @@ def test_a_hidden_window_asks_nothing_and_a_closed_socket_is_lost_at_once(page: 
 
 @pytest.mark.parametrize("status", [502, 503])
 def test_a_page_asks_ever_more_rarely_and_opens_nothing_while_there_is_no_room(status: int, page: Page, answers: Answers) -> None:
-    """All pages of a server that was started again would otherwise come at once, and those beyond its limit be lost."""
+    """Otherwise, all pages of a restarted server would arrive at once, and those beyond its limit would be lost."""
     answers.readiness = status
     page.evaluate("() => { granchain.connection.connect(() => {}); closeSocket(); }")
     for _ in range(60):
@@ -324,7 +325,7 @@ def test_errors_of_scripts_are_reported_and_no_more_than_a_few(blank: Page) -> N
 
 
 def test_the_chain_is_unpacked_in_the_order_in_which_it_was_packed(blank: Page) -> None:
-    """`chain_series` of app/frames.py and `unpack` of chain_series.js know the same order."""
+    """`chain_series` in app/frames.py and `unpack` in chain_series.js use the same order."""
     rows, beads = 3, 2
     widths = {"displacement": beads, "force": beads + 1, "energy": beads, "drive": 1}
     arrays = {name: 100.0 * number + np.arange(rows * width).reshape(rows, width)

@@ -1,4 +1,4 @@
-"""The Stability tab and page as a visitor meets them: multipliers, a mode that moves, the section, a search."""
+"""The Stability tab and page as a visitor sees them: multipliers, a moving mode, the section, a search."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from server import resize, until
 
 
 def opened(page: Page, words: str = "Stable") -> Locator:
-    """The Stability page, opened from its tab, with its verdict."""
+    """Open the Stability page from its tab, and wait for its verdict."""
     page.get_by_role("tab", name="stability").click()
     page.get_by_role("button", name="open the page").click()
     sheet = page.locator('[data-overlay="stability"]')
@@ -18,12 +18,12 @@ def opened(page: Page, words: str = "Stable") -> Locator:
 
 
 def marks(page: Page, name: str, large: bool = True) -> int:
-    """How many marks a set of the plane has."""
+    """Return the number of marks in a set of the plane."""
     return len(source(page, "multipliers", name, large).get("x", []))
 
 
 def axis_title(page: Page, axis: str) -> str:
-    """The title of an axis of the section."""
+    """Return the title of an axis of the section."""
     return str(page.evaluate(f'figures.documentOf("section").get_model_by_name("{axis}").axis_label'))
 
 
@@ -31,7 +31,7 @@ def test_the_tab_tells_and_what_nobody_looks_at_is_not_computed(visit: Visit) ->
     page = visit()
     tab = page.locator("#tabs")
     settled(page)
-    # the server computes for whoever looks (tests/pages/test_stability.py), and nobody has said that they do
+    # the server computes only for visible pages (tests/pages/test_stability.py), and none has been reported
     assert looks(page, "stability") == []
     assert page.evaluate("granchain.pages.get('stability').state.sentence") is None
     page.get_by_role("tab", name="stability").click()
@@ -107,7 +107,7 @@ def test_the_page_follows_the_knobs_and_the_window(visit: Visit) -> None:
 
 
 def section_follows_bead_and_phase(page: Page, sheet: Locator) -> None:
-    """At the 1:3 resonance the orbit is three points; another bead or phase has another way to it."""
+    """Check that the orbit has three points at the 1:3 resonance, and other approaches for another bead or phase."""
     until(page, lambda: len(source(page, "section", "orbit").get("u", ())) == 3)
     first = source(page, "section", "way")
     assert len(first["u"]) > 20
@@ -122,7 +122,7 @@ def section_follows_bead_and_phase(page: Page, sheet: Locator) -> None:
 
 
 def fits(page: Page, sheet: Locator) -> None:
-    """At every size the pictures are inside the window, and on a large one the search too."""
+    """Check that the pictures are inside the window at every size, and on a large one the search too."""
     for width, height in ((1280, 800), (1920, 1080), (390, 844)):
         resize(page, width, height)
         for name, least in ((".plane .figure", 200), (".motion .figure", 130), (".poincare .figure", 130)):

@@ -1,4 +1,4 @@
-"""Undo and redo, pins, what is taken along, and the page in a frame."""
+"""Undo and redo, pins, exports, and the page in a frame."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from PIL import Image
 from playwright.sync_api import Page, expect
 from server import until
 
-# Points of the lines of pins in a figure, which lie behind all others.
+# Numbers of points in the lines of pins in a figure, which are behind all others.
 PINNED = """(name) => figures.model(name).renderers
   .filter((one) => one.level === "underlay")
   .map((one) => (one.data_source.data.force ?? []).length)"""
 
-#: The evidence behind it gives way where there is no room, as on a busy machine that says longer times.
+#: The evidence behind it is hidden if there is no room, for example on a busy machine with longer times.
 PERIOD_1 = re.compile(r"period 1(,|$)")
 
 
 def step(page: Page, fields: str) -> None:
-    """Wait until the address has followed, as a step of the history."""
+    """Wait until the address has followed with a step of the history."""
     addressed(page, fields)
     page.wait_for_function("!granchain.steps.returning")
 
@@ -59,16 +59,16 @@ def test_undo_and_redo_go_through_everything_a_visitor_does(visit: Visit) -> Non
         page.keyboard.press("Control+Shift+z")
         step(page, holds)
     expect(redo).to_be_enabled()
-    type_into(page, "f", "700")  # another way: what was ahead is gone
+    type_into(page, "f", "700")  # a new change: the steps ahead are gone
     step(page, "f=700")
     expect(redo).to_be_disabled()
-    field(page, "f").fill("12")  # while one types, undo belongs to the field
+    field(page, "f").fill("12")  # during typing, undo applies to the field
     field(page, "f").press("Control+z")
     step(page, "f=700")
 
 
 def test_a_step_back_brings_the_motion_and_not_only_the_knobs(visit: Visit) -> None:
-    """At 880 Hz the chain keeps the motion it comes with; the address has the state in which that began."""
+    """At 880 Hz, the chain keeps the motion with which it arrives; the address has that motion's initial state."""
     page = visit("?v=1&scene=sec2&f=860&start=previous")
     settled(page)
     type_into(page, "f", "880")
@@ -144,7 +144,7 @@ def test_pictures_are_taken_along_as_they_are_on_the_screen(visit: Visit, tmp_pa
 
 
 def figures_of_the_open_page_are_exported(page: Page, tmp_path: Path) -> None:
-    """Where a page is open, its figures are what is offered first."""
+    """Check that the figures of an open page are offered first."""
     page.get_by_role("tab", name="stability").click()
     page.get_by_role("button", name="open the page").click()
     expect(page.locator('[data-overlay="stability"] .plane canvas').first).to_be_visible(timeout=COMPILED)

@@ -1,4 +1,4 @@
-"""Every story walked to its end: at each step the screen shows the motion that the story tells."""
+"""Every story, played to its end: at each step, the screen shows the motion that the story describes."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from app.session.stories import IRREGULAR_TOLERANCE, TOLERANCE, UNDRIVEN, Story,
 
 LAPTOP, PHONE = ViewportSize(width=1280, height=800), ViewportSize(width=390, height=844)
 
-# Newtons of the largest output force that is drawn at the wall.
+# The largest output force drawn at the wall [N].
 FORCE = """() => {
   const figure = figures.model("output force");
   const [, letter] = figure.below[0].axis_label.match(/\\((.*)N\\)/), line = figure.renderers.at(-1);
@@ -24,26 +24,26 @@ FORCE = """() => {
 
 
 def shows(page: Page, story: Story, number: int) -> None:
-    """The badge and the pictures are those of the step."""
+    """Check that the badge and the pictures are those of the step."""
     step = story.steps[number - 1]
     badge = page.locator("#foot #regime")
     expect(badge).not_to_contain_text("preview")
     regime = "not driven" if step.expect.regime == UNDRIVEN else step.expect.regime
-    period = re.compile(rf"period {step.expect.period}(,|$)")  # the evidence behind it gives way where there is no room
+    period = re.compile(rf"period {step.expect.period}(,|$)")  # the evidence behind it is hidden if there is no room
     expect(badge).to_contain_text(period if step.expect.period else regime)
     began = "start: a given state" if step.via else "start: from rest"
     expect(page.locator('select[title="where the steady state starts"] option').first).to_have_text(began)
     curve = page.locator("#curvebar")
     words = "there is no resonance curve"
     expect(curve).to_contain_text(words) if regime == "not driven" else expect(curve).not_to_contain_text(words)
-    # The line joins samples, and the top may lie between two: at 96 a period up to 0.7 % higher in these scenes.
+    # The line joins samples, and the peak may be between two: up to 0.7 % higher at 96 per period in these scenes.
     allowed = max(TOLERANCE, 7e-3) if step.expect.period else IRREGULAR_TOLERANCE
     page.wait_for_function(f"([told, allowed]) => Math.abs(({FORCE})() / told - 1) < allowed",
                            arg=[step.expect.output, allowed + 1e-3])
 
 
 def tells(page: Page, story: Story, number: int, revealed: bool) -> None:
-    """The tab has the words of the step, its answer once it was asked for, and the screen shows what they say."""
+    """Check that the tab has the step's text, and its answer once revealed, and that the screen agrees."""
     tab = page.locator("#tabs")
     expect(tab).to_contain_text(f"{number} of {len(story.steps)}")
     expect(tab).to_contain_text(told_words(story, number, "say"))
@@ -61,7 +61,7 @@ def tells(page: Page, story: Story, number: int, revealed: bool) -> None:
 @pytest.mark.long
 @pytest.mark.parametrize("story", stories(overlay_names())[0], ids=lambda story: story.name)
 def test_a_story_shows_what_it_tells(at: Visit, story: Story) -> None:
-    """On a laptop and on a phone: a step that is reached on the one is looked at on the other too, and left there."""
+    """Each step is opened on a laptop or a phone, then viewed on the other, where the next step is opened."""
     page = at()
     now, other = LAPTOP, PHONE
     tab = page.locator("#tabs")
@@ -80,7 +80,7 @@ def test_a_story_shows_what_it_tells(at: Visit, story: Story) -> None:
 
 
 def test_a_story_is_read_whole_on_a_laptop(at: Visit) -> None:
-    """It has more room than other tabs, and what does not fit is announced by a button that goes there."""
+    """It has more room than other tabs; a button announces text that does not fit and scrolls to it."""
     page = at("?v=1&scene=sec2&story=sonic-vacuum.1")
     tab = page.locator("#tabs")
     more, panel = tab.get_by_role("button", name="more"), tab.get_by_role("tabpanel")
@@ -97,7 +97,7 @@ def test_a_story_is_read_whole_on_a_laptop(at: Visit) -> None:
 
 
 def test_a_step_back_is_the_step_it_was(at: Visit) -> None:
-    """The second step comes through another frequency, so going back and forth must not change what it shows."""
+    """The second step is reached through another frequency, so going back and forth must not change its motion."""
     page = at()
     (story,) = (one for one in stories(overlay_names())[0] if one.name == "coexisting")
     tab = page.locator("#tabs")

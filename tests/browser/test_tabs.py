@@ -1,4 +1,4 @@
-"""The tabs: all are within reach at any width, and what somebody looks at is told to the server."""
+"""The tabs: all can be reached at any width, and the server is told which one is visible."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from knobs import Visit, looks
 from playwright.sync_api import Page, expect
 from server import until
 
-#: Most rows of the tabs at a width of the window [px]: one for each group, and on a phone one more.
+#: Largest number of tab rows at a window width [px]: one for each group, and one more on a phone.
 MOST_ROWS = {390: 5, 1280: 4}
 
 
@@ -26,7 +26,7 @@ def test_all_tabs_fit_and_arrows_reach_them(at: Visit, width: int) -> None:
 
 
 def tabs_fit(page: Page, width: int) -> None:
-    """No tab leaves its place, and their rows are not too many."""
+    """Check that no tab leaves its area, and that there are not too many rows."""
     edge = page.locator("#tabs").bounding_box()
     assert edge is not None
     rows = set()
@@ -38,7 +38,7 @@ def tabs_fit(page: Page, width: int) -> None:
 
 
 def test_a_name_of_no_page_opens_none(at: Visit) -> None:
-    """The tab "map" has no overlay: what opened it showed an empty one."""
+    """The tab "map" has no overlay; opening one by that name used to show an empty overlay."""
     page = at("?v=1&scene=sec2&page=probe")
     page.wait_for_function("granchain.overlay === 'probe'")
     page.evaluate("granchain.openPage('map')")
@@ -47,7 +47,7 @@ def test_a_name_of_no_page_opens_none(at: Visit) -> None:
 
 
 def test_what_a_hidden_window_stops(visit: Visit) -> None:
-    """An analysis rests; a map goes on, and the curve does as long as neither the map nor a page has its place."""
+    """An analysis pauses; a map continues, and so does the curve unless the map or a page covers it."""
     page = visit()
     hide = """(hidden) => {
       Object.defineProperty(document, "hidden", { configurable: true, get: () => hidden });
@@ -58,7 +58,7 @@ def test_what_a_hidden_window_stops(visit: Visit) -> None:
     page.evaluate(hide, False)
     until(page, lambda: looks(page, "stability") == ["true", "false", "true"])
     page.get_by_role("tab", name="map").click()
-    # the page says so when it has laid itself out again
+    # the page reports this when it has been laid out again
     until(page, lambda: (looks(page, "map"), looks(page, "curve")) == (["true"], ["false"]))
     page.evaluate(hide, True)
     page.evaluate(hide, False)

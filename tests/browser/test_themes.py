@@ -1,4 +1,4 @@
-"""The themes: from a link, from the system, by the button."""
+"""The themes: chosen by a link, the system or the button."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import pytest
 from knobs import Visit
 from playwright.sync_api import expect
 
-# Whether a mark of a picture that the server draws has this colour.
+# Whether a mark of a server-drawn picture has this colour.
 INK = """(ink) => figures.models().some(({ line_color }) => (line_color?.value ?? line_color) === ink)"""
 
 
@@ -14,8 +14,8 @@ INK = """(ink) => figures.models().some(({ line_color }) => (line_color?.value ?
 def test_a_link_says_how_the_page_looks(visit: Visit, theme: str, ink: str) -> None:
     page = visit(f"?look={theme}")
     page.wait_for_function(f"document.documentElement.dataset.theme === '{theme}'")
-    assert page.evaluate("localStorage.getItem('granchain-look')") is None  # another page looks as it did
-    # the pictures too, which the server draws
+    assert page.evaluate("localStorage.getItem('granchain-look')") is None  # other pages keep their theme
+    # the server-drawn pictures, too
     page.wait_for_function(INK, arg=ink)
     page.get_by_role("button", name="Theme: ").click()
     page.get_by_role("button", name="The run continues").click()

@@ -1,4 +1,4 @@
-"""Time on the page: the chain moves, stops, is dragged through its period; a live run goes on and is stepped."""
+"""Time on the page: the chain moves, stops and is dragged through its period; a live run continues and is stepped."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from server import at_rest
 
 from app.parts.figures.figure_style import BOTTOM, GAP, TOP
 
-#: A visitor who has not asked for less motion.
+#: A visitor who has not asked for reduced motion.
 MOVING = {"reduced_motion": "no-preference"}
 
 
-# A busy machine may paint once more what it had begun; a chain that plays changes in every 300 ms.
+# A busy machine may paint once more after a stop; a playing chain changes within every 300 ms.
 STANDS_STILL = """async () => {
   const before = pixels("chain");
   await new Promise((done) => setTimeout(done, 300));
@@ -38,7 +38,7 @@ def test_the_chain_moves_is_paused_and_moved_by_a_dragged_cursor(visit: Visit) -
     page.wait_for_function(f"pixels('chain') !== {still}")
 
 
-# Counts the animation frames that the page asks for.
+# Counts the animation frames that the page requests.
 FRAMES_ASKED = """
 const ask = window.requestAnimationFrame;
 window.asked = 0;
@@ -50,7 +50,7 @@ def test_for_visitors_who_want_less_motion_the_chain_waits(visit: Visit) -> None
     page = visit(reduced_motion="reduce", script=FRAMES_ASKED)
     settled(page)
     page.wait_for_function(STANDS_STILL)
-    at_rest(page, "asked")  # a page that stands still asks for no animation frames
+    at_rest(page, "asked")  # an idle page requests no animation frames
     play = play_button(page)
     expect(play).to_contain_text("play")
     page.get_by_role("button", name="The run continues").click()
@@ -68,7 +68,7 @@ def test_a_bead_glows_as_its_column_and_one_at_rest_is_steel(visit: Visit) -> No
     play_button(page).click()
     box = page.locator("#map").bounding_box()
     assert box is not None
-    # half a millisecond into the picture the pulse is in the middle of the chain
+    # half a millisecond into the picture, the pulse is in the middle of the chain
     page.mouse.click(box["x"] + box["width"] / 2, box["y"] + TOP + (box["height"] - TOP - BOTTOM) * 0.095)
     page.evaluate("shown()")
     beads, columns = page.evaluate(COLOURS, GAP)
@@ -79,8 +79,8 @@ def test_a_bead_glows_as_its_column_and_one_at_rest_is_steel(visit: Visit) -> No
     assert max(beads[cold]) - min(beads[cold]) < 40
 
 
-# The colour in the lower half (0.3 of a pitch below the middle) of every bead and of its column of the map, at the
-# time of the cursor.
+# The colour of every bead (0.3 of a pitch below its middle) and of its column in the energy map, at the time of the
+# cursor.
 COLOURS = """(gap) => {
   const pixel = (id, x, y) => {
     const canvas = canvasIn(id), box = canvas.getBoundingClientRect();
@@ -106,7 +106,7 @@ def test_live_frames_advance_stop_when_paused_and_step_by_one_period(visit: Visi
     page.get_by_role("button", name="The run continues").click()
     page.wait_for_function("painted.filter((event) => event.live).length > 10")
     count = page.evaluate("painted.length")
-    page.wait_for_function(f"painted.length > {count} + 16")  # how many a second: tests/benchmarks/browser_latency.py
+    page.wait_for_function(f"painted.length > {count} + 16")  # for the frame rate, see tests/benchmarks/browser_latency.py
     expect(page.locator("#foot #regime")).to_contain_text("live")
     play_button(page).click()
     count = at_rest(page, "painted.length")
@@ -125,10 +125,10 @@ def test_a_line_with_values_goes_through_all_pictures_and_a_tape_measures_speed(
     def at(bead: float, share: float) -> tuple[float, float]:
         return area[0] + (bead - 0.5) / 11 * area[2], area[1] + share * area[3]
 
-    page.mouse.move(*at(4, 0.25))  # after one of four periods the driver is where it began
+    page.mouse.move(*at(4, 0.25))  # after one of four periods, the driver is back at its start
     cross = page.locator("#cross")
     expect(cross).to_contain_text("bead 4: ")
-    # 0.25 of 4 periods of 1/340 s, to a row of the picture or two
+    # 0.25 of 4 periods of 1/340 s, to within two rows of the picture
     words = cross.inner_text()
     shown = float(words.split(" ms")[0].split()[-1])
     assert abs(shown - 1e3 / 340) < 0.07
@@ -148,7 +148,7 @@ def test_a_line_with_values_goes_through_all_pictures_and_a_tape_measures_speed(
 
 
 def test_the_force_at_the_wall_can_be_heard(visit: Visit) -> None:
-    """What is given to the loudspeaker has the period of the drive, and an anti-resonance is quieter."""
+    """The audio signal has the drive period, and an anti-resonance is quieter."""
     page = visit("?v=1&scene=sec2&f=340", script="""
       const start = AudioBufferSourceNode.prototype.start;
       AudioBufferSourceNode.prototype.start = function (...given) { window.heard = this.buffer; return start.apply(this, given); };""")

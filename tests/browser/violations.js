@@ -1,12 +1,12 @@
-// What axe-core finds within an element in the light theme, and which words have too little contrast in the others. Only
-// colours and sizes depend on the theme, and axe takes as long for one rule in another theme as for all rules in the
-// first. So it is asked about another theme only where its colours are not simply those of a word and of the nearest
-// background behind it; for all other words these are read in every theme, and in light they must be what axe has
-// measured.
+// Reports what axe-core finds within an element in the light theme, and which words have too little contrast in the
+// other themes. Only colours and sizes depend on the theme, and axe takes as long for one rule in another theme as for
+// all rules in the first. For words whose measured contrast in light is simply that between their colour and the
+// nearest background behind them, these two colours are read in every theme. Only for the other words is axe run again
+// in another theme.
 (() => {
   const numbers = (colour) => colour.match(/[0-9.]+/g).map(Number);
 
-  // The colour of the words of an element and that of the background behind them, of which none is transparent.
+  // The colours of an element's text and of the nearest opaque background behind it.
   const colours = (element) => {
     const { color } = getComputedStyle(element);
     let opacity = 1;
@@ -39,7 +39,7 @@
       .map(({ element, html, any: [{ data }] }) => ({ element, html, data }))
       .filter(({ element, data }) => data.fgColor && element.isConnected);
 
-  // Whether words are too faint in the theme as it is, in a sentence.
+  // A sentence for words that are too faint in the current theme.
   const faint = ({ element, html, data }) => {
     const [words, behind] = colours(element);
     const [low, high] = [light(words), light(behind)].sort((a, b) => a - b);
@@ -55,7 +55,7 @@
       resultTypes: ["violations", "passes"],
       selectors: false,
       elementRef: true,
-      preload: !within, // only two rules read the style sheets anew, both of the page as a whole
+      preload: !within, // only two rules, both about the whole page, load the style sheets again
     });
     const found = { [chosen]: told(report) };
     const texts = measured(report);

@@ -114,7 +114,7 @@ def test_a_finished_result_is_looked_at_before_its_blocks(finished: tuple[str, P
     monkeypatch.setattr(import_module("app.cli.branch"), "begin_branch", lambda *_, **__: computed.append(1))
     monkeypatch.setattr(import_module("app.cli.map"), "iter_parameter_map", lambda *_: computed.append(1))
     assert main([*SHORT[name], "--out", str(out)]) == 2  # not without being asked to
-    assert "go on with --resume" in capsys.readouterr().err
+    assert "continue with --resume" in capsys.readouterr().err
     assert main([*SHORT[name], "--out", str(out), "--resume", "--json"]) == 0
     told, err = capsys.readouterr()
     assert json.loads(told) and computed == [] and not folder_of(out).exists()

@@ -1,4 +1,4 @@
-"""Drafts of the resonance curve: a draft that comes late is not drawn into a figure that shows something else."""
+"""Drafts of the resonance curve: a late draft is not drawn into a figure that now shows something else."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from tests.waiting import until
 
 
 class Host(FakeHost):
-    """A host that keeps actions with a delay apart from those of the next tick."""
+    """A host that keeps delayed actions separate from those of the next tick."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -37,20 +37,20 @@ class Host(FakeHost):
         self.later.append(lambda: action(*args))
 
     def rest_knobs(self) -> None:
-        """Let the delay of every action pass."""
+        """Run every delayed action, as if its delay had passed."""
         later, self.later = self.later, []
         for action in later:
             action()
 
 
 def points(chain: Scene, force: float) -> list[CurvePoint]:
-    """Three points of a curve, all of this force."""
+    """Return three points of a curve, all with this force."""
     regime = Regime("periodic", 1, None, None, 9)
     return [CurvePoint(f, force, force, 1.0, regime, ForceErrors(), rest(chain)) for f in (40.0, 60.0, 80.0)]
 
 
 class Page:
-    """A resonance curve and its controller; `drafted` are the drafts that are not delivered yet."""
+    """A resonance curve and its controller; `drafted` has the drafts that have not been delivered."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.drafted: list[Callable[[TurnFlag], Iterator[object]]] = []
@@ -66,20 +66,20 @@ class Page:
         self.host.rest_knobs()
 
     def deliver(self) -> None:
-        """Draw the drafts, as if their computation had ended only now."""
+        """Draw the drafts, as if their computation had just ended."""
         for work in self.drafted:
             for drafted in work(TurnFlag(CpuTime())):
                 self.curves._drafts._draw(drafted)  # type: ignore[arg-type]
 
     @property
     def forces(self) -> set[float]:
-        """The forces of the points that are drawn: 1 N of a curve, 2 N of a draft."""
+        """Return the forces of the points drawn: 1 N for a curve, 2 N for a draft."""
         return {point.max_output_force for point in self.figure.points("rest")}
 
 
 @pytest.fixture
 def page(monkeypatch: pytest.MonkeyPatch) -> Page:
-    """A page whose knob D was moved; a draft is under way."""
+    """A page whose knob D was moved and whose draft is being computed."""
     made = Page(monkeypatch)
     made.curves.knob_moved(made.chain.evolve(D=50.0))
     assert len(made.drafted) == 1
@@ -125,7 +125,7 @@ def test_no_draft_is_drawn_once_the_curve_is_begun(page: Page) -> None:
 
 
 def test_a_curve_that_a_draft_has_replaced_is_computed_again_for_the_same_knobs(page: Page) -> None:
-    """A knob is moved and comes back before it has rested: the draft must not stay as the complete curve."""
+    """A knob is moved and returned before it has come to rest: the draft must not remain as the complete curve."""
     page.curves.knob_moved(page.chain)
     page.host.rest_knobs()
     page.curves._draw([Progress("rest", points(page.chain, 1.0), 1.0, True, True)])

@@ -1,4 +1,4 @@
-"""A curve that grows is drawn now and then, not with each of its points."""
+"""A growing curve is drawn at intervals, not with each new point."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from tests.host import FakeHost
 
 
 class Host(FakeHost):
-    """Keeps what is to be called later."""
+    """A host that keeps delayed calls."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -28,12 +28,12 @@ class Host(FakeHost):
         self.later: list[tuple[float, Callable[[], None]]] = []
 
     def call_later(self, seconds: float, action: Callable[..., None], *args: object) -> None:
-        """The test lets the time pass."""
+        """Keep the action until the test lets the time pass."""
         self.later.append((seconds, lambda: action(*args)))
 
 
 def point(f: float) -> Progress:
-    """One more point of a curve from rest."""
+    """Return one more point of a curve from rest."""
     found = CurvePoint(f, 1.0, 1.0, 1.0, Regime("periodic", 1, None, None, 9), ForceErrors(), rest(scene("sec2")))
     return Progress("rest", [found], 0.5)
 
@@ -56,7 +56,7 @@ def test_points_that_come_soon_after_each_other_are_drawn_together(monkeypatch: 
 
 def test_a_stopped_curve_is_not_under_way_again_when_its_last_points_would_be_drawn(
         monkeypatch: pytest.MonkeyPatch) -> None:
-    """A page that covers the curve stops it; a map that waits for the curve to end would wait for ever."""
+    """A page that covers the curve stops it. Otherwise, a map that waits for the curve to end would wait forever."""
     now = [100.0]
     monkeypatch.setattr("app.curve.reports.time.monotonic", lambda: now[0])
     host = Host()

@@ -1,4 +1,4 @@
-"""The names of the curve's peaks and valleys: from the motion there, and only where it has one."""
+"""The names of the curve's peaks and valleys follow from the motion there, if that has a name."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def curve() -> list[CurvePoint]:
 
 @pytest.mark.long
 def test_the_peaks_of_section_2_and_what_lies_between(curve: list[CurvePoint]) -> None:
-    """The paper has 1:1 to 1:5; the 1:5 peak is narrower than this grid's step, so what is asked for is the others."""
+    """The paper has 1:1 to 1:5. The 1:5 peak is narrower than this grid's step, so only the others are expected."""
     shown: list[list[dict]] = []
     host = FakeHost()
     names = PeakNames(host, shown.append)
@@ -65,8 +65,8 @@ def test_a_valley_without_a_push_in_every_period_has_no_name(curve: list[CurvePo
 
 
 def test_what_one_visitor_has_named_is_not_computed_for_the_next(curve: list[CurvePoint], monkeypatch: pytest.MonkeyPatch) -> None:
-    """A class looks at one curve: its extrema are settled once."""
-    scene_of_its_own = SEC2.evolve(D=SEC2.D * 1.0001)  # nobody has asked for its names before
+    """If a class looks at one curve, its extrema are settled once."""
+    scene_of_its_own = SEC2.evolve(D=SEC2.D * 1.0001)  # whose names have not been requested before
     settled_at: list[float] = []
     monkeypatch.setattr(peak_names, "extremum_name", lambda kind, point, *_: settled_at.append(point.frequency))
     for _ in range(2):

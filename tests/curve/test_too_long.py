@@ -1,4 +1,4 @@
-"""A chain whose curve would take too long has none: the curve of the chain before is removed, and the bar says why."""
+"""A chain whose curve would take too long has none: the previous chain's curve is removed, and the bar says why."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Host(FakeHost):
 
 
 def complete(figure: CurveFigure, chain: Scene) -> None:
-    """Draw a whole curve of a chain, of three points."""
+    """Draw a chain's complete curve of three points."""
     regime = Regime("periodic", 1, None, None, 9)
     figure.add("rest", [CurvePoint(f, 1.0, 1.0, 1.0, regime, ForceErrors(), rest(chain)) for f in (40.0, 60.0, 80.0)], True)
     figure.finished("rest")
@@ -38,5 +38,5 @@ def test_a_curve_does_not_stay_beside_the_picture_of_a_chain_that_has_none() -> 
     curves.knob_moved(after)
     host.callbacks.pop()()  # the knobs rest
     assert figure.points("rest") == []
-    assert placed == [False]  # the status line no longer names a place on it
+    assert placed == [False]  # the status line no longer refers to a place on it
     assert bar.state["too_long"] and bar.state["driven"]

@@ -1,4 +1,4 @@
-"""A curve whose kernels cannot be compiled says so once, and does not wait for them."""
+"""A curve whose kernels cannot be compiled reports this once, and does not wait for them."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tests.host import FakeHost
 
 
 class Host(FakeHost):
-    """With a session."""
+    """A host with a session."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -25,7 +25,7 @@ class Host(FakeHost):
 
 @pytest.fixture
 def tries(monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """What is tried to compile; all but the kernels of the curve are there, and those cannot be compiled."""
+    """Record attempts to compile: all kernels but the curve's are present, and those cannot be compiled."""
     found: list[str] = []
 
     def fails(_: object, piece: str) -> None:
@@ -55,7 +55,7 @@ def test_it_says_so_once_and_is_not_under_way(tries: list[str]) -> None:
 
 
 def test_it_is_begun_once_another_attempt_has_succeeded(tries: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
-    """That of the next picture, for instance."""
+    """For example, the next picture's attempt."""
     host = Host()
     curves = CurveController(host, CurveFigure(lambda _: None), CurveBar(lambda _: None), lambda: None)  # type: ignore[arg-type]
     curves.restart_when_quiet(host.session.scene)

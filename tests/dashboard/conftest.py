@@ -1,4 +1,4 @@
-"""Dashboards that are closed when their test is over, whatever it found."""
+"""Dashboards that are closed after their test, whether or not it passes."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from headless_dashboard import Dashboard
 
 @pytest.fixture
 def dashboard() -> Iterator[Dashboard]:
-    """A dashboard of this test's own."""
+    """Yield a dashboard for this test alone."""
     one = Dashboard()
     yield one
     one.close()

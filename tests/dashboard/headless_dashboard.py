@@ -1,4 +1,4 @@
-"""A dashboard without a browser, for the tests of this folder; the fixture `dashboard` of conftest.py closes it."""
+"""A dashboard without a browser for the tests in this folder; the fixture `dashboard` in conftest.py closes it."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from app.session.session import Session
 
 
 class WaitingCalls(Calls):
-    """Calls of the next turn of an event loop, which wait until the test says so."""
+    """Calls for the next iteration of an event loop, held until the test runs them."""
 
     def __init__(self, document: Document, failed: Callable[[Exception], None]) -> None:
         super().__init__(document, failed)
         self.pending = Pending()
 
     def next_tick(self, action: Callable[..., None], *arguments: object) -> None:
-        """From any thread."""
+        """Hold the action; may be called from any thread."""
         self.pending.callbacks.append(partial(self.call_and_report, action, *arguments))
 
 
 class Dashboard(Controller):
-    """A dashboard whose callbacks are called when the test says so, and whose messages to the browser are kept."""
+    """A dashboard whose callbacks run when the test says so, and whose messages to the browser are recorded."""
 
     _calls: WaitingCalls
 
@@ -38,9 +38,9 @@ class Dashboard(Controller):
 
     @property
     def callbacks(self) -> list[Callable[[], None]]:
-        """What waits to be called."""
+        """The callbacks waiting to be run."""
         return self._calls.pending.callbacks
 
     def run_callbacks_until(self, until: Callable[[], bool], seconds: float = 20.0) -> None:
-        """Call what waits until something holds."""
+        """Run waiting callbacks until a condition is true."""
         self._calls.pending.run_callbacks_until(until, seconds)

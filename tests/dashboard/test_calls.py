@@ -1,4 +1,4 @@
-"""Errors of actions and parts, and a visitor who leaves."""
+"""Errors in actions and parts, and a visitor who leaves."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from app.serve.monitoring.metrics import METRICS
 
 
 def told_fault(dashboard: Dashboard, caplog: pytest.LogCaptureFixture) -> str:
-    """The id of the fault that the visitor is told; the log has a line with it."""
+    """Return the id of the fault that is shown to the visitor; the log has a line with it."""
     found = re.search(r"please report it[.] [(]fault ([0-9a-f]{12})[)]$", dashboard.session.sentence)
     assert found is not None, dashboard.session.sentence
     assert [record.__dict__["fault"] for record in caplog.records if record.levelno == logging.ERROR] == [found[1]]
@@ -33,7 +33,7 @@ def test_an_error_of_an_action_has_an_id_in_its_sentence_and_in_the_log(dashboar
 
 
 class FailingPart:
-    """A part of the page that fails before it has found an action."""
+    """A part of the page that fails before it has identified an action."""
 
     def hear(self, message: object) -> None:
         """Fail."""

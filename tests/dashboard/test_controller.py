@@ -1,4 +1,4 @@
-"""What a browser may send and what is said to it, without a browser."""
+"""Messages that a browser may send and the answers to them, without a browser."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def test_a_click_on_the_curve_without_a_frequency_gets_the_knobs_sentence(dashbo
     ("frequency_Hz,force_N\n40,five\n", "Line 2", ""), ("4" * (LARGEST_UPLOAD + 1), "larger than 2 MB", "")])
 def test_a_measurement_is_read_in_the_background(dashboard: Dashboard, text: str, sentence: str, understood: str,
                                                  monkeypatch: pytest.MonkeyPatch) -> None:
-    """Reading 2 MB with the document locked would hold up every visitor."""
+    """Reading 2 MB with the document locked would delay every visitor."""
     threads = []
     read = data_page.read_data
     monkeypatch.setattr(data_page, "read_data",
@@ -57,7 +57,7 @@ def test_a_measurement_is_read_in_the_background(dashboard: Dashboard, text: str
 
 def test_the_effects_panel_is_told_the_slot_of_each_effect_and_the_slots_of_none(dashboard: Dashboard,
                                                                                 monkeypatch: pytest.MonkeyPatch) -> None:
-    """Its table shows beside each switch the type in the slot; a list of its own would miss a new effect."""
+    """Its table shows the slot's type next to each switch; with a separate list, it would miss a new effect."""
     monkeypatch.setattr(COMPILER, "has", lambda *_: False)
     dashboard.received({"do": "visible", "name": "effects", "value": True})
     panel = dashboard.views.tabs.state["panel"]
@@ -67,7 +67,7 @@ def test_the_effects_panel_is_told_the_slot_of_each_effect_and_the_slots_of_none
 
 
 def test_a_step_to_another_scene_has_the_curves_of_its_address(dashboard: Dashboard) -> None:
-    """Without `curves` an address means those of its scene. A scene from the menu keeps the chosen starts."""
+    """Without `curves`, an address means its scene's own. A scene from the menu keeps the chosen starts."""
     dashboard.received({"do": "go", "query": "v=1&scene=sec2&curves=rest.up"})
     assert dashboard.session.curves == "rest.up"
     dashboard.received({"do": "scene", "name": "rig"})
@@ -110,14 +110,14 @@ def test_a_reconnected_page_has_its_pause_back_and_the_rest_from_its_link(dashbo
     (f"&N={MOST_BEADS + 1}&drive=rest&strike=1", ""), ("&mode=live", ", but the live run has started again")])
 def test_a_reconnected_page_says_what_its_link_does_not_bring_back(dashboard: Dashboard, query: str,
                                                                    different: str) -> None:
-    """A settled motion begins where it began before, unless its chain is too long for a link."""
+    """A settled motion starts from the same state as before, unless its chain is too long for a link."""
     dashboard.received({"do": "go", "query": f"v=1&scene=sec2{query}"})
     dashboard.received({"do": "reconnected", "playing": False})
     assert dashboard.session.sentence == f"The connection was lost. Your settings are restored{different}."
 
 
 def test_an_action_of_two_pages_is_refused_with_both_names() -> None:
-    """One of them would never be called."""
+    """Otherwise, one of them would never be called."""
     with pytest.raises(TypeError, match="page `map` and page `branches` both have an action 'stop'"):
         all_actions({"page `map`": {"stop": print, "go": print}, "page `branches`": {"stop": print}})
     assert set(all_actions({"one": {"a": print}, "other": {"b": print}})) == {"a", "b"}
@@ -125,7 +125,7 @@ def test_an_action_of_two_pages_is_refused_with_both_names() -> None:
 
 def test_a_step_of_the_history_ends_in_the_browser_even_if_a_page_fails(dashboard: Dashboard,
                                                                         monkeypatch: pytest.MonkeyPatch) -> None:
-    """Until `address-applied` comes no change of the visitor becomes a step of the history."""
+    """Until `address-applied` arrives, no change by the visitor becomes a step of the history."""
 
     def fail() -> None:
         raise RuntimeError("a page's own fault")

@@ -1,4 +1,4 @@
-"""Figures and pages of the dashboard follow the theme that is chosen, without a browser."""
+"""Figures and pages of the dashboard follow the chosen theme, without a browser."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def test_the_figures_of_the_page_and_of_its_pages_follow_a_theme(dashboard: Dash
 
 
 def test_what_is_added_to_a_figure_of_the_page_has_its_theme_and_follows_the_next(dashboard: Dashboard) -> None:
-    """Names of pins and measured data are made when they are first needed."""
+    """Names of pins and measured data are created when they are first needed."""
     views = dashboard.views
     views.apply_theme(THEMES["dark"])
     views.curve._pinned.places = [("A", 400.0, 1.0)]

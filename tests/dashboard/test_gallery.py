@@ -1,4 +1,4 @@
-"""The gallery: every scene has a small picture, computed from the scene, a sentence and a question of its own."""
+"""The gallery: every scene has a small picture computed from it, a sentence and a question of its own."""
 
 from __future__ import annotations
 
@@ -40,8 +40,7 @@ def test_a_sentence_ends_at_a_full_stop_and_not_within_a_number() -> None:
 
 @pytest.mark.parametrize("name", ["fig3a", "diode"])
 def test_a_picture_is_that_of_its_scene(name: str) -> None:
-    """Computed afresh: the same chain, and the same force at the wall to a hundredth of the width of its line's place.
-    """
+    """Computed again, it has the same chain, and the same force at the wall to 1/100 of the line's width."""
     kept, now = (FOLDER / f"{name}.svg").read_text(encoding="utf-8"), drawn(scene(name))
     assert re.findall("<circle[^>]*>", kept) == re.findall("<circle[^>]*>", now)
     points = [np.array([[float(one) for one in point.split(",")] for point in re.findall('points="([^"]+)"', text)[0].split()])

@@ -1,4 +1,4 @@
-"""A live run: where it is made, and the axis of time of its pictures."""
+"""Live runs: the thread that creates them, and the time axis of their pictures."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def test_the_time_of_a_live_picture(name: str, title: str, earliest: float) -> N
 
 
 def test_a_live_run_is_made_in_a_thread(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
-    """To make a chain calls kernels, which may have to be compiled: on the event loop that would hold up everybody."""
+    """Creating a chain calls kernels, whose compilation on the event loop would delay everybody."""
     threads: list[str] = []
 
     def noting(*words: Any, _is: Any, **named: Any) -> Any:
@@ -54,7 +54,7 @@ def test_a_live_run_is_made_in_a_thread(dashboard: Dashboard, monkeypatch: pytes
 
 
 def test_two_pictures_are_in_transit_from_the_first_step_on(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
-    """As many as before a knob was moved are there afterwards: the next begins when one has been painted."""
+    """After a knob is moved, there are as many as before: the next one starts when one has been painted."""
     sent: list[int] = []
     monkeypatch.setattr(dashboard.views.chain, "send", lambda **message: sent.append(message["number"]))
 

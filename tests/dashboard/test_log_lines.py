@@ -1,4 +1,4 @@
-"""Lines of the log about a session: which session it is, its link, and errors of scripts in its browser."""
+"""Log lines about a session: its id, its link, and script errors in its browser."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from granchain_core import ComputationError
 
 
 def lines(caplog: pytest.LogCaptureFixture) -> list[dict[str, str]]:
-    """The lines as the server writes them."""
+    """Return the lines as the server writes them."""
     written = [JsonFormatter().format(record) for record in caplog.records if record.name == "granchain"]
     assert all("\n" not in line for line in written)
     return [json.loads(line) for line in written]

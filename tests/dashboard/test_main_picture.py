@@ -1,4 +1,4 @@
-"""The picture of the main page, without a browser: what is computed, what is shown of it, and who hears of it."""
+"""The picture of the main page, without a browser: what is computed, what is shown, and which pages are notified."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def test_another_scale_leaves_a_paused_chain_where_it_is(dashboard: Dashboard, m
 
 
 def test_choosing_the_scale_takes_the_scenes_own_again(dashboard: Dashboard) -> None:
-    """Whatever has widened it, and although it was chosen before."""
+    """This is true whatever has widened the scale, and even if it was chosen before."""
     scales, chain = dashboard.views.scales, dashboard.session.scene
     frames = settled_frames(settle(chain, samples=8).run)
     first = scales.of(frames, chain)
@@ -87,7 +87,7 @@ def test_the_header_says_where_the_motion_on_the_screen_began(dashboard: Dashboa
 
 
 def test_the_pages_hear_of_a_picture_when_it_was_sent(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
-    """What a page draws of it takes milliseconds, which would come before every picture."""
+    """A page's drawing takes milliseconds, by which every picture would otherwise be delayed."""
     told: list[str] = []
     monkeypatch.setattr(dashboard.views.chain, "send", lambda **message: told.append(message["type"]))
     monkeypatch.setattr(dashboard.pages[0], "picture_ready", lambda picture: told.append("page"))
@@ -101,7 +101,7 @@ def test_the_pages_hear_of_a_picture_when_it_was_sent(dashboard: Dashboard, monk
 
 def test_the_pages_do_not_hear_of_a_picture_of_knobs_that_have_moved_on(dashboard: Dashboard,
                                                                         monkeypatch: pytest.MonkeyPatch) -> None:
-    """They know already that it is out of date, and would take it for the new one."""
+    """They already know that it is out of date, and would take it for the new picture."""
     told: list[Any] = []
     page = dashboard.pages[0]
     monkeypatch.setattr(dashboard.pictures, "compute", lambda start=None: None)
@@ -116,11 +116,11 @@ def test_the_pages_do_not_hear_of_a_picture_of_knobs_that_have_moved_on(dashboar
     for found in (preview, final):
         dashboard.pictures._accept(found)
     dashboard.run_callbacks_until(lambda: not dashboard.callbacks)
-    assert told == ["requested", final], "a preview that is overtaken is left out"
+    assert told == ["requested", final], "an overtaken preview is left out"
 
 
 def test_a_picture_is_computed_as_it_was_asked_for(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Whatever changes on the page between the request and the thread that takes it."""
+    """Changes on the page between the request and its execution in a thread have no effect."""
     asked, changed = threading.Event(), threading.Event()
     monkeypatch.setattr(picture_work, "check_first_picture", lambda _: (asked.set(), changed.wait(60)))
     session = dashboard.session
@@ -139,18 +139,18 @@ def test_a_picture_is_computed_as_it_was_asked_for(dashboard: Dashboard, monkeyp
 
 def test_nothing_is_settled_for_a_visitor_who_left_while_kernels_were_compiled(dashboard: Dashboard,
                                                                               monkeypatch: pytest.MonkeyPatch) -> None:
-    """Settling would compile what the other process has not finished, inside the server."""
+    """Settling would compile the other process's unfinished kernels inside the server."""
     waiting, settled = threading.Event(), []
 
     class Compiling(Compiler):
-        """A compiler that never ends."""
+        """A compiler that never finishes."""
 
         def has(self, *_: object) -> bool:
-            """Nothing is compiled."""
+            """Return that nothing is compiled."""
             return False
 
         def ask(self, *_: object) -> Future[None]:
-            """Never done."""
+            """Return a future that is never done."""
             waiting.set()
             return Future()
 
@@ -164,7 +164,7 @@ def test_nothing_is_settled_for_a_visitor_who_left_while_kernels_were_compiled(d
 
 
 def test_a_busy_server_says_so_with_the_next_picture(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The message disappears with the first picture that comes in time."""
+    """The message disappears with the first picture that arrives in time."""
     clock = [5.0]
     monkeypatch.setattr(picture_stages, "time", SimpleNamespace(monotonic=lambda: clock[0]))
     try:
@@ -193,7 +193,7 @@ def test_a_picture_that_is_overtaken_before_it_is_sent_is_not_counted(dashboard:
 
 
 def test_only_the_picture_of_a_request_answers_it(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A picture of the knobs before may arrive in between; it is shown, but the visitor still waits for the other."""
+    """A picture of the previous knobs may arrive first. It is shown, but the visitor is still waiting for the other."""
     clock, counted, begun = [0.0], [], threading.Event()
     go_on = {frequency: threading.Event() for frequency in (2000.0, 2100.0)}
     monkeypatch.setattr(picture_stages, "time", SimpleNamespace(monotonic=lambda: clock[0]))

@@ -1,4 +1,4 @@
-"""The data tab without a browser: what is read, asked, answered, compared and refused."""
+"""The data tab, without a browser: files, questions, answers, comparisons and refusals."""
 
 from __future__ import annotations
 
@@ -36,17 +36,17 @@ FILE = b"frequency_Hz,force_N\n40,5.5\n60,12.1\n"
 
 
 def data_page(dashboard: Dashboard) -> DataPage:
-    """The page of the tab data."""
+    """Return the page of the data tab."""
     return next(page for page in dashboard.pages if isinstance(page, DataPage))
 
 
 def sent(content: bytes) -> dict[str, Any]:
-    """The message with a file."""
+    """Return a message with a file."""
     return {"do": "measurement", "name": "mine.csv", "content": base64.b64encode(content).decode()}
 
 
 def after(dashboard: Dashboard, message: dict[str, Any], name: str) -> Any:
-    """What the tab's state has under `name` once the message is worked off; the sentence where it is refused."""
+    """Return `name` in the tab's state after the message is processed, or the sentence if the message is refused."""
     dashboard.received(message)
     dashboard.run_callbacks_until(lambda: bool(dashboard.session.sentence or dashboard.views.tabs.state.get(name)))
     return dashboard.views.tabs.state.get(name) or dashboard.session.sentence
@@ -62,7 +62,7 @@ def test_every_byte_of_a_file_arrives(dashboard: Dashboard) -> None:
 @pytest.mark.parametrize("sealed", [True, False])
 def test_hdf5_never_parses_an_upload_in_the_server(sealed: bool, dashboard: Dashboard, tmp_path: Path,
                                                    monkeypatch: pytest.MonkeyPatch) -> None:
-    """A seal is no signature: a stranger can seal a file as well."""
+    """A seal is not a signature: a stranger can seal a file as well."""
     path = tmp_path / "data.h5"
     with h5py.File(path, "w", libver=VERSIONS if sealed else None) as file:
         for name, unit in (("frequency", "Hz"), ("force", "N")):
@@ -75,7 +75,7 @@ def test_hdf5_never_parses_an_upload_in_the_server(sealed: bool, dashboard: Dash
 
 
 def many_samples(name: str, count: int, folder: Path) -> bytes:
-    """A series of so many samples in a format of the table; a project of a digitiser holds a curve."""
+    """Return a series of this many samples in a format of the table; a digitiser's project contains a curve."""
     time, force = 1e-6 * np.arange(count), np.ones(count)
     if "HDF5" in name:
         with h5py.File(folder / "long.h5", "w") as file:
@@ -103,7 +103,7 @@ def test_a_measurement_of_too_many_points_is_refused_in_every_format(name: str, 
 
 
 def test_an_hdf5_file_is_called_as_the_visitor_called_it(dashboard: Dashboard, tmp_path: Path) -> None:
-    """The sentences about the file name no folder of the server."""
+    """Messages about the file do not name a folder of the server."""
     with h5py.File(tmp_path / "a.h5", "w") as file:
         file["frequency"] = [40.0]
     sentence = after(dashboard, sent((tmp_path / "a.h5").read_bytes()), "understood")
@@ -146,7 +146,7 @@ def test_a_series_is_not_drawn_as_a_curve(dashboard: Dashboard) -> None:
 
 
 def point(f: float, force: float) -> CurvePoint:
-    """A point of a curve."""
+    """Return a point of a curve."""
     return CurvePoint(f, force, force, force, Regime("periodic", 1, None, None, 9), ForceErrors(), rest(scene("sec2")))
 
 
@@ -193,14 +193,14 @@ def test_the_sample_file_is_read_and_says_what_it_is(dashboard: Dashboard) -> No
 
 
 def show(dashboard: Dashboard) -> None:
-    """A settled picture, as the worker that computes it hands it over."""
+    """Show a settled picture as the worker that computes it does."""
     chain = dashboard.session.scene
     dashboard.session.settled = settle(chain, samples=samples_for(chain))
     show_settled(dashboard.views, 1, dashboard.session.settled)
 
 
 def with_series(dashboard: Dashboard, chain: Scene) -> str:
-    """The tab's sentence on a series of `chain` over the settled picture of 340 Hz."""
+    """Return the tab's sentence about a series of `chain` over the settled picture at 340 Hz."""
     text = virtual_series_csv(chain, 12, Sensors(rate=256.0 * chain.f, noise=0.005)).encode()
     show(dashboard)
     dashboard.received({"do": "measurement", "name": "mine.csv", "content": base64.b64encode(text).decode()})
@@ -209,7 +209,7 @@ def with_series(dashboard: Dashboard, chain: Scene) -> str:
 
 
 def test_a_series_goes_over_the_force_trains_and_moves_with_the_picture(dashboard: Dashboard) -> None:
-    """Of the same scene the differences are the noise; the lines are in front of both trains and go away again."""
+    """For the same scene, the differences are the noise; the lines are drawn over both trains and removed again."""
     sentence = with_series(dashboard, scene("sec2"))
     left = [float(one) for one in re.findall(r"([0-9.e-]+) N for the", sentence)]
     assert len(left) == 2 and all(0.003 < one < 0.02 for one in left)  # the noise is 5 mN; the jumps are smoothed alike
@@ -217,7 +217,7 @@ def test_a_series_goes_over_the_force_trains_and_moves_with_the_picture(dashboar
     lines = [[one for one in plot.renderers if one.level == "overlay"] for plot in (trains.left, trains.right)]
     assert [len(one) for one in lines] == [1, 1]
     assert all(len(one[0].data_source.data["time"]) > 1000 for one in lines)
-    preview = replace(dashboard.session.settled, final=False)  # of knobs that have moved
+    preview = replace(dashboard.session.settled, final=False)  # for knobs that have moved
     data_page(dashboard).picture_ready(preview)
     assert dashboard.views.tabs.state["misfit"] is None
     data_page(dashboard).picture_ready(dashboard.session.settled)
@@ -227,7 +227,7 @@ def test_a_series_goes_over_the_force_trains_and_moves_with_the_picture(dashboar
 
 
 def test_the_model_passes_the_low_pass_of_the_sensors(dashboard: Dashboard) -> None:
-    """A record of sensors of 2 kHz, of the same scene: only with their bandwidth is the difference the noise."""
+    """A record of the same scene by 2 kHz sensors differs only by noise once their bandwidth is taken into account."""
     chain = scene("sec2")
 
     def differences(message: dict[str, Any]) -> list[float]:
@@ -249,11 +249,11 @@ def test_the_model_passes_the_low_pass_of_the_sensors(dashboard: Dashboard) -> N
 
 
 def test_a_measured_displacement_goes_over_the_drive(dashboard: Dashboard) -> None:
-    """Its zero is arbitrary; moved by the forces, it is the drive of the picture."""
+    """Its zero is arbitrary; aligned by the forces, it agrees with the drive of the picture."""
     chain = scene("sec2")
     rows = virtual_series_csv(chain, 12, Sensors(rate=256.0 * chain.f)).splitlines()
     table = np.array([[float(one) for one in row.split(",")] for row in rows[3:]])
-    # the displacement whose velocity is in the second column: v = A0 ω cos(ωt + φ), u = A0 sin(ωt + φ) + offset
+    # integral of the velocity in the second column: v = A0 ω cos(ωt + φ), u = A0 sin(ωt + φ) + offset
     omega = 2.0 * np.pi * chain.f
     phase = np.angle(np.mean((table[:, 1]) * np.exp(-1j * omega * table[:, 0])))
     swing = 3e-6 + chain.A0 * np.sin(omega * table[:, 0] + phase)
@@ -268,7 +268,7 @@ def test_a_measured_displacement_goes_over_the_drive(dashboard: Dashboard) -> No
     factor = chain.A0 / 500.0  # the axis is in nm
     model = np.interp(drawn["time"], np.asarray(trains._source.data["time"]), np.asarray(trains._source.data["drive"]))
     assert line.x_range_name == "drive" and len(drawn["time"]) > 500
-    # the model's samples are joined by straight lines
+    # the model's samples are interpolated linearly
     np.testing.assert_allclose(drawn["force"], model, atol=0.02 * chain.A0 / factor)
 
 
@@ -279,7 +279,7 @@ def test_a_virtual_experiment_is_recorded_of_the_present_scene_and_says_so(dashb
 
 
 def test_a_virtual_experiment_holds_up_nobodys_file(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
-    """It settles a chain, in a queue where each visitor has a share; two threads read and write the files of all."""
+    """It settles a chain in a queue where each visitor has a share; two threads read and write everybody's files."""
     threads: dict[str, str] = {}
 
     def noting(of: str, original: Any, *words: Any, **named: Any) -> Any:
@@ -319,7 +319,7 @@ def test_a_file_replaces_the_virtual_experiment_under_way(dashboard: Dashboard, 
 
 def test_a_file_stays_in_memory_only_while_a_question_about_it_is_open(dashboard: Dashboard) -> None:
     def kept() -> bool:
-        # by its type: a weak proxy of what is gone, anybody's, raises `ReferenceError` when it is asked for its class
+        # by type: any weak proxy of a deleted object raises `ReferenceError` when asked for its class
         found = [one for one in gc.get_objects() if type(one) is DataPage and one._host is dashboard]
         return any(isinstance(value, bytes) and len(value) > 0 for one in found for value in vars(one).values())
 
@@ -331,7 +331,7 @@ def test_a_file_stays_in_memory_only_while_a_question_about_it_is_open(dashboard
 
 
 def test_a_question_about_other_data_is_not_answered(dashboard: Dashboard) -> None:
-    """The bytes of the file asked about would be read under the name of the virtual experiment."""
+    """Otherwise, the bytes of the file in question would be read under the name of the virtual experiment."""
     assert after(dashboard, sent(b"1.100;2,5\n1.200;3,5\n"), "question")
     show(dashboard)
     dashboard.received({"do": "measurement-virtual"})

@@ -17,10 +17,10 @@ def test_every_message_of_a_script_is_understood() -> None:
     sent = {name for path in FILES.values() for match in SENT.findall(path.read_text(encoding="utf-8")) for name in match if name}
     known = {name for messages in messages_of_the_browser().values() for name in messages}
     assert sent <= known
-    assert not known - sent, "nobody sends these, or in a way that this test does not see"
+    assert not known - sent, "these are not sent, or in a way that this test does not see"
 
 
-#: In Python: `send(type="name")`, and the type of a message that a function makes for `send`.
+#: In Python: `send(type="name")`, and the type of a message that a function creates for `send`.
 SENDS = re.compile(r'send\b[(,]\s*type="([\w-]+)"|"type": "([\w-]+)"')
 
 

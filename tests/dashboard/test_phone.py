@@ -1,4 +1,4 @@
-"""A phone, or another low window, is the same for every style sheet and for the scripts."""
+"""Style sheets and scripts agree on what counts as a phone or another low window."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ import pytest
 import app
 from app.scripts import FILES
 
-#: What `PHONE` of app/parts/toolkit/dom.js asks for.
+#: The media query `PHONE` of app/parts/toolkit/dom.js.
 (PHONE,) = re.findall(r'PHONE = matchMedia\("([^"]+)"\)', FILES["dom.js"].read_text(encoding="utf-8"))
 _WIDTH, _HEIGHT = PHONE.split(", ")
 (_WIDEST,) = re.findall(r"\d+", _WIDTH)
-#: Other windows that dashboard.css has rules for: a phone by one of its two sides, one wider than a phone, large ones.
+#: Other windows with rules in dashboard.css: phones by one of their two sides, windows wider than a phone, large ones.
 OTHERS = {_WIDTH, _HEIGHT, f"(min-width: {int(_WIDEST) + 1}px) and {_HEIGHT}", f"(min-width: 600px) and {_HEIGHT}",
           "(max-height: 950px)", "(max-width: 1100px)", "(min-width: 1700px)"}
 

@@ -1,4 +1,4 @@
-"""Where the time of a picture goes, from the request to the screen."""
+"""The stages of a picture's time, from the request to the screen."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from granchain_core import scene
 
 @pytest.fixture
 def clock(monkeypatch: pytest.MonkeyPatch) -> list[float]:
-    """The time that stages read [s]."""
+    """The clock that stages read [s]."""
     now = [100.0]
     monkeypatch.setattr(picture_stages, "time", SimpleNamespace(monotonic=lambda: now[0]))
     return now
@@ -31,7 +31,7 @@ def counted(monkeypatch: pytest.MonkeyPatch) -> list[dict[str, float]]:
 
 
 def after(clock: list[float], stages: PictureStages, **seconds: float) -> None:
-    """Each stage ends after so many seconds."""
+    """End each stage after this many seconds."""
     for stage, duration in seconds.items():
         clock[0] += duration
         stages.end(stage)
@@ -112,7 +112,7 @@ def test_only_the_first_step_of_a_live_run_after_a_moved_knob_has_stages(dashboa
 
 
 def test_a_picture_whose_window_was_hidden_is_not_counted(dashboard: Dashboard, counted: list[dict[str, float]]) -> None:
-    """It is painted when somebody looks again, which says nothing about the server."""
+    """It is painted when the window is shown again, which says nothing about the server."""
     session, pictures = dashboard.session, dashboard.pictures
     session.scene = scene("sec2").evolve(N=2, f=2000.0)
     pictures.compute()

@@ -1,4 +1,4 @@
-"""One scale for all pictures of a scene, or each picture on its own; what the scene's scale rests on."""
+"""One scale for all pictures of a scene or one for each picture, and the basis of a scene's scale."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def test_a_digest_is_of_the_physics_and_of_the_range_of_f() -> None:
 
 
 def test_the_scale_of_a_scene_is_what_its_motion_needs() -> None:
-    """Computed afresh at every frequency; the file keeps three figures."""
+    """It is computed again at every frequency; the file keeps three digits."""
     told = tomllib.loads(FILE.read_text(encoding="utf-8"))["sec2"]
     told.pop(DIGEST)
     assert told == pytest.approx(dict(over_frequencies(scene("sec2")).items()), rel=5e-3)

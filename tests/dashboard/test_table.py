@@ -1,4 +1,4 @@
-"""The table of pages: every name is used once, since messages and links tell pages apart by it."""
+"""The table of pages: every name is used only once, since messages and links identify pages by it."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def test_a_name_that_is_taken_is_refused(row: TabSpec) -> None:
 
 
 def test_a_former_name_leads_to_a_page_and_is_none() -> None:
-    """A page of that name could not be opened by its link."""
+    """A page with that name could not be opened by its link."""
     assert {row.name for row in former_names.TABS} <= set(tab_names())
     assert not {row.former for row in former_names.TABS} & set(tab_names())
 
@@ -33,7 +33,7 @@ def test_every_folder_of_a_page_has_its_row() -> None:
 
 
 def test_every_tab_without_a_page_over_the_pictures_is_drawn_by_the_browser_itself() -> None:
-    """Such a tab has nothing to open, and without a function of its own it would have one sentence at most."""
+    """Such a tab has nothing to open; without its own function, it would have one sentence at most."""
     script = (Path(__file__).parents[2] / "app" / "dashboard" / "tabs.js").read_text(encoding="utf-8")
     listed = script.partition("const TABS = {")[2].partition("};")[0]
     drawn = {name.strip('"') for name in re.findall(r'("[^"]+"|\w+):', listed)}
@@ -41,7 +41,7 @@ def test_every_tab_without_a_page_over_the_pictures_is_drawn_by_the_browser_itse
 
 
 def test_a_link_keeps_room_for_what_the_browser_adds() -> None:
-    """The server leaves out pins so that the rest fits; it does not know the longest tab."""
+    """The server leaves out pins to make the rest fit; it does not know the longest tab."""
     longest = {"tab": max(tab_names(), key=len), "page": max(tab_names(), key=len),
                "look": max(share.VIEW_VALUES["look"], key=len), "embed": "1"}
     assert longest.keys() == set(share.BROWSER_FIELDS)

@@ -1,4 +1,4 @@
-"""One set of colours and widths: the page is styled with what the pictures are drawn with."""
+"""One set of colours and widths styles the page and draws the pictures."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ TEXT_ROLES = ("drive_text", "input_text", "output_text")
 
 
 def properties(name: str) -> dict[str, str]:
-    """Properties that the style sheet gives the root element in a theme."""
+    """Return the properties that the style sheet gives the root element in a theme."""
     found: dict[str, str] = {}
     for selector, body in re.findall(r"(\S+) \{ (.*) \}", style_sheet()):
         if selector in (":root", f":root[data-theme={name}]"):
@@ -47,21 +47,21 @@ def test_the_page_has_the_colours_of_its_pictures(name: str) -> None:
 
 
 def luminance(colour: str) -> float:
-    """The relative luminance of WCAG 2.2."""
+    """Return the relative luminance of WCAG 2.2."""
     parts = [int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)]
     linear = [part / 12.92 if part <= 0.04045 else ((part + 0.055) / 1.055) ** 2.4 for part in parts]
     return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
 
 
 def contrast(one: str, other: str) -> float:
-    """The contrast ratio of WCAG 2.2."""
+    """Return the contrast ratio of WCAG 2.2."""
     dark, light = sorted((luminance(one), luminance(other)))
     return (light + 0.05) / (dark + 0.05)
 
 
 @pytest.mark.parametrize("name", THEMES)
 def test_text_and_lines_have_the_contrast_of_level_aa(name: str) -> None:
-    """axe-core measures text of the page alone; this also holds for text and lines of the figures."""
+    """axe-core only measures text of the page; this test includes text and lines of the figures."""
     theme = THEMES[name]
     texts = [(role, getattr(theme, role), ground) for role in ("ink", "soft", "accent", "warn", *TEXT_ROLES)
              for ground in (theme.paper, theme.card)] + [("warn", theme.warn, theme.warn_paper)]
@@ -84,7 +84,7 @@ def test_no_text_has_the_colour_of_a_line() -> None:
 
 
 def test_sizes_of_a_theme_are_in_its_row_alone() -> None:
-    """A new theme with sizes of its own needs no other file: no style sheet names a theme, or sets a size in pixels."""
+    """A new theme with its own sizes needs no other file: no style sheet names a theme or sets a size in pixels."""
     sheets = "".join(path.read_text(encoding="utf-8") for path in Path(app.__file__).parent.rglob("*.css"))
     assert not [name for name in THEMES if re.search(rf"data-theme\W+{name}\b", sheets)]
     assert re.findall(r"--(?:small-)?text-size:([^;]+);", sheets) == [" var(--phone-text-size)"]
@@ -104,7 +104,7 @@ def test_no_style_uses_a_role_that_no_theme_has(path: Path) -> None:
 
 
 def test_a_theme_is_known_to_links_and_to_the_browser() -> None:
-    """Tooltip, command line and screenshots take the names from these."""
+    """Tooltip, command line and screenshots use their names."""
     assert list(THEMES) == list(VIEW_VALUES["look"][1:]) == json.loads(page_constants())["themes"]
 
 

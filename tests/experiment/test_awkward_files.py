@@ -164,7 +164,7 @@ REFUSED = [
     ("a picture", b"\x89PNG\r\n\x1a\n", None, "digitiser"),
     ("zeros", b"60,1.5\n70,\x002\n", None, "Line 2: the byte 0 does not occur in text"),
     ("half of a UTF-16", "f [Hz],F [N]\n60,1".encode("utf-16")[:-1], None, "damaged further on"),
-    ("other JSON", b'{"a": 1}', None, "no project of WebPlotDigitizer"),
+    ("other JSON", b'{"a": 1}', None, "not a WebPlotDigitizer project"),
     ("broken JSON", b'{"datasetColl": [', None, "looks like JSON but cannot be parsed"),
     ("a polar project", project(("a", [[1, 2]]), kind="PolarAxes"), CURVE, "PolarAxes"),
     ("points without values", project(("a", [[]])), CURVE, "Point 1 of dataset 'a'"),

@@ -50,7 +50,7 @@ def test_a_seal_that_does_not_fit_is_damage(tmp_path: Path) -> None:
     content = bytearray(path.read_bytes())
     content[len(content) // 2] ^= 1
     path.write_bytes(content)
-    with pytest.raises(BadInput, match="its checksum does not fit"):
+    with pytest.raises(BadInput, match="its checksum does not match"):
         read_experiment(path)
 
 

@@ -1,4 +1,4 @@
-"""Pages of the table, without a browser."""
+"""Fixture for pages of the table, without a browser."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ OpenPage = Callable[[str], Trial]
 
 @pytest.fixture
 def page_of(monkeypatch: pytest.MonkeyPatch) -> OpenPage:
-    """The page of this name, which nobody looks at yet; the visitor has a picture, and the map has few cells."""
+    """Return a function that opens a hidden page by name; the visitor has a picture, and the map has few cells."""
     monkeypatch.setattr(map_page, "COLUMNS", 6)
     monkeypatch.setattr(map_page, "ROWS", 4)
 

@@ -1,4 +1,4 @@
-"""A page of the table on a host without a browser; what it wants computed is kept until the test computes it."""
+"""A page of the table on a host without a browser; its work is kept until the test computes it."""
 
 from __future__ import annotations
 
@@ -24,19 +24,19 @@ from granchain_core.fitting.overlay import Overlay
 
 @cache
 def picture(f: float = 2000.0) -> Settled:
-    """A settled picture of a short chain, as it is the final one for its knobs."""
+    """Return a settled picture of a short chain, final for its knobs."""
     return granchain_core.settle(scene("sec2").evolve(N=2, f=f), samples=8)
 
 
 class FakePageHost(FakeHost):
-    """The host of one page: one visitor's session, and what the page asks of the dashboard."""
+    """The host of one page: one visitor's session, and the page's requests to the dashboard."""
 
     overlays = overlay_names()
 
     def __init__(self) -> None:
         super().__init__()
         self.session = Session(scene=picture().run.scene)
-        #: What the page wants shown: the scene, the state in which its motion begins, and mode or curves.
+        #: Requests to show a motion: the scene, its initial state, and mode or curves.
         self.shown: list[tuple[Scene, State | None, str]] = []
         self.addresses = 0
 
@@ -61,7 +61,7 @@ class FakePageHost(FakeHost):
 
 @dataclass(frozen=True)
 class Given:
-    """Work that a task gave to a worker pool."""
+    """Work that a task submitted to a worker pool."""
 
     pool: str
     run: Callable[[Callable[[Job], None], Job], None]
@@ -70,14 +70,14 @@ class Given:
 
     @property
     def task(self) -> Task:
-        """Its task."""
+        """The task that submitted it."""
         task = self.run.__self__  # type: ignore[attr-defined]
         assert isinstance(task, Task)
         return task
 
 
 class Trial:
-    """A page with its view, which no browser shows."""
+    """A page with its view, without a browser."""
 
     def __init__(self, row: PageSpec, monkeypatch: Any) -> None:
         self.row = row
@@ -94,38 +94,38 @@ class Trial:
 
     @property
     def line(self) -> tuple[str, str, str]:
-        """Its line in the list of running computations, which it must have."""
+        """The page's line in the list of running computations, which must exist."""
         line = self.page.activity
         assert line is not None
         return line
 
     def do(self, action: str, /, **message: Any) -> None:
-        """The visitor asks for an action."""
+        """Request an action as the visitor."""
         self.page.actions[action]({"do": action, **message})
 
     def look(self, visible: bool = True) -> None:
-        """Somebody begins or ceases to look."""
+        """Show or hide the page."""
         self.page.visibility_changed(visible)
 
     def settle(self, new: Settled | None = None) -> None:
-        """The picture of the present knobs is ready."""
+        """Deliver the picture of the current knobs."""
         self.host.session.settled = new or picture()
         self.page.picture_ready(self.host.session.settled)
         self.host.call_waiting()
 
     def turn(self, **knobs: float) -> None:
-        """The visitor turns knobs: the dashboard calls its pages in this order."""
+        """Turn knobs as the visitor; the dashboard calls its pages in this order."""
         self.page.picture_requested()
         self.host.session.scene = self.host.session.scene.evolve(**knobs)
         self.page.scene_changed()
 
     def rest(self) -> None:
-        """Time passes: what waited is called, and what that asks for, but nothing that is repeated without end."""
+        """Let time pass: run waiting callbacks and those that they request, but not endless repetitions."""
         for _ in range(4):
             self.host.call_waiting()
 
     def compute(self, work: Callable[[Job], None] | None = None) -> None:
-        """Compute what was given to a pool and not cancelled, or `work` in its place, and take over the results."""
+        """Compute submitted work that was not cancelled, or `work` instead of it, and deliver the results."""
         given, self.given = self.given, []
         for one in given:
             one.run(work or one.work, one.job)
@@ -133,40 +133,40 @@ class Trial:
 
     @property
     def under_way(self) -> list[Given]:
-        """The work that was given to a worker pool and neither computed nor cancelled."""
+        """Work that was submitted to a worker pool and neither computed nor cancelled."""
         return [one for one in self.given if not one.job.stop]
 
     @property
     def state(self) -> dict[str, Any]:
-        """What the view has been told to show."""
+        """The state of the view."""
         return dict(self.view.state)
 
     def messages(self, kind: str) -> list[dict[str, Any]]:
-        """The messages of a kind that were sent to the browser."""
+        """Return the messages of a type that were sent to the browser."""
         return [one for one in self.told if one.get("type") == kind]
 
     def last(self, kind: str) -> dict[str, Any]:
-        """The last message of a kind that was sent to the browser."""
+        """Return the last message of a type that was sent to the browser."""
         return self.messages(kind)[-1]
 
     @property
     def statuses(self) -> set[str]:
-        """The status of each computation, as the page shows or has shown it (`StatusWords.of`)."""
+        """The statuses of computations that the page shows or has shown (`StatusWords.of`)."""
         return set(self._entries("status"))
 
     @property
     def sentences(self) -> list[str]:
-        """What the page says of failures, or has left to the dashboard to say; a row of effects says it in `state`."""
+        """Sentences about failures, from the page or left to the dashboard; a row of effects has its own in `state`."""
         rows = (one for one in self._entries("state") if isinstance(one, str))
         return [*self._entries("failure"), *rows, *map(str, self.host.failures), *(sentence for _, sentence in self.host.faults)]
 
     @property
     def is_stale(self) -> bool:
-        """Whether the page calls what it shows out of date."""
+        """Whether the page marks its contents as out of date."""
         return any(self._entries("stale"))
 
     def _entries(self, name: str) -> Iterator[Any]:
-        """The values of this name in the state and in the messages, at any depth."""
+        """Yield the values with this name in the state and in the messages, at any depth."""
         waiting: list[Any] = [self.state, *self.told]
         while waiting:
             one = waiting.pop()

@@ -1,4 +1,4 @@
-"""The Accuracy page without a browser: when it measures, and to which chain and accuracy its rows belong."""
+"""The Accuracy page, without a browser: when it measures, and the chain and accuracy of its rows."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ ROWS = [Row("rk4", "100 steps", 1e-3, 1e-4, 400, 100.0), Row("dop853", "1e-9", 2
 
 @pytest.fixture
 def page(page_of: Callable[[str], Trial], monkeypatch: pytest.MonkeyPatch) -> Trial:
-    """The page, whose measurement has its rows at once."""
+    """The page, with a measurement that delivers its rows at once."""
     def measure(scene: Any, stop: Any, *, report: Any, pause: Any, progress: Any) -> None:
         pause()
         progress(0.5)
@@ -31,7 +31,7 @@ def page(page_of: Callable[[str], Trial], monkeypatch: pytest.MonkeyPatch) -> Tr
 
 def test_it_measures_when_it_is_first_looked_at_and_goes_on_hidden(page: Trial) -> None:
     page.turn(f=2000.0)
-    assert page.told == [], "until it is opened there is nothing to see"
+    assert page.told == [], "until it is opened, there is nothing to see"
     page.look()
     assert [one.pool for one in page.given] == ["measurements"] and page.state["status"] == "waiting"
     page.look(False)
@@ -78,4 +78,4 @@ def test_a_stopped_measurement_keeps_its_rows(page: Trial, monkeypatch: pytest.M
     assert page.state["progress"] == "stopped; the measurements so far are kept"
     assert page.state["drawn"] == points(ROWS[:1]) and page.line[2] == "1 settings measured"
     page.look()
-    assert page.under_way == [], "what was stopped is not measured again by itself"
+    assert page.under_way == [], "a stopped measurement is not repeated automatically"

@@ -1,4 +1,4 @@
-"""What the Accuracy page says, without a browser: the present setting, its place among the rows, and the words."""
+"""The text of the Accuracy page, without a browser: the current setting, its place among the rows, and the wording."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from granchain_core.steady.settling import advance, recording, refine_orbit
 
 @pytest.mark.parametrize("accuracy", [1e-4, 1e-6, 1e-9])
 def test_the_setting_that_is_told_is_the_one_that_computes(accuracy: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The rule in app/session/active_setting.py is the one of steady/settling/refine_orbit.py: the finest engine of a
+    """The rule in app/session/active_setting.py agrees with steady/settling/refine_orbit.py: the finest engine of a
     final picture.
     """
     used: list[MethodSetting] = []
@@ -42,7 +42,7 @@ def test_the_setting_that_is_told_is_the_one_that_computes(accuracy: float, monk
     told = shown_setting(shown, picture, live=False)
     same = [one for one in used if one.method == picture.run.cost.method]
     assert told.method == picture.run.cost.method
-    # where the relaxation had to refine, the real setting is finer by powers of eight, or of two in the step
+    # if the relaxation had to refine, the real setting is finer by powers of eight, or of two in the step
     if METHODS[told.method].error_control:
         finest = min(one.tolerance for one in same)
         assert finest * (1 - 1e-9) <= told.tolerance <= 64.0 * finest
@@ -120,7 +120,7 @@ def test_durations_have_three_figures(value: float, words: str) -> None:
 
 
 def test_what_a_method_costs_is_the_time_of_its_own_thread(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A neighbour who computes meanwhile makes no method dearer."""
+    """A visitor who computes at the same time does not make a method appear slower."""
     module = importlib.import_module("granchain_core.accuracy.work_precision")
     times = iter((1.0, 1.25))
     monkeypatch.setattr(module.time, "thread_time", lambda: next(times))

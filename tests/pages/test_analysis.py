@@ -1,4 +1,4 @@
-"""What the Analysis page asks the core, what it refuses, and that its command computes the same."""
+"""The Analysis page's requests to the core, its refusals, and the agreement with its command."""
 
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ from app.pages.analysis.questions import (
 from app.plots.theme import THEMES
 from granchain_core import BadInput, Stop, scene
 
-#: Settles soon, to one point.
+#: A chain that settles quickly to one point.
 CHAIN = scene("sec2").evolve(N=2, f=2000.0)
-#: Few of everything.
+#: Small values for all fields.
 SMALL = {"spectrum": {"force": "input"}, "lyapunov": {"periods": "40"},
          "strobes": {"from": "1990", "to": "2010", "values": "3", "keep": "4", "bead": "2"},
          "basins": {"x": "u1", "y": "v2", "starts": "3"}}
 
 
 def plan_of(name: str, **changes: str) -> Plan:
-    """A small plan of a question with some fields changed."""
+    """Return a small plan for a question, with some fields changed."""
     return planned(question_of(name), CHAIN, {**SMALL[name], **changes})
 
 

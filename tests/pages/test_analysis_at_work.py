@@ -1,4 +1,4 @@
-"""The Analysis page without a browser: what is computed unasked, and to which scene question and answer belong."""
+"""The Analysis page, without a browser: automatic computations, and the scene of question and answer."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ FIRST, *_, LAST = QUESTIONS
 
 @pytest.fixture
 def page(page_of: Callable[[str], Trial], monkeypatch: pytest.MonkeyPatch) -> Trial:
-    """The page, whose questions are answered at once."""
+    """The page, with questions that are answered at once."""
     true = module.planned
 
     def planned(question: Any, scene: Any, values: object) -> Any:
@@ -39,7 +39,7 @@ def test_the_first_question_is_answered_for_every_picture_until_the_visitor_asks
     assert [one.pool for one in page.given] == ["long"] and page.state["question"] == FIRST
     page.compute()
     assert page.state["words"] == ["asked at 2000 Hz"] and page.state["status"] == "done" and page.state["done"] == 0.5
-    assert page.last("figure") and page.host.addresses == 0, "what nobody asked is not in the address"
+    assert page.last("figure") and page.host.addresses == 0, "an automatic question is not in the address"
     page.turn(f=2100.0)
     page.settle(picture(2100.0))
     page.compute()

@@ -1,4 +1,4 @@
-"""The Branches page without a browser: which orbit is followed when, what goes on, and what an orbit shows."""
+"""The Branches page, without a browser: which orbit is continued when, resuming, and showing an orbit."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from granchain_core.results.regime import Regime
 
 @cache
 def found() -> Branch:
-    """A short branch of the chain of the picture, complete."""
+    """Return a short, complete branch of the picture's chain."""
     return branch(picture().run.scene, "f", 2000.0, 2020.0)
 
 
 @pytest.fixture
 def page(page_of: Callable[[str], Trial], monkeypatch: pytest.MonkeyPatch) -> Any:
-    """The page, on which a branch is there as soon as it is followed; `began` has what each began with."""
+    """The page, on which branches are complete at once; `began` has the starting scene and axis of each."""
     trial: Any = page_of("branches")
     trial.began = []
 
@@ -84,7 +84,7 @@ def test_a_branch_that_was_stopped_goes_on(page: Any) -> None:
     page.do("branches-stop")
     assert page.state["progress"] == "stopped; the orbits found so far are kept" and page.under_way == []
     page.do("branches-continue")
-    assert page.under_way == [], "nothing was followed yet"
+    assert page.under_way == [], "nothing has been followed yet"
     page.do("branches-start")
     page.compute()
     page.do("branches-continue")

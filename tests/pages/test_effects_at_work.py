@@ -1,4 +1,4 @@
-"""The Effects tab without a browser: one effect after the other is measured, while nothing else moves."""
+"""The Effects tab, without a browser: effects are measured one after the other, while nothing else is running."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from app.session.switches import SWITCHES, present, variants
 from granchain_core import BadInput
 from granchain_core.accuracy.effect_cost import EffectCost
 
-#: The effects whose cost the scene of the picture has.
+#: The effects of the picture's scene whose cost is measured.
 MEASURED = [name for name in SWITCHES if variants(name, picture().run.scene) is not None]
 
 
 @pytest.fixture
 def tab(page_of: Callable[[str], Trial], monkeypatch: pytest.MonkeyPatch) -> Trial:
-    """The tab, whose measurements take no time."""
+    """The tab, with measurements that take no time."""
     monkeypatch.setattr(module, "effect_cost", lambda with_it, without, method, stop, pause: EffectCost(30.0, 20.0, 10.0, 1.0))
     return page_of("effects")
 
 
 def row(tab: Trial, name: str) -> dict[str, Any]:
-    """What the panel says of an effect."""
+    """Return the panel's entry for an effect."""
     return next(one for one in tab.state["panel"]["effects"] if one["name"] == name)
 
 
@@ -71,7 +71,7 @@ def test_nothing_is_measured_before_the_knobs_rest_and_the_picture_is_there(tab:
 
 
 def test_costs_hold_for_other_values_and_not_for_another_kernel(tab: Trial) -> None:
-    tab.turn(f=2100.0)  # from here on it knows which kernel it has
+    tab.turn(f=2100.0)  # from here on, it knows its kernel
     tab.look()
     tab.rest()
     tab.compute()

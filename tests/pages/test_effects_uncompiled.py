@@ -1,4 +1,4 @@
-"""An effect whose kernel cannot be compiled says so on the page of effects, and is not tried again and again."""
+"""An effect whose kernel cannot be compiled says so on the Effects page, and is not tried repeatedly."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from app.session.session import Session
 
 
 class Host(FakeHost):
-    """With a session, and nothing else that computes."""
+    """A host with a session on which nothing else computes."""
 
     def __init__(self) -> None:
         super().__init__()
         self.session = Session()
 
     def call_later(self, seconds: float, action: Callable[..., None], *arguments: Any) -> None:
-        """The test looks again itself."""
+        """Ignore the call: the test repeats the check itself."""
 
     def activities(self) -> list[Any]:
         return []
@@ -45,7 +45,7 @@ def test_each_kernel_is_tried_once(monkeypatch: pytest.MonkeyPatch) -> None:
     page = EffectsPage(host, Tabs(lambda _: None))  # type: ignore[arg-type]
 
     def told() -> bool:
-        page.visibility_changed(True)  # looks for what is to be done next
+        page.visibility_changed(True)  # looks for the next thing to do
         effects = page._view.state["panel"]["effects"]
         return all(one["refused"] or one["state"] == "its kernel could not be compiled" for one in effects)
 

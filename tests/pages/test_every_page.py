@@ -1,7 +1,7 @@
-"""What every page of the table keeps to, a new one as well: when it begins work, when it ends it, and what is said.
+"""Rules for every page of the table, including new ones: when work starts, when it ends, and what is reported.
 
-Each test plays the dashboard and calls the hooks and actions of the true page; only the work itself is left out. What a
-page says of its own is tested beside this file.
+Each test plays the role of the dashboard, and calls the hooks and actions of the real page; only the work itself is
+left out. The other files of this folder test the individual pages.
 """
 
 from __future__ import annotations
@@ -29,32 +29,32 @@ OVERLAYS = tuple(row.name for row in PAGES if row.view)
 
 
 def told_by_others() -> dict[str, Any]:
-    """The message that opens a step whose motion is reached through others."""
+    """Return the message that opens a step whose motion is reached through others."""
     place = next(place for place in story_places(OVERLAYS) if story_step(place, OVERLAYS).via)
     name, _, step = place.partition(".")
     return {"name": name, "step": int(step)}
 
 
-#: How a visitor asks for the work of a page whose actions need more than their name. Any other page is looked at, and
-#: each of its actions is asked for.
+#: Requests for the work of pages whose actions need more than their name. Any other page is shown, and each of its
+#: actions is requested.
 ASKED: dict[str, tuple[tuple[str, dict[str, Any]], ...]] = {
     "analysis": (("analysis-ask", {"question": next(reversed(QUESTIONS))}), ("analysis-compute", {})),
     "hard-cases": (("hard-cases-run", {"case": CASES[0].name}),),
     "stories": (("story-open", told_by_others()),),
 }
-#: Pages that show what others have computed.
+#: Pages that only show results of others.
 WITHOUT_WORK = ("numbers", "probe")
 
 
 @pytest.fixture(params=PAGES, ids=lambda row: row.name)
 def trial(request: pytest.FixtureRequest, page_of: Callable[[str], Trial]) -> Trial:
-    """Each page that the table has."""
+    """Each page of the table."""
     row: PageSpec = request.param
     return page_of(row.name)
 
 
 def only(names: Callable[[str], bool]) -> pytest.MarkDecorator:
-    """The fixture `trial` for those pages alone whose names are chosen."""
+    """Restrict the fixture `trial` to pages whose names are selected."""
     return pytest.mark.parametrize("trial", [row for row in PAGES if names(row.name)], indirect=True, ids=lambda row: row.name)
 
 
@@ -75,17 +75,17 @@ def asked(trial: Trial) -> bool:
 
 
 def ask_for_work(trial: Trial) -> None:
-    """Ask a page for its work, which it must begin."""
+    """Ask a page for its work, which it must start."""
     assert asked(trial)
 
 
 def stops(action: str) -> bool:
-    """Whether an action is the one that stops the page's work."""
+    """Return whether an action stops the page's work."""
     return action.endswith("-stop")
 
 
 def hooks(page: Page) -> None:
-    """Everything of which the dashboard informs a page, except whether somebody looks."""
+    """Call all hooks by which the dashboard informs a page, except the one about visibility."""
     page.picture_requested()
     page.scene_changed()
     page.address_applied()
@@ -171,7 +171,7 @@ def test_a_fault_is_reported_once_for_each_work_and_said_once(trial: Trial) -> N
 
 @with_work
 def test_long_work_can_be_stopped_and_the_page_says_so(trial: Trial) -> None:
-    """Short work needs no stop; to remove measured data is to stop what is done with them."""
+    """Short work needs no stop; removing measured data stops the work on them."""
     ask_for_work(trial)
     stopping = trial.under_way
     names = list(filter(stops, trial.page.actions))
@@ -187,7 +187,7 @@ def test_long_work_can_be_stopped_and_the_page_says_so(trial: Trial) -> None:
 
 @with_work
 def test_a_moved_knob_ends_the_work_or_the_page_calls_it_out_of_date(trial: Trial) -> None:
-    """Unless its task says why it outlives them. Whatever the page computes next belongs to the new chain."""
+    """The exception is a task that states why it continues. The page's next computation is of the new chain."""
     ask_for_work(trial)
     begun = trial.under_way
     trial.turn(f=2100.0)
@@ -211,7 +211,7 @@ def test_the_line_of_a_page_has_one_of_the_known_states(trial: Trial) -> None:
 
 
 def nothing_arrives(trial: Trial) -> None:
-    """What work has found after it was cancelled is not shown."""
+    """Check that results of work found after it was cancelled are not shown."""
     trial.rest()
     before = trial.state, len(trial.told)
     for one in trial.given:

@@ -1,4 +1,4 @@
-"""The page "Hard cases" without a browser: the order of the cases, stopping, and a process that ends."""
+"""The page "Hard cases", without a browser: the order of the cases, stopping, and a process that ends."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ FIRST, SECOND = CASES[:2]
 
 
 class Process:
-    """In place of the process: every case has one row and a picture at once."""
+    """A stand-in for the process: every case has one row and a picture at once."""
 
     closed = 0
     gone = False
 
     def measure(self, case: Case, stop: Any) -> Iterator[list[Check] | Picture | None]:
-        """The rows, then the picture."""
+        """Yield the rows, then the picture."""
         if Process.gone:
             raise Ended
         yield run_case(Case(case.name, "h", "n", "o", lambda _: [Measurement("moment", 5e-11, 1e-9)]), quick=True)
@@ -32,20 +32,20 @@ class Process:
         yield Picture(line, "time (s)", "force (N)", (Trace("granchain", line),))
 
     def close(self) -> None:
-        """Counts."""
+        """Count the call."""
         Process.closed += 1
 
 
 @pytest.fixture
 def page(page_of: Callable[[str], Trial], monkeypatch: pytest.MonkeyPatch) -> Trial:
-    """The page, whose cases take no time."""
+    """The page, with cases that take no time."""
     monkeypatch.setattr(module, "CaseProcess", Process)
     monkeypatch.setattr(Process, "closed", 0)
     return page_of("hard-cases")
 
 
 def status(page: Trial) -> list[str]:
-    """What the cards say, in the order of the cases."""
+    """Return the status on each card, in the order of the cases."""
     return [page.state["results"][case.name]["status"] for case in CASES if case.name in page.state["results"]]
 
 

@@ -1,4 +1,4 @@
-"""What the page "Hard cases" says and sends, without a browser, and the process in which the cases are measured."""
+"""The text and messages of the page "Hard cases", without a browser, and the process that measures the cases."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from granchain_core.hard_cases import CASES, Case, Check, Measurement, run_case
 
 
 def measured(*found: Measurement) -> list[Check]:
-    """Rows of the case "touch and graze" with these figures in place of its own."""
+    """Return rows of the case "touch and graze" with these measurements instead of its own."""
     return run_case(Case("touch and graze", "h", "n", "o", lambda _: found), quick=True)
 
 
@@ -71,7 +71,7 @@ def test_the_process_answers_is_stopped_and_an_end_is_noticed() -> None:
     stop.set()
     with pytest.raises(Cancelled):
         next(process.measure(long, stop))
-    # ended from outside: said, and the next case has a new process
+    # ended from outside: this is reported, and the next case has a new process
     stop = Stop()
     answers = process.measure(Case("not in the table", "h", "n", "o", lambda _: []), stop)
     with pytest.raises(Ended):

@@ -1,4 +1,4 @@
-"""The Map tab without a browser: which cells are computed when, and what becomes of its attractors."""
+"""The Map tab, without a browser: which cells are computed when, and the handling of attractors."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from granchain_core.parameter_maps.cells import CELL
 
 @pytest.fixture
 def tab(page_of: Callable[[str], Trial], monkeypatch: pytest.MonkeyPatch) -> Trial:
-    """The tab, whose cells take no time."""
+    """The tab, with cells that take no time."""
     def cell(number: int) -> np.ndarray:
         row = np.zeros((), dtype=CELL)
         row["number"], row["period"], row["max_output_force"] = number, 1, 1.0 + number
@@ -29,7 +29,7 @@ def tab(page_of: Callable[[str], Trial], monkeypatch: pytest.MonkeyPatch) -> Tri
 
 
 def interrupted(monkeypatch: pytest.MonkeyPatch, tab: Trial, cells: int) -> None:
-    """The visitor leaves the tab after so many cells."""
+    """Let the visitor leave the tab after this many cells."""
     def some(grid: Any, missing: list[int], *_: Any, **_options: Any) -> Iterator[int]:
         yield from missing[:cells]
         tab.look(False)
@@ -52,7 +52,7 @@ def test_the_map_is_computed_once_while_somebody_looks(tab: Trial) -> None:
     tab.look(False)
     tab.look()
     assert tab.under_way == [], "the map is complete"
-    assert len(tab.last("map-cells")["rows"]["cells"]["number"]) == module.ROWS * module.COLUMNS, "all of it is sent again"
+    assert len(tab.last("map-cells")["rows"]["cells"]["number"]) == module.ROWS * module.COLUMNS, "the whole map is sent again"
 
 
 def test_only_the_cells_that_are_missing_are_computed_later(tab: Trial, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -77,7 +77,7 @@ def test_f_and_A0_move_the_mark_and_any_other_knob_asks_for_another_map(tab: Tri
     tab.rest()
     assert tab.last("map-mark")["mark"] and tab.under_way == [] and tab.messages("map-stale") == []
     tab.turn(kappa=0.2)
-    assert tab.last("map-stale") and tab.under_way == [], "it begins when the knobs rest"
+    assert tab.last("map-stale") and tab.under_way == [], "it starts when the knobs rest"
     tab.turn(kappa=0.3)
     tab.rest()
     (given,) = tab.under_way
@@ -137,7 +137,7 @@ def test_a_search_for_attractors_is_stopped_alone(tab: Trial) -> None:
 
 
 def test_a_search_for_attractors_ends_when_a_knob_moves(tab: Trial, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Its result would be shown as that of the new knobs. A tab that nobody looks at is no exception."""
+    """Its result would be shown as that of the new knobs. This is true of a hidden tab too."""
     monkeypatch.setattr(module, "attractors", lambda scene, starts, stop: [scene])
     monkeypatch.setattr(module, "described_attractor", lambda one: {"words": f"at {one.f:g} Hz"})
     for visible, f in ((True, 2100.0), (False, 2200.0)):

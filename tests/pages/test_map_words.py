@@ -1,4 +1,4 @@
-"""What the Map tab is told: the grid of a scene's sliders, cells as numbers, attractors in words."""
+"""The data sent to the Map tab: the grid of a scene's sliders, cells as numbers, attractors in words."""
 
 from __future__ import annotations
 

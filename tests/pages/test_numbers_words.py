@@ -1,4 +1,4 @@
-"""The pictures in words: what becomes of the energy is said of a driven chain that loses some, and of no other."""
+"""The pictures in words: where the energy goes is stated only for a driven chain with damping."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ def test_where_the_energy_goes_is_said_of_a_driven_damped_chain_alone() -> None:
 
 
 def test_nothing_is_said_of_a_scene_with_an_effect_that_may_lose_energy_too(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Such as the drag of docs/add-an-effect.md; foundation and preload store energy, and a cut force is the damped
-    one.
+    """An example is the drag of docs/add-an-effect.md. Foundation and preload store energy, and the force that is cut
+    is the damped one.
     """
     run = settle(scene("sec2")).run
     drag = Effect("drag", "drag", "ground drag", "A viscous ground slows every bead.", lambda scene: True)

@@ -1,4 +1,4 @@
-"""The Observer page without a browser: a period for each one that was shown, of the chain as it is then."""
+"""The Observer page, without a browser: each period shown requests the next one, with the chain's current knobs."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from app.pages.observer import page as module
 
 
 class Run:
-    """In place of the two chains: `done` has what was asked of them."""
+    """A stand-in for the two chains; `done` records the requests to them."""
 
     def __init__(self, scene: Any, picture: Any, stop: Any, went_on: Any) -> None:
         self.scene, self.went_on = scene, went_on
@@ -25,27 +25,27 @@ class Run:
         self.done: list[str] = []
 
     def predict(self, picture: Any) -> None:
-        """The orbit is found once."""
+        """Record the orbit and a prediction."""
         self.orbit, self.predicted = picture, 0.5
         self.done.append("predict")
 
     def nudge(self) -> None:
-        """A little aside."""
+        """Record the request."""
         self.done.append("nudge")
 
     def from_rest(self) -> None:
-        """From rest."""
+        """Record the request."""
         self.done.append("rest")
 
     def step(self) -> str:
-        """A period."""
+        """Record a period."""
         self.done.append("step")
         return "step"
 
 
 @pytest.fixture
 def page(page_of: Callable[[str], Trial], monkeypatch: pytest.MonkeyPatch) -> Any:
-    """The page, whose periods take no time; `steps` has what the view was told."""
+    """The page, with drive periods that take no time; `steps` collects the messages sent to the view."""
     monkeypatch.setattr(module, "ObserverRun", Run)
     trial: Any = page_of("observer")
     trial.steps = []
@@ -54,7 +54,7 @@ def page(page_of: Callable[[str], Trial], monkeypatch: pytest.MonkeyPatch) -> An
 
 
 def run(page: Any) -> Run:
-    """The run of the page."""
+    """Return the run of the page."""
     return page.page._run
 
 
@@ -114,4 +114,4 @@ def test_a_final_picture_that_does_not_repeat_predicts_nothing(page: Any) -> Non
     page.settle(picture())
     page.do("observer-more")
     page.compute()
-    assert run(page).done == ["step", "predict", "step"], "as soon as there is one that does"
+    assert run(page).done == ["step", "predict", "step"], "as soon as a picture repeats"

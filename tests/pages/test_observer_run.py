@@ -1,4 +1,4 @@
-"""What the Observer page computes, without a browser: periods that go on, nudges, and predictions that hold."""
+"""Computations of the Observer page, without a browser: consecutive periods, nudges, and correct predictions."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ def test_a_run_measures_what_its_multiplier_predicts() -> None:
     steps = [run.step() for _ in range(40)]
     assert steps[0].distance[0] == pytest.approx(NUDGE * np.sqrt(FOUNDED.N))
     ends, starts = ([step.distance[i] for step in steps] for i in (-1, 0))
-    assert ends[:-1] == pytest.approx(starts[1:], abs=1e-12)  # one is read off the dense output
-    # what the two-term recurrence leaves of the other multipliers (tests/observers/test_twin.py)
+    assert ends[:-1] == pytest.approx(starts[1:], abs=1e-12)  # one is taken from the dense output
+    # the remainder of the other multipliers in the two-term recurrence (tests/observers/test_twin.py)
     assert run.measured == pytest.approx(run.predicted, rel=5e-3)
     assert "synchronises" in run.sentence
 
 
 def test_an_orbit_of_two_periods_is_measured_over_two() -> None:
-    # sec2 from rest is of period 2 at 615 Hz (docs/lecture.md: two periods to a push on this peak)
+    # sec2 from rest has period 2 at 615 Hz (docs/lecture.md: on this peak, one push in two periods)
     shown = scene("sec2").evolve(f=615.0, kappa=0.001)
     picture = settle(shown)
     run = ObserverRun(shown, picture, Stop(), None)
@@ -56,7 +56,7 @@ def test_a_rate_is_told_when_the_fast_modes_are_gone_and_the_force_is_the_larges
 
 
 def test_the_largest_force_is_that_of_all_periods_so_far() -> None:
-    """At 1130 Hz the driver pushes strongly in one of three periods."""
+    """At 1130 Hz, the driver pushes strongly in one of three periods."""
     shown = scene("sec2").evolve(f=1130.0)
     picture = settle(shown)
     run = ObserverRun(shown, picture, Stop(), None)

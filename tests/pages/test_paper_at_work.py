@@ -1,4 +1,4 @@
-"""The page "The paper" without a browser: a figure is computed when it is chosen, once."""
+"""The page "The paper", without a browser: a figure is computed once, when it is chosen."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from granchain_core.paper import FIGURES
 
 @pytest.fixture
 def page(page_of: Callable[[str], Trial], monkeypatch: pytest.MonkeyPatch) -> Any:
-    """The page, whose figures are computed and drawn at once; `computed` and `drawn` have their numbers."""
+    """The page, with figures that are computed and drawn at once; `computed` and `drawn` have their numbers."""
     trial: Any = page_of("paper")
     trial.computed, trial.drawn = [], []
 

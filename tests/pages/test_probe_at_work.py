@@ -1,4 +1,4 @@
-"""Probe and Numbers without a browser: they follow the settled picture, and cost nothing while nobody looks."""
+"""Probe and Numbers, without a browser: they follow the settled picture, and cost nothing while hidden."""
 
 from __future__ import annotations
 

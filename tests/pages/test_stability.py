@@ -1,4 +1,4 @@
-"""The Stability view without a browser: its words, what it computes and when it computes nothing."""
+"""The Stability view, without a browser: its text, its computations, and when it computes nothing."""
 
 from __future__ import annotations
 
@@ -33,20 +33,20 @@ from granchain_core.results.regime import Regime, exponent_words, modulus_words
 
 @cache
 def picture(name: str = "sec2", **knobs: Any) -> Settled:
-    """A settled picture."""
+    """Return a settled picture."""
     return settle(scene(name).evolve(**knobs), samples=96)
 
 
 @cache
 def analysis(**knobs: Any) -> OrbitAnalysis:
-    """The analysis of a settled picture of sec2."""
+    """Return the analysis of a settled picture of sec2."""
     found = picture(**knobs)
     assert found.regime.period is not None
     return analyse(OrbitTarget(found.run.scene, found.regime.period, found.state, True), False, 0, Stop())
 
 
 def with_leading(*leading: complex) -> Any:
-    """The orbit of sec2 with other multipliers."""
+    """Return the orbit of sec2 with other leading multipliers."""
     rest = np.full(22 - len(leading), 0.01 + 0j)
     return replace(analysis().orbit, multipliers=np.concatenate([np.array(leading, dtype=complex), rest]))
 
@@ -146,7 +146,7 @@ def test_the_sections_points_are_the_computed_ones() -> None:
     shown = section_points(section, transient(found, section), analysis(f=1130.0).points, 3, 12)
     assert shown.units == ("nm", "mm/s") and (len(shown.points), len(shown.own)) == (section.periods, 3)
     assert shown.points == pytest.approx(section.points(3, 12) * [1e9, 1e3], rel=1e-5)
-    # the orbit's own points are those of the final picture a quarter of a period on
+    # the orbit's own points are those of the final picture a quarter of a period later
     expected = np.stack([found.run.displacement[24:-1:96, 2], found.run.velocity[24:-1:96, 2]], axis=1) * [1e9, 1e3]
     assert np.abs(shown.own - expected).max() < 1e-4 * np.abs(expected).max()
 
@@ -166,7 +166,7 @@ def test_another_orbit_than_the_settled_one_is_not_shown_for_it() -> None:
 
 
 class Page(FakePageHost):
-    """The host of the page, with what the page shows and sends."""
+    """The host of the page, with everything that the page shows and sends."""
 
     def __init__(self, mode: str = "settled") -> None:
         super().__init__()
@@ -179,28 +179,28 @@ class Page(FakePageHost):
         self.view = view
 
     def work(self, until: Any, seconds: float = 60.0) -> None:
-        """Work off until something holds; nothing may fail."""
+        """Run callbacks until a condition is true; none may fail."""
         self.run_callbacks_until(until, seconds)
         assert self.failures == [] and self.faults == []
 
     def marks(self, name: str) -> int:
-        """How many multipliers are in a set of the plane."""
+        """Return the number of multipliers in a set of the plane."""
         return len(self.view.state["plane"][name]["data"]["x"])
 
     @property
     def state(self) -> dict[str, Any]:
-        """What the view shows."""
+        """The state of the view."""
         return dict(self.view.state)
 
 
 @pytest.fixture
 def page() -> Page:
-    """A page with nothing on it."""
+    """A page without a picture."""
     return Page()
 
 
 def opened(page: Page) -> StabilityPage:
-    """The view, on the screen."""
+    """The view, opened on the page."""
     view = StabilityPage(page, page.view)
     view.visibility_changed(True)
     return view

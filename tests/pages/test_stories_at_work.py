@@ -1,4 +1,4 @@
-"""The Stories tab without a browser: a step turns the knobs, and its motion may have to be settled from others."""
+"""The Stories tab, without a browser: a step turns the knobs, and its motion may have to be settled from others."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from granchain_core import BadInput, Settled
 
 @pytest.fixture
 def tab(page_of: Callable[[str], Trial], monkeypatch: pytest.MonkeyPatch) -> Trial:
-    """The tab, for which every motion is settled at once."""
+    """The tab, with motions that settle at once."""
     monkeypatch.setattr(module, "state_before", lambda step, stop: picture().state)
     return page_of("stories")
 
 
 def place(tab: Trial, via: bool) -> tuple[str, int, StoryStep]:
-    """A step by story and number, whose motion is reached through others or not."""
+    """Return a story, a number and the step, whose motion is reached through others or not."""
     found = next(one for one in story_places(tab.host.overlays) if bool(story_step(one, tab.host.overlays).via) is via)
     name, _, number = found.partition(".")
     return name, int(number), story_step(found, tab.host.overlays)

@@ -156,7 +156,7 @@ def test_a_killed_map_resumes_and_computes_nothing_again(tmp_path: Path, capsys:
     assert 2 <= there < 400
 
     assert main(words(out)) == 2  # not without being asked to
-    assert "go on with --resume" in capsys.readouterr().err
+    assert "continue with --resume" in capsys.readouterr().err
     assert main([*words(out, "--resume"), "--set", "D=90"]) == 2
     assert "holds another map" in capsys.readouterr().err
 

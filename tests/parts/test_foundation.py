@@ -1,4 +1,4 @@
-"""k and κ at another amplitude: what changes is said, where it changes and only there."""
+"""k and κ at another amplitude: a change is reported where it occurs, and only there."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ RIG = scene("rig")
 
 
 def printed(*settings: str, capsys: pytest.CaptureFixture[str]) -> str:
-    """What a run with these settings says on stderr; its stdout is one JSON object and nothing else."""
+    """Return a run's stderr with these settings; its stdout is one JSON object and nothing else."""
     words = [word for setting in settings for word in ("--set", setting)]
     assert main(["run", "rig", "--periods", "0", "--record", "1", "--json", *words]) == 0
     out, err = capsys.readouterr()
@@ -52,7 +52,7 @@ def test_the_page_says_beside_kappa_what_it_was() -> None:
 
 
 def test_the_presets_of_figure_12_are_peak_valley_peak_in_period_1() -> None:
-    """Amplitudes within the paper's 6 to 13 µm, κ = 0.001 each; the forces themselves stand in docs/lecture.md."""
+    """Amplitudes are within the paper's 6 to 13 µm, with κ = 0.001; the forces themselves are in docs/lecture.md."""
     found = [scene(name) for name in ("fig12-60", "fig12-90", "fig12-100")]
     assert [(one.f, one.A0) for one in found] == [(60.0, 11e-6), (90.0, 6e-6), (50.0, 13e-6)]
     for one in found:

@@ -1,4 +1,4 @@
-"""The knobs of a page: which are folded away, and what they are called without a drive."""
+"""The knobs of a page: which are folded away, and their names without a drive."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def test_a_chain_without_a_drive_has_fine_pictures_and_no_curve() -> None:
 
 
 def in_sight(name: str) -> dict[str, dict[str, object]]:
-    """The knobs of a scene that are not folded away."""
+    """Return the knobs of a scene that are not folded away."""
     return {knob: spec for knob, spec in specs(name).items() if not spec["more"]}
 
 
@@ -39,5 +39,5 @@ def test_f_a0_d_and_k_are_never_folded_away(name: str) -> None:
 
 @pytest.mark.parametrize("name", scene_names())
 def test_a_knob_in_sight_that_can_be_zero_says_what_zero_means(name: str) -> None:
-    """Except κ, which stands below k and means the same."""
+    """κ is an exception: it is below k and means the same."""
     assert {knob for knob, spec in in_sight(name).items() if spec["low"] == 0.0 and not spec["at_zero"]} == {"kappa"}

@@ -1,4 +1,4 @@
-"""Figures of results: sent when they are shown, and again in another theme as long as they are."""
+"""Figures of results are sent when they are shown, and again when the theme changes while they are shown."""
 
 from __future__ import annotations
 
@@ -11,23 +11,23 @@ from app.plots.theme import THEMES, Theme
 
 
 def figure(theme: Theme) -> Div:
-    """In place of a figure: it tells its theme."""
+    """Return a stand-in for a figure that contains the theme's name."""
     return Div(text=theme.card)
 
 
 class Told(ResultFigure):
-    """One that keeps its messages."""
+    """A result figure that records its messages."""
 
     def __init__(self) -> None:
         super().__init__()
         self.told: list[dict[str, Any]] = []
 
     def send(self, **message: Any) -> None:
-        """In place of a browser."""
+        """Record the message instead of sending it to a browser."""
         self.told.append(message)
 
     def news(self) -> list[tuple[str, str, str]]:
-        """Of every message since: its type, its place, and the theme of the figure."""
+        """Return type, place and figure theme of every message since the last call."""
         told, self.told = self.told, []
         return [(one["type"], one["place"],
                  "" if one["type"] == "clear" else one["figure"]["doc"]["roots"][0]["attributes"]["text"]) for one in told]

@@ -38,7 +38,7 @@ def test_where_no_error_is_stated_none_is_told_for_the_forces(picture: Settled) 
 
 
 def test_the_multiplier_says_what_becomes_of_the_slowest_part_of_a_disturbance() -> None:
-    """Of a whole disturbance it says nothing: the derivative of the map is not normal, and the rest may grow first."""
+    """It says nothing about a whole disturbance: the map's derivative is not normal, and the rest may grow at first."""
     assert multiplier_words(0.36, 1) == ("|μ| 0.36: the slowest-decaying part of a small disturbance shrinks to 36 % in every "
                                          "drive period; below 1 the orbit is stable.")
     assert "shrinks to 99.5 % in every 3 drive periods" in multiplier_words(0.995, 3)

@@ -1,5 +1,5 @@
-"""Force trains: a jump is drawn as a vertical rise to its top, in every copy of an orbit and as the live picture goes
-on.
+"""Force trains: a jump is drawn as a vertical rise to its top, in every copy of an orbit and in the moving live
+picture.
 """
 
 from __future__ import annotations
@@ -31,14 +31,14 @@ def test_a_force_without_jumps_is_drawn_as_it_is() -> None:
 
 
 def test_the_largest_value_drawn_is_the_largest_force_stated() -> None:
-    """In the settled picture every copy of the orbit has its jumps, at the same phase."""
+    """In the settled picture, every copy of the orbit has its jumps at the same phase."""
     run = settle(CHAIN).run
     frames = settled_frames(run)
     for jumps, series, largest in ((frames.input_jumps, frames.input_force, run.max_input_force),
                                    (frames.output_jumps, frames.output_force, run.max_output_force)):
         time, force = with_jumps(frames.time, series, jumps)
         assert (np.diff(time) >= 0.0).all()
-        # a smooth top lies between rows, below by (spacing/2)²/2 of its curvature; a jump's is drawn itself
+        # a smooth peak is drawn low by up to (spacing/2)²/2 of its curvature, being between rows; a jump's top is exact
         assert force.max() == pytest.approx(largest, rel=1e-12 if len(jumps) and jumps[:, 1].max() > 0.99 * largest else 1e-3)
     copies = round(frames.time[-1] * CHAIN.f)
     phases = np.sort((frames.output_jumps[:, 0] * CHAIN.f) % 1.0).reshape(-1, copies)
@@ -46,7 +46,7 @@ def test_the_largest_value_drawn_is_the_largest_force_stated() -> None:
 
 
 def test_a_pull_and_a_lasting_pressure_are_told_beside_the_largest_force() -> None:
-    """The driver's contact pulls when it opens at 340 Hz; at 2500 Hz the wall is pressed all the time."""
+    """At 340 Hz, the driver's contact pulls when it opens; at 2500 Hz, the wall is always under pressure."""
     for f, told in ((340.0, (True, False)), (2500.0, (True, True))):
         run = settle(scene("sec2").evolve(f=f)).run
         frames, trains = settled_frames(run), ForceTrains(Range1d())
@@ -60,7 +60,7 @@ def test_a_pull_and_a_lasting_pressure_are_told_beside_the_largest_force() -> No
                 assert float(least.removeprefix("min ≈ ").split("\N{NO-BREAK SPACE}")[0].replace("\N{MINUS SIGN}", "-")) <= float(number)
                 number = least.removeprefix("min ≈ ").split("\N{NO-BREAK SPACE}")[0].replace("\N{MINUS SIGN}", "-")
                 low = float(number) * {"N": 1.0, "mN": 1e-3}[unit]
-                assert low == pytest.approx(series.min(), rel=0.5 if low < 0.0 else 0.05)  # one figure and two
+                assert low == pytest.approx(series.min(), rel=0.5 if low < 0.0 else 0.05)  # one digit and two
 
 
 @pytest.mark.parametrize(("least", "most", "axis", "error", "words"), [
@@ -91,7 +91,7 @@ def test_a_long_measured_series_is_drawn_to_the_end_of_the_picture_with_its_larg
 
 
 def test_live_jumps_move_with_the_picture() -> None:
-    """Times are drive periods before now: a jump seen in one part is that much older after the next."""
+    """Times are drive periods before now: a jump seen in one part is older by the next part's length afterwards."""
     chain, samples = LiveChain(CHAIN), 96
     window = LiveWindow(samples)
     first = window.add(chain.advance(2 * samples))

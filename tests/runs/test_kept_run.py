@@ -75,7 +75,7 @@ def test_another_run_is_refused(tmp_path: Path) -> None:
     kept = kept_in(tmp_path / "a.h5")
     kept.kept.add({})
     kept.kept.write()
-    with pytest.raises(BadInput, match="go on with --resume"):
+    with pytest.raises(BadInput, match="continue with --resume"):
         kept_in(tmp_path / "a.h5")
     with pytest.raises(BadInput, match="holds another run, sec2 with 100 \\+ 3 periods of 8 samples"):
         RunCheckpoints(CHOSEN, PERIODS, RECORD + 1, SAMPLES, None, tmp_path / "a.h5").open(True)

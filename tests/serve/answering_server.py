@@ -20,7 +20,7 @@ from app.serve.document.document_lock import has_document_lock, with_document_lo
 
 
 class Served:
-    """A Bokeh server whose document answers a question, with the document locked and in one batch."""
+    """A Bokeh server whose document answers questions, each in one batch and with the document locked."""
 
     def __init__(self) -> None:
         self.document: Document | None = None
@@ -48,7 +48,7 @@ class Served:
         document.add_root(self.answer)
 
     def reply(self, text: str) -> None:
-        """The answer, sent as a picture is."""
+        """Send the answer in the way a picture is sent."""
         assert self.document is not None
         self.found = {"locked": has_document_lock(self.document), "streams": socket_tuning._streams(self.document)}
         disable_nagle(self.document)
@@ -61,12 +61,12 @@ class Served:
 
 
 def ask(session: ClientSession, text: str) -> None:
-    """Send a question as the browser does."""
+    """Send a question in the way the browser does."""
     session.document.select_one({"name": "question"}).text = text
 
 
 def wait_for(session: ClientSession, text: str) -> None:
-    """Until the answer has come as a change of the document, as the browser gets it."""
+    """Wait until the answer has arrived as a change of the document, as in the browser."""
     loop = session._connection.io_loop
     patience = loop.call_later(60, loop.stop)
     session._connection._loop_until(lambda: session.document.select_one({"name": "answer"}).text == text)

@@ -1,4 +1,4 @@
-"""A server of a test's own whose document answers a question."""
+"""A server for one test, whose document answers questions."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from answering_server import Served
 
 @pytest.fixture
 def served(monkeypatch: pytest.MonkeyPatch) -> Iterator[Served]:
-    """A server of this test's own whose page counts as drawn."""
+    """Yield a server for this test alone, whose page counts as drawn."""
     monkeypatch.setattr(type(pn.state), "loaded", property(lambda _: True))
     one = Served()
     yield one

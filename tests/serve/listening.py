@@ -1,4 +1,4 @@
-"""A dashboard in a thread of the test's own process, asked over its port."""
+"""A dashboard in a thread of the test process, queried over its port."""
 
 from __future__ import annotations
 
@@ -38,16 +38,15 @@ class Listening:
         one.stop()
 
     def stop(self) -> None:
-        """End it."""
+        """Stop the server."""
         self.loop.add_callback(self.loop.stop)
         self._thread.join(20)
-        # Bokeh leaves a page's document behind as the current one of the process, where every test to come would find
-        # it.
+        # Bokeh leaves a page's document behind as the process's current one, where every later test would find it.
         _PATCHED_CURDOCS.clear()
         set_curdoc(Document())
 
     def ask(self, path: str = "/", **headers: str) -> tuple[int, dict[str, str], str]:
-        """Status, headers and text of an answer."""
+        """Return status, headers and text of an answer."""
         connection = http.client.HTTPConnection(self.address, self.port, timeout=60)
         connection.request("GET", path, headers={name.replace("_", "-"): value for name, value in headers.items()})
         answer = connection.getresponse()
@@ -56,23 +55,23 @@ class Listening:
         return found
 
     def token(self) -> str:
-        """The token in a new page."""
+        """Return the token of a new page."""
         found = re.search(r'"token":"([^"]+)"', self.ask()[2])
         assert found is not None
         return found.group(1)
 
     def connect(self, token: str, **headers: str) -> int:
-        """The status that a websocket with this token gets: 101 where it is let in."""
+        """Return the status that a websocket with this token gets: 101 if it is admitted."""
         return self.open(token, **headers)[0]
 
     def open(self, token: str, **headers: str) -> tuple[int, socket.socket]:
-        """The same, and its socket."""
+        """Return the same status, and the socket."""
         one = socket.create_connection((self.address, self.port), timeout=60)
         words = {"Host": f"127.0.0.1:{self.port}", "Upgrade": "websocket", "Connection": "Upgrade",
                  "Sec-WebSocket-Key": "dGhlIHNhbXBsZSBub25jZQ==", "Sec-WebSocket-Version": "13",
                  "Sec-WebSocket-Protocol": f"bokeh, {token}", "Origin": f"http://127.0.0.1:{self.port}", **headers}
         one.sendall(("GET /ws HTTP/1.1\r\n" + "".join(f"{a}: {b}\r\n" for a, b in words.items()) + "\r\n").encode())
         answer = b""
-        while not answer.endswith(b"\r\n\r\n") and (byte := one.recv(1)):  # what comes after the head is the caller's
+        while not answer.endswith(b"\r\n\r\n") and (byte := one.recv(1)):  # everything after the head is for the caller
             answer += byte
         return int(answer.split()[1]), one

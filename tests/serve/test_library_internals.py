@@ -1,4 +1,4 @@
-"""What is used of libraries beyond their documentation: the installed releases have it, and a lack is noticed."""
+"""Undocumented library internals that the dashboard uses: the installed releases have them; a lack is noticed."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ ROWS = [row for table in library_internals.tables().values() for row in table]
 
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: row.owner)
 def test_the_installed_releases_have_what_is_used(row: Internal) -> None:
-    """Fails with the name where one has not: docs/libraries.md says what happens then."""
+    """The test fails with the name of a missing one; docs/libraries.md says what happens then."""
     assert missing([row]) == []
 
 
@@ -52,14 +52,14 @@ def test_a_library_that_lacks_a_documented_name_is_one_sentence_of_the_command(m
 
 
 def test_a_server_whose_requests_cannot_be_checked_does_not_start() -> None:
-    """A release of Tornado that asks otherwise for handlers must not serve without guards."""
+    """A release of Tornado that looks up handlers differently must not serve without guards."""
     assert _refusal("from tornado.web import Application; del Application.get_handler_delegate") == (
         "This release of Tornado has no tornado.web.Application.get_handler_delegate; granchain does not start "
         "without it (requests would be answered without checks). The releases that work are in pyproject.toml.\n")
 
 
 def _refusal(before: str) -> str:
-    """What `granchain serve` writes when it ends with status 2, in a process that has done something to a library."""
+    """Return the output of `granchain serve`, which ends with status 2, in a process that has modified a library."""
     program = f"import sys, panel; {before}; from app.cli.commands import do; sys.exit(do(['serve', '--port', '0']))"
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=120, check=False)
     assert done.returncode == 2

@@ -1,4 +1,4 @@
-"""The JavaScript modules: what each imports is there, pages and parts keep their layers, and nothing else is served."""
+"""The JavaScript modules: all imports exist, pages and parts keep to their layers, and nothing else is served."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ EXPORT = re.compile(r"^export (?:async )?(?:const|let|function|class) (\w+)", re
 
 
 def served(url: str) -> Path:
-    """The file that Panel would send."""
+    """Return the file that Panel would send."""
     path = url.removeprefix("components/")
     return Path(ComponentResourceHandler.parse_url_path(ComponentResourceHandler, path))  # type: ignore[arg-type]
 
 
 def imports(name: str) -> dict[str, set[str]]:
-    """The addresses a module imports from, with what it takes from each."""
+    """Return the addresses from which a module imports, with the names from each."""
     found = IMPORT.findall(FILES[name].read_text(encoding="utf-8"))
     here = posixpath.dirname(address(name))
     return {posixpath.normpath(posixpath.join(here, path)): set(names.split(", ")) for names, path in found}
@@ -62,7 +62,7 @@ def test_a_name_that_is_used_twice_is_refused(tmp_path: Path) -> None:
 
 
 def test_every_component_renders_a_module_of_its_own() -> None:
-    assert Views.__name__  # importing it makes every component known
+    assert Views.__name__  # importing it registers every component
     parts = {*Component.__subclasses__(), *StreamedFigure.__subclasses__(), *ResultFigure.__subclasses__()} - {StreamedFigure, ResultFigure}
     rendered = {part._esm for part in parts if part.__module__.startswith("app.")}
     assert rendered == {module(name) for name, path in FILES.items() if "render" in EXPORT.findall(path.read_text(encoding="utf-8"))}
@@ -76,7 +76,7 @@ def test_no_other_file_is_served(path: str) -> None:
 
 
 def test_an_address_changes_with_what_is_served() -> None:
-    """Whatever the browser kept of an earlier version has another address."""
+    """Files of an earlier version that the browser has cached have other addresses."""
     assert re.fullmatch(r"components/app\.scripts/Scripts_[0-9a-f]{12}/__javascript_modules__/parts/toolkit/svg\.js", address("svg.js"))
 
 

@@ -1,4 +1,4 @@
-"""What the dashboard's server is told of its limits."""
+"""The limits passed to the dashboard's server."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def test_the_servers_websocket_takes_the_largest_upload(monkeypatch: pytest.Monk
         _tornado = SimpleNamespace(wildcard_router=SimpleNamespace(rules=[]), websocket_origins=set())
 
         def start(self) -> None:
-            """Nothing to serve."""
+            """Serve nothing."""
 
     monkeypatch.setattr(server.pn, "serve", lambda pages, **options: given.update(options) or Served())
     monkeypatch.setattr(server.COMPILER, "prepare", lambda scene: None)
@@ -40,7 +40,7 @@ def test_the_servers_websocket_takes_the_largest_upload(monkeypatch: pytest.Monk
 
 
 SECURITY = (Path(__file__).parents[2] / "docs" / "security.md").read_text(encoding="utf-8")
-#: Option → what the table of docs/security.md says of hosts, origins and headers.
+#: Hosts, origins and headers by option, from the table of docs/security.md.
 ROWS = {row[0]: row[1:] for row in re.findall(r"^\| (.+?) \| (.+?) \| (.+?) \| (.+?) \|$",
         SECURITY.partition("| option | hosts that are answered")[2].partition("\n\n")[0], re.MULTILINE) if not row[0].startswith("-")}
 GIVEN = {"none": {}, "`--address 192.0.2.7`": {"address": "192.0.2.7"},
@@ -50,7 +50,7 @@ GIVEN = {"none": {}, "`--address 192.0.2.7`": {"address": "192.0.2.7"},
 
 
 def checks_with(monkeypatch: pytest.MonkeyPatch, address: str = "", **access: Any) -> tuple[set[str], set[str], dict[str, str]]:
-    """Hosts, origins and headers of a server at port 5006."""
+    """Return hosts, origins and headers of a server at port 5006."""
     given: dict[str, Any] = {}
     monkeypatch.setattr(server.pn, "serve", lambda pages, **options: given.update(options))
     monkeypatch.setattr(server, "install_guards", lambda rules: given.update(rules=rules) or {})

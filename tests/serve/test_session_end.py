@@ -1,4 +1,4 @@
-"""A visit that is over leaves nothing: no page, no computation, no call."""
+"""A finished visit leaves nothing behind: no page, no computation, no call."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ from tools.visitors.visitor import Visitor, query_of
 
 
 def alive(*kinds: type) -> weakref.WeakSet[Any]:
-    """The objects of these kinds."""
+    """Return the live objects of these classes."""
     gc.collect()
     return weakref.WeakSet(one for one in gc.get_objects() if issubclass(type(one), kinds))
 
 
 async def visit(address: str, query: str = "", moves: int = 2) -> Visitor:
-    """Open, move and leave."""
+    """Open the page, move a knob and leave."""
     visitor = Visitor(address, query)
     await visitor.open()
     for number in range(moves):
@@ -46,10 +46,9 @@ async def visit(address: str, query: str = "", moves: int = 2) -> Visitor:
 
 
 def test_pages_that_were_left_are_forgotten(caplog: pytest.LogCaptureFixture) -> None:
-    """A handler that Panel keeps for each document once kept every page: 1.5 MB a visit.
+    """A handler that Panel keeps for each document used to keep every page: 1.5 MB per visit.
 
-    The document that Bokeh calls the current one may be the last page's: its event loop ended before the page was
-    closed.
+    Bokeh's current document may be the last page's, because its event loop ended before the page was closed.
     """
     one = Listening(Access())
     try:
@@ -59,14 +58,14 @@ def test_pages_that_were_left_are_forgotten(caplog: pytest.LogCaptureFixture) ->
             for _ in range(3):
                 run_async(visit(address))
             until(lambda: not alive(Controller, Document) - before - weakref.WeakSet([curstate().document]),
-                  pause=lambda: time.sleep(0.1))  # what other tests have left may go meanwhile
+                  pause=lambda: time.sleep(0.1))  # leftovers of other tests may disappear meanwhile
         assert not [record for record in caplog.records if record.levelno >= logging.ERROR]
     finally:
         one.stop()
 
 
 def test_a_page_that_could_not_be_made_is_no_visitor(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Nobody would ever count it as left."""
+    """It would never be counted as having left."""
     def fails(*_: object) -> None:
         raise ZeroDivisionError
 
@@ -85,9 +84,9 @@ def test_a_page_that_could_not_be_made_is_no_visitor(monkeypatch: pytest.MonkeyP
 @pytest.mark.parametrize("forgotten", [True, False])
 def test_what_takes_long_is_said_before_it_is_computed_and_ends_with_the_visit(
         forgotten: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A heavy client, ten thousand beads at 0.1 Hz: refused, insisted on, and left.
+    """A heavy request, ten thousand beads at 0.1 Hz, is refused, insisted on, and abandoned.
 
-    It also ends where Bokeh cannot be asked to forget the session.
+    It also ends if Bokeh cannot be asked to discard the session.
     """
     if not forgotten:
         hide(monkeypatch, leaving, ServerSession, "request_expiration")
@@ -97,7 +96,7 @@ def test_what_takes_long_is_said_before_it_is_computed_and_ends_with_the_visit(
         opening = asyncio.create_task(visitor.open(600.0))
         while not any("would take" in said for said in visitor.sentences):
             await asyncio.sleep(0.05)
-        assert PICTURES.busy_threads == 0, "nothing is computed before"
+        assert PICTURES.busy_threads == 0, "nothing is computed before that"
         await visitor.say(do="insist")
         while PICTURES.busy_threads == 0:
             await asyncio.sleep(0.05)

@@ -1,4 +1,4 @@
-"""What the dashboard imports before it answers: what the first picture needs, and not SciPy's solvers."""
+"""Before it answers, the dashboard imports only what the first picture needs, which excludes SciPy's solvers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What one visitor may ask of the machine is estimated before it is computed."""
+"""A visitor's request is checked against the budget before it is computed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Work that waits until nothing moves: only the last of several starts is called, and none after a cancel."""
+"""Debounced work: only the last of several starts is called, and none after a cancellation."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is taken along: tables that granchain reads again, and programs that find what the page showed."""
+"""Exports: tables that granchain reads again, and programs that reproduce the page's results."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ SHOWN = scene("sec2").evolve(f=880.0)
 
 @pytest.fixture(scope="module")
 def screen() -> Screen:
-    """880 Hz, where the motion depends on where the chain was before, with three points of the curve."""
+    """A motion at 880 Hz, where it depends on the previous state, with three points of the curve."""
     start = settle(SHOWN.evolve(f=860.0)).state
     found = settle(SHOWN, start=start, samples=samples_for(SHOWN))
     points = resonance_curve(SHOWN.evolve(f=30.0), [340.0, 620.0, 1600.0]).points
@@ -33,7 +33,7 @@ def screen() -> Screen:
 
 
 def run_again(program: str, tmp_path: Path) -> str:
-    """What a program prints."""
+    """Run a program and return its output."""
     path = tmp_path / "again.py"
     path.write_text(program, encoding="utf-8")
     done = subprocess.run([sys.executable, str(path)], capture_output=True, text=True, timeout=300, check=False,
@@ -47,7 +47,7 @@ def test_the_script_finds_what_the_page_showed_to_the_last_digit(screen: Screen,
     assert printed.count("as on the page") == 3 and "but the page" not in printed
     assert repr(screen.run.max_output_force) in printed  # not only to the digits shown
     assert "3 points, largest difference from the page 0.0e+00" in printed
-    # the start matters: from rest there is another motion
+    # the start matters: from rest, the motion is another
     assert settle(SHOWN).run.regime.period != screen.run.regime.period
 
 
@@ -57,7 +57,7 @@ def test_a_script_says_where_it_found_something_else(screen: Screen, tmp_path: P
 
 
 def test_the_notebook_runs_and_finds_the_same(screen: Screen, tmp_path: Path) -> None:
-    """Its pictures are those of `granchain.figure`; what shows them in a notebook is put aside here."""
+    """Its pictures are those of `granchain.figure`; the code that displays them in a notebook is replaced here."""
     content = json.loads(notebook(screen))
     assert (content["nbformat"], content["nbformat_minor"]) == (4, 5)
     assert len({cell["id"] for cell in content["cells"]}) == len(content["cells"])

@@ -1,4 +1,4 @@
-"""The hosts that tests give to pages are called as the dashboard is."""
+"""The stand-in hosts that tests give to pages have the dashboard's interface."""
 
 from __future__ import annotations
 
@@ -21,6 +21,6 @@ def test_what_the_fake_host_has_is_called_as_a_host_is() -> None:
 
 
 def test_what_drives_the_fake_host_is_no_part_of_a_host() -> None:
-    """A page that called it would only work in tests."""
+    """A page that called these methods would only work in tests."""
     assert {name for name in dir(FakeHost) if not name.startswith("_")} - set(dir(PageHost)) == {
         "leave", "call_waiting", "run_callbacks_until"}

@@ -1,4 +1,4 @@
-"""The pace of a live run: how many samples a step computes, and which viewing time is dropped."""
+"""The pace of a live run: the samples computed per step, and the viewing time dropped."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from granchain_core import LiveChain, Run, scene
 
 
 class Clock:
-    """A clock that only the test moves; each sample of the chain takes `cost` seconds of computing."""
+    """A clock that only the test advances; each sample of the chain takes `cost` seconds to compute."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch, cost: float = 0.0) -> None:
         self.now = self.computed = 100.0
@@ -30,13 +30,13 @@ class Clock:
         monkeypatch.setattr(LiveChain, "advance", advance)
 
     def sleep(self, seconds: float) -> None:
-        """Let the time pass."""
+        """Advance the clock."""
         self.slept.append(seconds)
         self.now += seconds
 
 
 def short_run() -> LiveRun:
-    """A live run of a chain of two beads."""
+    """Return a live run of a chain of two beads."""
     return LiveRun(scene("sec2").evolve(N=2), CpuTime())
 
 

@@ -1,4 +1,4 @@
-"""Checks of browser messages: what is not a number of a range, or not a place of a list, is refused with a sentence."""
+"""Checks of browser messages: numbers outside a range and places outside a list are refused with a sentence."""
 
 from __future__ import annotations
 

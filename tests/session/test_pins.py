@@ -1,4 +1,4 @@
-"""Pins and starts in a link: the same to the last bit, and what is damaged is refused."""
+"""Pins and starts in a link are restored to the last bit, and damaged ones are refused."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def test_an_address_brings_everything_back() -> None:
     back.initial_state = start
     assert back.link == left.link
     assert np.array_equal(back.pins[1].initial_state.velocity, START.velocity)  # type: ignore[union-attr]
-    # what is left out is the default again
+    # omitted settings have their defaults again
     apply_address(back, "v=1")
     assert back.link == Session().link
 

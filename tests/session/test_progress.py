@@ -1,4 +1,4 @@
-"""Where a computation stands is said in the same words on every page."""
+"""The progress of a computation is described in the same words on every page."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def test_what_is_under_way_is_running_on_every_page() -> None:
 
 
 def test_every_status_is_under_way_or_still() -> None:
-    """Mypy checks the statuses that pages name against `Status`."""
+    """Mypy checks the statuses used by pages against `Status`."""
     assert set(get_args(Status)) == {*UNDER_WAY, "none", "done", "stopped", "failed"}
 
 

@@ -1,4 +1,4 @@
-"""Share links: everything that differs comes back, and every bad field is refused by itself."""
+"""Share links: every difference is restored, and every bad field is refused individually."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from app.session.starts import MOST_BEADS
 from granchain_core import BadInput, State, scene, scene_names
 from tools.links import FILE, meaning
 
-#: What a link with nothing but the name of a scene means, since the scene was new.
+#: The meaning of a link with only the name of a scene, fixed since the scene was added.
 MEANINGS = json.loads(FILE.read_text(encoding="utf-8"))
 
 
@@ -35,7 +35,7 @@ def test_a_link_brings_back_exactly_what_was_shared(name: str, f: float, amplitu
 
 
 def test_a_link_that_was_sent_once_means_today_what_it_meant() -> None:
-    """Literal on purpose: if a preset, a default or a name changes, links that are out there change with it."""
+    """The link is literal on purpose: if a preset, a default or a name changes, so do links already in use."""
     shown, fields, refused = decode(
         "v=1&scene=rig&f=72.5&A0=6e-06&D=12.5&k=1500.0&N=9&F0=0.25&wall=rigid&dissipation=tsuji&tension=cut"
         "&accuracy=1e-08&mode=live&start=previous&look=dark")
@@ -47,14 +47,14 @@ def test_a_link_that_was_sent_once_means_today_what_it_meant() -> None:
     silent = {"dimer": 1.0, "taper": 1.0, "striker": 1.0, "site": 1, "impurity": 1.0, "drive": "harmonic", "strike": 0.0, "end": "first"}
     knobs = {name: value for name, value in shown.knobs.items() if name != "kappa"}
     assert knobs.items() >= {**said, **silent}.items()
-    assert all(knobs[name] == scene("rig").knobs[name] for name in {*knobs} - {*said, *silent})  # knobs that came later
+    assert all(knobs[name] == scene("rig").knobs[name] for name in {*knobs} - {*said, *silent})  # knobs added later
 
 
 @pytest.mark.parametrize("name", MEANINGS)
 def test_a_link_to_a_scene_as_it_is_means_what_it_meant(name: str) -> None:
-    """The file has a row since the scene was new; κ follows from k and is known to rounding.
+    """The file has had a row since the scene was added; κ follows from k and is known up to rounding.
 
-    A later knob of `sec2` is at its default in every link.
+    A knob of `sec2` that was added later has its default in every link.
     """
     shown, fields, refused = decode(f"v=1&scene={name}")
     assert (shown.name, fields, refused) == (name, {}, [])
@@ -65,7 +65,7 @@ def test_a_link_to_a_scene_as_it_is_means_what_it_meant(name: str) -> None:
 
 
 def test_every_scene_has_said_what_its_link_means() -> None:
-    assert set(MEANINGS) == set(scene_names())  # else run: python -m tools.update
+    assert set(MEANINGS) == set(scene_names())  # otherwise run: python -m tools.update
 
 
 def test_a_link_with_kappa_means_the_k_it_meant() -> None:
@@ -112,7 +112,7 @@ def test_a_link_of_unreasonable_length_is_not_read() -> None:
        pins=st.integers(0, len(NAMES)), started=st.integers(0, 15), seed=st.integers(0, 1000))
 def test_every_link_that_is_made_can_be_read(name: str, beads: int, f: float, amplitude: float, damping: float,
                                              stiffness: float, pins: int, started: int, seed: int) -> None:
-    """With every field, of the longest chains whose states a link has, and with what the browser adds to it."""
+    """This includes links with every field, of the longest chains whose states fit, with the browser's additions."""
     shown = scene(name).evolve(f=f, A0=amplitude, D=damping, k=stiffness, N=beads, dissipation="kuwabara-kono",
                                tension="cut", accuracy=1.2345678901234567e-7, F0=1.2345678901234567)
     rng = np.random.default_rng(seed)
@@ -147,7 +147,7 @@ def test_a_link_with_a_story_alone_shows_the_motion_of_its_step() -> None:
     assert session.scene == step.scene and session.story_to_settle  # it comes from 860 Hz
     apply_address(session, "story=sonic-vacuum.3")
     assert session.scene == story_step("sonic-vacuum.3", overlay_names()).scene and not session.story_to_settle
-    apply_address(session, "story=coexisting.2&f=500")  # the page's own links have the motion
+    apply_address(session, "story=coexisting.2&f=500")  # the page's own links include the motion
     assert session.scene.f == 500.0 and not session.story_to_settle
 
 

@@ -1,4 +1,4 @@
-"""Stories: what they tell is computed here, and a wrong file is refused with a sentence that says where."""
+"""Stories: their statements are checked by computation, and a bad file is refused with a sentence that says where."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ expect = { regime = "periodic", period = 1, output = 0.6285, input = 0.6975 }
 
 
 def motion_of(step: StoryStep) -> Run:
-    """The motion of a step, with the samples that the page has."""
+    """Return the motion of a step, with the page's number of samples."""
     return settle(step.scene, start=state_before(step), samples=samples_for(step.scene)).run
 
 

@@ -1,4 +1,4 @@
-"""Switching effects, their slots, and the energy account: the rules of the panel, without a browser."""
+"""The rules of the effects panel, without a browser: switching effects, their slots, and the energy account."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from granchain_core.integrate.scaling import slots_of
 from granchain_core.precompile.warm import structure
 
 
-@pytest.mark.parametrize(("shown", "name"), [  # where there is no damping there is no tension to cut, see below
+@pytest.mark.parametrize(("shown", "name"), [  # without damping, there is no tension to cut; see below
     (shown, name) for shown in scene_names() for name, effect in SWITCHES.items()
     if name != ACCOUNT_SWITCH and effect.possible(scene(shown))])
 def test_a_switch_changes_what_is_compiled_and_comes_back(name: str, shown: str) -> None:
@@ -88,6 +88,6 @@ def test_the_account_of_a_picture_closes() -> None:
     picture = settle(scene("sec2").evolve(N=3, f=1000.0))
     assert picture.run.energy_residual is None
     counted = with_account(picture, Stop())
-    # the account is as good as the motion it is integrated with: a hundredth of the 1e-6 asked for
+    # the account is as accurate as the motion with which it is integrated: a hundredth of the requested 1e-6
     assert counted.run.energy_residual is not None and counted.run.energy_residual < 1e-6
     assert counted.run.displacement is picture.run.displacement

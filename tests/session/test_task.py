@@ -1,4 +1,4 @@
-"""Background work of a page: what arrives, what does not after a cancel, and what a failure says."""
+"""Background work of a page: results that arrive, results dropped after a cancellation, and reports of failures."""
 
 from __future__ import annotations
 
@@ -21,35 +21,35 @@ from granchain_core import BadInput, Cancelled, ComputationError, scene
 
 
 class SayingHost(FakeHost):
-    """A host that keeps what a task's page says."""
+    """A host that records the messages of a task's page."""
 
     def __init__(self) -> None:
         super().__init__()
         self.said: list[tuple[str, str]] = []
 
     def say(self, status: str, sentence: str) -> None:
-        """What the page of the task says."""
+        """Record a status and a sentence."""
         self.said.append((status, sentence))
 
 
 @pytest.fixture
 def host() -> SayingHost:
-    """A host to which nothing was said yet."""
+    """A host that has received no messages."""
     return SayingHost()
 
 
 @pytest.fixture
 def task(host: SayingHost) -> Task:
-    """A task on a pool of its own."""
+    """A task with its own pool."""
     return Task(host, WorkerPool("test", 1), host.say, "The measurement")
 
 
-#: What is said of an error of granchain itself.
+#: The sentence about an error in granchain itself.
 FAULT = "The measurement failed because of an error in granchain (ZeroDivisionError); please report it."
 
 
 def failing(error: Exception) -> Callable[[Job], None]:
-    """Work that ends with this."""
+    """Return work that ends with this error."""
     def work(_: Job) -> None:
         raise error
     return work
@@ -63,7 +63,7 @@ def test_what_the_work_says_comes_before_its_end(host: SayingHost, task: Task) -
 
 
 def test_a_task_ends_when_the_visitor_leaves(host: SayingHost, task: Task) -> None:
-    """A page need not remember it, and nothing is computed for nobody."""
+    """No page has to take care of that, and nothing is computed in vain."""
     begun, ended = threading.Event(), threading.Event()
 
     def work(job: Job) -> None:
@@ -170,9 +170,9 @@ def test_work_that_is_cancelled_before_its_turn_is_not_begun(host: SayingHost) -
 
 @pytest.mark.parametrize("limit", [None, 1])
 def test_what_is_started_again_and_again_is_kept_once(limit: int | None, host: SayingHost) -> None:
-    """A visitor who uploads file after file while all threads are busy: only the last one waits."""
+    """If a visitor uploads file after file while all threads are busy, only the last one waits."""
     class File:
-        """What is uploaded."""
+        """An uploaded file."""
 
     pool, leave = WorkerPool("test", 1, per_owner_limit=limit), threading.Event()
     pool.submit(leave.wait, 120)
@@ -194,7 +194,7 @@ def test_what_is_started_again_and_again_is_kept_once(limit: int | None, host: S
 
 
 def test_work_gives_way_to_a_moving_knob(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The picture is awaited three times that the work looks for it, then it is there."""
+    """The first three checks find a picture still awaited; at the fourth, it is there."""
     looks = count(1)
     monkeypatch.setattr(SayingHost, "awaiting_picture", property(lambda _: next(looks) < 4))
     host = SayingHost()

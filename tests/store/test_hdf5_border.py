@@ -32,7 +32,7 @@ NEEDED = {"run": "run/displacement", "start of orbit": "run/velocity", "force of
 
 
 #: What is said of each forgery; a dataset that a link replaced may be missed before the link is met.
-SAID = {"external link": ("is a link",), "soft link": ("is a link",), "external storage": ("stands in another file",),
+SAID = {"external link": ("is a link",), "soft link": ("is a link",), "external storage": ("is stored in another file",),
         "virtual dataset": ("is virtual",), "huge shape": ("is virtual", "bytes in a file of"),
         "circle of groups": ("is not a dataset", "is not a group")}
 
@@ -238,7 +238,7 @@ def test_the_commands_refuse_a_damaged_file_with_status_2(command: list[str], fi
     path.write_bytes(content)
     assert main([*command, str(path)]) == 2
     said = capsys.readouterr().err
-    assert len(said.splitlines()) == 1 and "its checksum does not fit" in said
+    assert len(said.splitlines()) == 1 and "its checksum does not match" in said
 
 
 def test_what_is_no_file_is_refused_without_waiting(tmp_path: Path) -> None:

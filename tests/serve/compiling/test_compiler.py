@@ -1,4 +1,4 @@
-"""Compiling in other processes: what fails there is in the log, and the kernels are compiled here instead."""
+"""Compilation in other processes: failures are logged, and the kernels are compiled in this process instead."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ def test_a_compiler_that_fails_is_reported_with_what_it_said(monkeypatch: pytest
         compiler._compile(scene("sec2"), "no such piece")
     assert compiled == ["no such piece"]
     assert "compiling no such piece in another process failed" in caplog.text
-    assert "KeyError" in capfd.readouterr().err  # the other process's own words
+    assert "KeyError" in capfd.readouterr().err  # the other process's output
 
 
 def test_a_failure_ahead_of_time_is_in_the_log(monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture) -> None:
-    """No request waits for this compilation, so only the log can show that it failed."""
+    """No request waits for this compilation, so only the log shows that it failed."""
     one = Compiler()
 
     def fails(*_: object) -> None:
@@ -44,7 +44,7 @@ def test_a_failure_ahead_of_time_is_in_the_log(monkeypatch: pytest.MonkeyPatch, 
 
 
 def test_a_compilation_that_failed_is_tried_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    """For a moment the disk was full, say: later visitors do not get the first one's error."""
+    """If, for example, the disk was full for a moment, later visitors do not get the first visitor's error."""
     one, tries = Compiler(), []
 
     def fails_once(_: object, piece: str) -> None:
@@ -61,7 +61,7 @@ def test_a_compilation_that_failed_is_tried_again(monkeypatch: pytest.MonkeyPatc
 
 
 def test_the_work_of_one_visitor_tries_a_piece_once_and_that_of_another_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    """As long as an attempt is under way, it has not failed."""
+    """An attempt that is still running has not failed."""
     one, tries, finish = Compiler(), [], Event()
 
     def fails(_: object, piece: str) -> None:

@@ -1,4 +1,4 @@
-"""Threads that compute for long give way to the event loop and to what has just begun."""
+"""Long-computing threads give way to the event loop and to computations that have just started."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from app.serve.computing.priorities import begin, has_lower_priority, lower_prio
 from app.serve.computing.turns import TurnFlag, Turns
 from app.serve.computing.worker_pools import WorkerPool
 
-linux = pytest.mark.skipif(sys.platform != "linux", reason="elsewhere the niceness is that of the process")
+linux = pytest.mark.skipif(sys.platform != "linux", reason="other systems have one niceness for the whole process")
 
 
 def niceness() -> int:
@@ -26,7 +26,7 @@ def niceness() -> int:
 
 
 def computes(slot: TurnFlag, seconds: float) -> Iterator[int]:
-    """The niceness after so much processor time, which has a pause at its end."""
+    """Yield the niceness after this much processor time, which ends with a pause."""
     began = time.thread_time()
     while time.thread_time() - began < seconds:
         pass
@@ -35,7 +35,7 @@ def computes(slot: TurnFlag, seconds: float) -> Iterator[int]:
 
 
 def is_lowered() -> bool:
-    """Whether this thread has a lower priority once it has asked for that."""
+    """Return whether this thread has a lower priority after asking for one."""
     lower_priority()
     return has_lower_priority()
 
@@ -67,7 +67,7 @@ def test_only_what_takes_long_gives_way_and_its_thread_does_nothing_more() -> No
     assert pool.submit(in_turns, 0.1).result(60.0) > usual
     after = pool.submit(lambda: (threading.get_native_id(), niceness()))  # waits for the only thread, which then ends
     assert after.result(60.0)[0] != first and after.result(60.0)[1] == usual
-    waiting.until(lambda: pool.busy_threads == 0)  # nor is the thread that has ended
+    waiting.until(lambda: pool.busy_threads == 0)  # the thread that has ended does not count either
     assert pool.queued == 0
 
 
@@ -82,7 +82,7 @@ def test_work_waiting_for_a_thread_that_ends_is_done_in_its_order() -> None:
     for one in given:
         one.result(60.0)
     assert done == [0, 1, 2, 3, 4] and pool.queued == 0
-    assert last.result(60.0) == niceness()  # its thread was begun by one that gave way
+    assert last.result(60.0) == niceness()  # its thread was started by one that gave way
 
 
 @linux
@@ -114,7 +114,7 @@ def test_the_thread_of_the_event_loop_never_gives_way() -> None:
 
 
 class Failing(threading.Thread):
-    """A thread that the system does not allow."""
+    """A thread that the system refuses to start."""
 
     def start(self) -> None:
         """Fail as `Thread.start` does."""

@@ -1,4 +1,4 @@
-"""What several visitors ask for is computed once, kept in bounded memory, and ends when nobody wants it any more."""
+"""Requests shared by several visitors are computed once, kept in bounded memory, and stopped when nobody needs them."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ pytestmark = pytest.mark.quick
 
 
 class Work:
-    """A computation of three results that goes on when the test says so."""
+    """A computation of three results that advances when the test says so."""
 
     def __init__(self) -> None:
         self.begun, self.go, self.stops = 0, threading.Semaphore(0), []
 
     def __call__(self, stop: TurnFlag) -> Iterator[int]:
-        """1, 2, 3."""
+        """Yield 1, 2, 3."""
         self.begun += 1
         self.stops.append(stop)
         for number in (1, 2, 3):
@@ -37,12 +37,12 @@ class Work:
 
 
 def shared(memory: int = 1000) -> Shared[int]:
-    """Each result takes 10 bytes; the last of a computation is kept."""
+    """Return a store in which each result takes 10 bytes and a computation's last result is kept."""
     return Shared(WorkerPool("test", 20), memory, lambda _: 10, lambda items: items[-1:])
 
 
 def follower(one: Shared[int], key: str | None, work: Work, found: list[Any], stop: Flag | None = None) -> threading.Thread:
-    """A visitor in a thread of its own."""
+    """Return a visitor in its own thread."""
 
     def follow() -> None:
         try:
@@ -91,9 +91,9 @@ def test_it_ends_with_the_last_visitor_and_not_before() -> None:
     second.set()
     threads[1].join(20)
     until(lambda: bool(work.stops[0]))
-    work.go.release(9)  # what was cancelled may have taken some
+    work.go.release(9)  # cancelled computations may have consumed some
     follower(one, "key", work, []).join(20)
-    assert work.begun == 2  # what was cancelled is not taken for a result
+    assert work.begun == 2  # a cancelled computation does not count as a result
 
 
 def test_an_error_reaches_all_and_is_not_kept() -> None:
@@ -111,7 +111,7 @@ def test_an_error_reaches_all_and_is_not_kept() -> None:
 
 @pytest.mark.parametrize("error", [ZeroDivisionError("1/0"), OverBudget("It takes too long.", 3.0, 1.0), OSError(2, "no such file")])
 def test_each_session_raises_an_error_of_its_own(error: Exception) -> None:
-    """The frames of one session are in the traceback of no other."""
+    """The traceback of one session has no frames of another."""
     one, go, caught = shared(), threading.Event(), list[Exception]()
 
     def fails(_: TurnFlag) -> Iterator[int]:

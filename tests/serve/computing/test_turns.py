@@ -1,4 +1,4 @@
-"""Fair turns: the visitor who has used least processor time is next, and a long computation keeps nobody waiting."""
+"""Fair turns: the visitor who has used the least processor time is next, and a long computation delays nobody."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def test_a_stopped_computation_leaves_the_queue_before_the_next_check(monkeypatc
 
 
 def test_the_visitor_who_has_used_least_gets_the_next_turn() -> None:
-    """Not the one that came first. The clock stands still: after a tenth of a second the first turn would make room."""
+    """It is not the one that came first. The clock is stopped, because the first turn would give way after 0.1 s."""
     turns, order = Turns(1, lambda: 0.0), []
     first = turns.begin(CpuTime(), Stop())
     cpu_times = {}
@@ -83,7 +83,7 @@ def test_the_visitor_who_has_used_least_gets_the_next_turn() -> None:
 
 
 def order_of(turns: Turns, waits: list[tuple[str, float, bool]]) -> list[str]:
-    """In which order waiting computations get their turns: name, time used, whether it has just begun."""
+    """Return the order in which waiting computations (name, time used, whether new) get their turns."""
     order: list[str] = []
     first, threads = turns.begin(CpuTime(), Stop()), []
     for number, (name, used, is_new) in enumerate(waits, 1):
@@ -105,21 +105,21 @@ def order_of(turns: Turns, waits: list[tuple[str, float, bool]]) -> list[str]:
 
 
 def test_first_pictures_go_before_refinements() -> None:
-    """Among equals the visitor who has used less."""
+    """Among equals, the visitor who has used less comes first."""
     waits = [("refinement", 0.0, False), ("first, much", 3.0, True), ("first, little", 1.0, True),
              ("refinement, much", 5.0, False)]
     assert order_of(Turns(1, lambda: 0.0), waits) == ["first, little", "first, much", "refinement", "refinement, much"]
 
 
 def used_time(used: float) -> CpuTime:
-    """The time of a visitor who has used so much, which is not halved."""
+    """Return the processor time of a visitor who has used this much, without halving."""
     found = CpuTime(lambda: 0.0)
     found.charge(used)
     return found
 
 
 def waiting_threads(turns: Turns, *cpu_times: CpuTime, is_new: bool = False) -> list[threading.Thread]:
-    """Threads that wait for a turn, one for each visitor, and end it as soon as they have it."""
+    """Start threads that wait for a turn, one for each visitor, and end the turn as soon as they have it."""
     found = [threading.Thread(target=lambda one=one: turns.end(turns.begin(one, Stop(), is_new)), daemon=True)
              for one in cpu_times]
     for thread in found:
@@ -167,7 +167,7 @@ def test_at_a_pause_the_turn_is_passed_on() -> None:
 
 
 def test_a_first_picture_does_not_wait_for_a_refinement_and_is_not_interrupted() -> None:
-    """As many first pictures at once as there are cores."""
+    """As many first pictures run at once as there are cores."""
     now = [0.0]
     turns = Turns(1, lambda: now[0])
     turns.begin(used_time(0.0), Stop(), False)
@@ -191,7 +191,7 @@ def test_a_computation_with_a_result_no_longer_counts_as_just_begun() -> None:
 
 
 def test_a_computation_that_has_made_progress_makes_room_for_a_first_picture() -> None:
-    """At its pause it may go on, and the first picture gets a turn beside it."""
+    """It may continue after its pause, and the first picture gets a turn in addition."""
     turns = Turns(1, lambda: 0.0)
     turn = turns.begin(used_time(0.0), Stop())
     thread, = waiting_threads(turns, used_time(0.0), is_new=True)
@@ -207,13 +207,13 @@ def test_a_refinement_that_has_waited_half_a_second_gets_a_slice_beside_first_pi
     first = turns.begin(used_time(0.0), Stop())
     thread, = waiting_threads(turns, used_time(5.0))
     now[0] = 0.6
-    first.at = 0.6  # not so old that it does not count
+    first.at = 0.6  # not old enough to be disregarded
     thread.join(60)
     assert not thread.is_alive()
 
 
 def test_of_more_computations_than_turns_the_one_that_has_used_most_yields_after_its_slice() -> None:
-    """An old turn keeps nobody waiting, but would share the cores with the computations that began after it."""
+    """An old turn delays nobody, but would share the cores with computations that started later."""
     now = [0.0]
     turns = Turns(1, lambda: now[0])
     long = turns.begin(used_time(5.0), Stop(), False)
@@ -227,7 +227,7 @@ def test_of_more_computations_than_turns_the_one_that_has_used_most_yields_after
 
 
 def test_a_computation_that_never_pauses_keeps_nobody_waiting() -> None:
-    """However many of them there are."""
+    """This is true for any number of them."""
     turns = Turns(2)
     for _ in range(20):
         turns.begin(CpuTime(), Stop())

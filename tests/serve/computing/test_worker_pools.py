@@ -1,4 +1,4 @@
-"""Work that is given to a pool has a thread while there is one, and a session's computations go on after a failure."""
+"""Work submitted to a pool gets a thread if one is free, and a session's computations continue after a failure."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ pytestmark = pytest.mark.quick
 
 
 def test_work_does_not_wait_for_a_thread_that_has_just_been_given_other_work() -> None:
-    """In 300 tries: a thread that had taken work and was not yet counted as busy kept the next waiting behind it."""
+    """In 300 tries: a thread that had taken work but did not count as busy yet kept the next work waiting behind it."""
     pool = WorkerPool("tested", 4)
     for _ in range(300):
         go_on, done = threading.Event(), threading.Event()
@@ -42,9 +42,9 @@ def test_what_waits_and_what_is_under_way_is_counted() -> None:
 
 @pytest.mark.parametrize("limit", [None, 1])
 def test_cancelled_work_that_has_not_begun_is_not_done_and_not_kept(limit: int | None) -> None:
-    """50 uploads that replace each other would otherwise stay in memory until a thread is free."""
+    """Otherwise, 50 uploads that replace each other would stay in memory until a thread is free."""
     class File:
-        """What the work would be done with."""
+        """An object that the work would use."""
 
     pool, go_on, done, owner = WorkerPool("tested", 1, per_owner_limit=limit), threading.Event(), list[object](), object()
     first = pool.submit(go_on.wait, 120, owner=owner)
@@ -67,7 +67,7 @@ def test_cancelled_work_that_has_not_begun_is_not_done_and_not_kept(limit: int |
 @pytest.mark.parametrize("limit", [None, 1])
 def test_work_that_is_cancelled_as_a_thread_takes_it_is_left_alone(limit: int | None, caplog: pytest.LogCaptureFixture,
                                                                    monkeypatch: pytest.MonkeyPatch) -> None:
-    """The thread comes between the two steps of a cancellation: the state of the future, and the call of those told."""
+    """The thread intervenes between a cancellation's two steps: setting the future's state, calling its callbacks."""
     pool, go_on, taken = WorkerPool("tested", 1, per_owner_limit=limit), threading.Event(), threading.Event()
 
     def after_the_thread(_: object) -> None:
@@ -75,7 +75,7 @@ def test_work_that_is_cancelled_as_a_thread_takes_it_is_left_alone(limit: int | 
         assert pool.submit(taken.set).result(60) is None, "the only thread has passed the cancelled work"
 
     class Told(Future[object]):
-        """A future that tells the thread before it tells the pool."""
+        """A future that notifies the thread before it notifies the pool."""
 
         def add_done_callback(self, fn: Callable[[Future[object]], object]) -> None:
             super().add_done_callback(after_the_thread)
@@ -90,7 +90,7 @@ def test_work_that_is_cancelled_as_a_thread_takes_it_is_left_alone(limit: int | 
 
 
 def test_an_owner_beyond_its_limit_waits_behind_others() -> None:
-    """Two pieces of work of one owner at a time: the third begins when one of them has ended, and not before."""
+    """One owner has two pieces of work at a time: the third starts when one of them has ended, and not before."""
     pool, go_on, order = WorkerPool("tested", 4, per_owner_limit=2), [threading.Event() for _ in range(4)], list[str]()
 
     def work(name: str, until: threading.Event) -> None:
@@ -113,11 +113,11 @@ def test_an_owner_beyond_its_limit_waits_behind_others() -> None:
 
 
 class Owner:
-    """Whoever has work done."""
+    """The owner of work."""
 
 
 def test_a_pool_keeps_no_owner_whose_work_has_ended() -> None:
-    """Of one whose work was held, too."""
+    """This includes an owner whose work was held back."""
     pool, owner = WorkerPool("tested", 1, per_owner_limit=1), Owner()
     given = [pool.submit(time.sleep, 0.0, owner=owner) for _ in range(3)]
     for future in given:
@@ -164,7 +164,7 @@ def test_all_pools_are_in_the_metrics() -> None:
 
 
 class NoThreads:
-    """A system that allows no more threads while `full`."""
+    """A system that refuses new threads while `full`."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch, full: bool = True) -> None:
         self.full = full

@@ -1,4 +1,4 @@
-"""The private attributes behind a page's sockets: they are there, and a message is served without each of them."""
+"""The private attributes behind a page's sockets exist, and messages are served even if one of them is missing."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tornado.websocket import WebSocketProtocol
 
 from app.serve.connection import socket_tuning
 
-#: Every undocumented attribute on the way to a stream, and whose it is.
+#: Every undocumented attribute on the way to a stream, with its owner.
 ATTRIBUTES: list[tuple[type, str]] = [
     (ServerSession, "_subscribed_connections"), (ServerConnection, "_socket"), (WSHandler, "ws_connection"),
     (WebSocketProtocol, "stream"),
@@ -24,7 +24,7 @@ ATTRIBUTES: list[tuple[type, str]] = [
 
 @in_a_thread
 def test_the_attributes_of_these_releases_are_used(served: Served) -> None:
-    """Fails when a release has dropped one: the page still works, some milliseconds slower."""
+    """The test fails when a release has dropped one; the page then still works, but is some milliseconds slower."""
     session = pull_session(url=served.address)
     ask(session, "there")
     wait_for(session, "there, yes")

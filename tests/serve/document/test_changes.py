@@ -1,5 +1,4 @@
-"""What is gathered of a page leaves as the message that Bokeh would send, and comes in the order in which it was said.
-"""
+"""A page's gathered changes are sent as the message that Bokeh would send, in the order in which they were made."""
 
 from __future__ import annotations
 
@@ -36,7 +35,7 @@ pytestmark = pytest.mark.quick
 
 
 def parts_of(data: bytes) -> list[bytes]:
-    """The payloads of websocket frames that are whole, not masked and not compressed."""
+    """Return the payloads of complete, unmasked and uncompressed websocket frames."""
     parts = []
     while data:
         kind, length = data[0], data[1]
@@ -52,17 +51,17 @@ def parts_of(data: bytes) -> list[bytes]:
 
 
 def without_ids(value: Any, buffers: dict[str, bytes]) -> Any:
-    """A message's content with its arrays in place of their names."""
+    """Return a message's content with its arrays instead of their ids."""
     if isinstance(value, dict):
         if value.get("type") == "bytes":
-            data = value["data"]  # in the text it is base64 of gzip, without which the browser shows nothing at all
+            data = value["data"]  # within the text: base64 of gzip, without which the browser shows nothing at all
             return gzip.decompress(base64.b64decode(data)) if isinstance(data, str) else buffers[data["id"]]
         return {name: without_ids(one, buffers) for name, one in value.items()}
     return [without_ids(one, buffers) for one in value] if isinstance(value, list) else value
 
 
 def read(data: bytes) -> Any:
-    """The content of a written message."""
+    """Return the content of a written message."""
     header, metadata, content, *buffers = parts_of(data)
     assert json.loads(header)["msgtype"] == "PATCH-DOC" and json.loads(metadata) == {}
     assert json.loads(header).get("num_buffers", 0) == len(buffers) // 2
@@ -95,7 +94,7 @@ def test_a_message_is_the_one_that_bokeh_writes() -> None:
     buffers = {one.ref["id"]: bytes(one.to_bytes()) for one in theirs.buffers}
     expected = without_ids(json.loads(theirs.content_json), buffers)
 
-    def plain(value: Any) -> Any:  # Bokeh leaves out entries that are none
+    def plain(value: Any) -> Any:  # Bokeh leaves out entries that are None
         if isinstance(value, dict):
             found = {name: plain(one) for name, one in value.items()}
             return {"entries": [], **found} if value.get("type") == "map" else found
@@ -146,7 +145,7 @@ def test_a_property_called_data_is_one_of_columns_in_data_sources_alone() -> Non
 
 @pytest.mark.parametrize("closing", [False, True])
 def test_nothing_follows_a_closing_frame(closing: bool) -> None:
-    """RFC 6455, section 5.5.1: the stream is still open until the other side has answered."""
+    """By RFC 6455, section 5.5.1, the stream is still open until the other side has answered."""
     async def written() -> list[bytes]:
         there, here = socket.socketpair()
         stream, sent = IOStream(there), list[bytes]()
@@ -173,7 +172,7 @@ def test_a_release_without_what_is_needed_is_noticed(row: Internal, monkeypatch:
 
 @in_a_thread
 def test_answers_come_where_something_needed_is_missing(served: Served, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Bokeh sends the changes itself."""
+    """In that case, Bokeh sends the changes itself."""
     monkeypatch.setattr(changes, "_COMPLETE", False)
     monkeypatch.setattr(changes, "_send", lambda *_: pytest.fail("gathered"))
     session = pull_session(url=served.address)

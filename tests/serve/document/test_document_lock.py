@@ -1,4 +1,4 @@
-"""A message is answered whether or not the document is locked, and whether or not that can be known."""
+"""A message is answered whether or not the document is locked, and whether or not its lock can be inspected."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from app.serve.document.document_lock import with_document_lock
 
 @in_a_thread
 def test_a_lock_of_this_release_is_known(served: Served) -> None:
-    """Fails when a release keeps no `_pending_writes`: every message then waits for the next turn of the loop."""
+    """The test fails if a release has no `_pending_writes`; messages then wait for the event loop's next iteration."""
     session = pull_session(url=served.address)
     ask(session, "there")
     wait_for(session, "there, yes")
@@ -37,7 +37,7 @@ def test_messages_are_answered_where_a_lock_is_not_known(served: Served, monkeyp
 @in_a_thread
 def test_a_message_that_comes_while_the_document_is_not_locked_is_answered(hidden: bool, served: Served,
                                                             monkeypatch: pytest.MonkeyPatch) -> None:
-    """Bokeh refuses a change there; whether it is locked is unknown where the attribute is gone."""
+    """Bokeh refuses a change in that case. Without the attribute, it is unknown whether the document is locked."""
     if hidden:
         hide(monkeypatch, document_lock, ServerSession, "_pending_writes")
     session = pull_session(url=served.address)

@@ -1,4 +1,4 @@
-"""Messages of the page's parts reach them as Bokeh would have decoded them, and everything else goes to Bokeh."""
+"""Messages for parts of the page reach them as Bokeh would have decoded them, and all others go to Bokeh."""
 
 from __future__ import annotations
 
@@ -25,25 +25,25 @@ VALUE = {"type": "map", "entries": [
 
 
 class Part:
-    """What a part of the page is here: it keeps what it hears."""
+    """A stand-in for a part of the page, which records its messages."""
 
     def __init__(self) -> None:
         self.heard: list[Any] = []
 
     def hear(self, message: Any) -> None:
-        """One more."""
+        """Record one message."""
         self.heard.append(message)
 
 
 def content(data: Any, model: str = "p1", **changes: Any) -> dict[str, Any]:
-    """The content of a message as BokehJS writes it."""
+    """Return the content of a message as BokehJS writes it."""
     event = {"kind": "MessageSent", "msg_type": "bokeh_event", "msg_data": {"type": "event", "name": "data_event", "values": {
         "type": "map", "entries": [["model", {"id": model}], ["data", data]]}}}
     return json.loads(json.dumps({"events": [{**event, **changes}]}))
 
 
 def heard(sent: dict[str, Any]) -> tuple[bool, list[Any]]:
-    """Whether a message was taken, and what the part heard."""
+    """Return whether a message was accepted, and the messages that the part received."""
     session, part = ServerSession("tested", Document()), Part()  # type: ignore[arg-type]
     register(session.document, "p1", part.hear)
 
@@ -81,7 +81,7 @@ def test_an_action_waits_for_the_lock_and_what_comes_from_threads_runs_in_order(
     order: list[Any] = []
 
     async def act() -> None:
-        IOLoop.current()  # as the server makes it
+        IOLoop.current()  # as the server creates it
         session = ServerSession("tested", Document())  # type: ignore[arg-type]
         context = type("Context", (), {"session": session})()
         monkeypatch.setattr(Document, "session_context", context)
@@ -101,7 +101,7 @@ def test_an_action_waits_for_the_lock_and_what_comes_from_threads_runs_in_order(
 
 
 def test_what_comes_for_a_document_that_bokeh_has_destroyed_is_dropped(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A picture that was ready between Bokeh's end of a session and its word to the page: 8 of 10,200 visits saw it."""
+    """E.g. a picture that is ready after Bokeh ends a session and before the page knows: 8 of 10,200 visits saw it."""
 
     async def act() -> None:
         IOLoop.current()

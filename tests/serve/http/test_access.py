@@ -1,4 +1,4 @@
-"""Who may use the server, as the command line says it: addresses, origins, secrets and ways of signing in."""
+"""Access to the server as configured on the command line: addresses, origins, secrets and ways of signing in."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ def test_an_origin_is_compared_in_lower_case() -> None:
 
 
 def test_the_secret_of_cookies_is_given_or_follows_from_that_of_the_sessions(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """Otherwise each process signs with its own, and a visitor who comes to another one has to sign in again."""
+    """Otherwise, each process signs with its own secret, and visitors who reach another one have to sign in again."""
     asked: list[str] = []
     monkeypatch.setattr(server, "serve", lambda *_, access, **named: asked.append(dict(access.sign_in)["cookie_secret"]))
     (tmp_path / "users.json").write_text(json.dumps({"ada": "lovelace"}))
@@ -118,7 +118,7 @@ def test_the_secret_of_cookies_is_given_or_follows_from_that_of_the_sessions(mon
     monkeypatch.delenv("BOKEH_SECRET_KEY", raising=False)
     first, again, other = (start("--secret-file", str(tmp_path / name)) for name in "aab")
     assert first == again != other and (_SECRET + b"a").decode() not in first
-    assert start() != start(), "without a secret, that of the process alone"
+    assert start() != start(), "without a secret, each process has its own"
     monkeypatch.setenv("PANEL_COOKIE_SECRET", "given")
     assert start("--secret-file", str(tmp_path / "a")) == "given"
 

@@ -1,4 +1,4 @@
-"""Scripts and styles come compressed, once for all visitors, and are the same files."""
+"""Scripts and styles are sent compressed, once for all visitors, with unchanged content."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ SCRIPT = b"// a line that is there often enough\n" * 200
 
 @pytest.fixture
 def port(tmp_path: Path) -> Iterator[int]:
-    """A server of the files in `tmp_path`."""
+    """Yield the port of a server of the files in `tmp_path`."""
     for name, content in (("a.js", SCRIPT), ("small.js", b"1;"), ("a.png", SCRIPT), ("random.js", os.urandom(4000))):
         (tmp_path / name).write_bytes(content)
     socket = bind_sockets(0, "127.0.0.1")[0]
@@ -63,7 +63,7 @@ def test_a_script_is_compressed_for_a_browser_that_takes_it(port: int) -> None:
     assert status == 200 and headers["Content-Encoding"] == "gzip" and headers["Vary"] == "Accept-Encoding"
     assert int(headers["Content-Length"]) == len(content) < len(SCRIPT) / 10
     assert gzip.decompress(content) == SCRIPT
-    assert headers["X-Content-Type-Options"] == "nosniff"  # the guard is before it
+    assert headers["X-Content-Type-Options"] == "nosniff"  # the guard comes first
     head = ask(port, "a.js", "HEAD", Accept_Encoding="gzip")
     assert head[1]["Content-Length"] == headers["Content-Length"] and head[2] == b""
 
@@ -111,7 +111,7 @@ def test_a_file_that_is_not_there_is_none(port: int) -> None:
 
 
 def test_addresses_that_are_refused_leave_nothing_in_memory(port: int) -> None:
-    """An absolute path is a file of nobody's: Tornado refuses it, and a stranger may send as many as there are."""
+    """Tornado refuses absolute paths, of which a stranger may send any number."""
     def remembered() -> int:
         return sum(len(one) for name, one in vars(module).items() if isinstance(one, dict) and not name.startswith("__"))
 

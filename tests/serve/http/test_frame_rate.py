@@ -1,4 +1,4 @@
-"""Frames are counted in the bytes of a websocket, however these are cut, and paid from a token bucket."""
+"""Frames are counted in a websocket's bytes, however these are split, and limited by a token bucket."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ pytestmark = pytest.mark.quick
 
 
 def frame(payload: int, masked: bool = True) -> bytes:
-    """A text frame with a payload of so many bytes (RFC 6455, section 5.2)."""
+    """Return a text frame with a payload of this many bytes (RFC 6455, section 5.2)."""
     if payload < 126:
         length, more = payload, b""
     elif payload < 2**16:

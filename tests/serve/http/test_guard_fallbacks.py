@@ -1,4 +1,4 @@
-"""The guards and the page of a real server where a release of Bokeh, Panel or Tornado lacks what is used of them."""
+"""The guards and page of a real server when a release of Bokeh, Panel or Tornado lacks internals that they use."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from tools.visitors.visitor import Visitor
 
 
 async def visit(address: str) -> int:
-    """Open the page, move a knob and leave; how many pictures came."""
+    """Open the page, move a knob and leave; return the number of pictures received."""
     visitor = Visitor(address)
     await visitor.open()
     assert await visitor.move("f", 400.51) is not None
@@ -58,7 +58,7 @@ def test_a_page_whose_models_are_collected_anew_each_time_is_the_same(monkeypatc
 
 
 def test_what_a_visitor_does_reaches_the_parts_without_bokehs_decoding(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The guard finds the session by the id in the token."""
+    """The guard finds the session by the id in its token."""
     taken: list[bool] = []
 
     def noted(session: object, content: dict[str, object]) -> bool:
@@ -75,7 +75,7 @@ def test_what_a_visitor_does_reaches_the_parts_without_bokehs_decoding(monkeypat
 
 
 def test_a_request_without_a_guard_gets_no_page(monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture) -> None:
-    """As if Tornado found the handlers of requests in another way."""
+    """This simulates a Tornado that finds request handlers in another way."""
     one = Listening(Access())
     try:
         assert 'id="knobs"' in one.ask()[2]
@@ -117,7 +117,7 @@ def test_an_error_on_a_websocket_has_an_id_that_is_in_the_log_and_no_traceback(c
     assert found is not None
     (record,) = [one for one in caplog.records if getattr(one, "request", "") == found[1]]
     assert "p0" in record.getMessage()
-    assert next_header["msgtype"] == "PULL-DOC-REPLY" and document["doc"]["roots"], "what comes next is as it was"
+    assert next_header["msgtype"] == "PULL-DOC-REPLY" and document["doc"]["roots"], "the next answer is unaffected"
 
 
 _PROGRAM = """
@@ -144,7 +144,7 @@ one.stop()
 
 
 def test_a_server_starts_and_serves_without_the_names_that_its_modules_would_import() -> None:
-    """The libraries themselves keep them: they are gone only while the dashboard is imported and prepared."""
+    """The libraries keep these names: they are missing only while the dashboard is imported and prepared."""
     done = subprocess.run([sys.executable, "-c", _PROGRAM], capture_output=True, text=True, timeout=200, check=False)
     assert done.returncode == 0, done.stderr
     assert int(done.stdout.split()[-1]) >= 2

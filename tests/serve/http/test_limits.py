@@ -1,6 +1,6 @@
-"""The limits of docs/security.md: their numbers are those of the code, and each is kept.
+"""The limits of docs/security.md have the values of the code, and each is enforced.
 
-A raw socket sends what a browser would not. The constants are lowered, so that a test lasts a second.
+A raw socket sends what a browser would not send. Constants are lowered so that a test takes about a second.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ STATED_LIMITS = dict(re.findall(
 
 
 def test_the_limits_of_the_document_are_those_of_the_code() -> None:
-    """Literally as the table has them, so that neither changes alone."""
+    """They agree literally with the table, so that neither changes without the other."""
     assert {
         "a request's head": f"{server.IDLE_TIME} s",
         "a request's body": f"{server.BODY_TIME} s, {server.LARGEST_BODY // 1000} kB",
@@ -90,7 +90,7 @@ def test_every_limit_names_its_tests(limit: str, tests: list[str]) -> None:
 
 @pytest.fixture(scope="module")
 def dashboard() -> Iterator[Listening]:
-    """A dashboard with the settings of a public server, on localhost."""
+    """Yield a dashboard with the settings of a public server, on localhost."""
     one = Listening(Access(secret=SECRET))
     yield one
     one.stop()
@@ -123,7 +123,7 @@ def test_a_websocket_that_answers_no_ping_is_closed(monkeypatch: pytest.MonkeyPa
 
 @pytest.mark.parametrize("ended", [b"GET /liveness HTTP/1.1\r\nHost: localhost\r\n\r\n", b""])
 def test_a_connection_that_asks_nothing_more_is_closed(ended: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
-    """After a whole answer, and one that never asks anything."""
+    """One connection has received a whole answer, the other never asks anything."""
     monkeypatch.setattr(server, "IDLE_TIME", 1)
     one = Listening(Access(secret=SECRET))
     try:
@@ -132,7 +132,7 @@ def test_a_connection_that_asks_nothing_more_is_closed(ended: bytes, monkeypatch
             idle.sendall(ended)
             came = received(idle, 30)
             assert came.endswith(b'{"/liveness": true}') if ended else came == b""
-            assert 0.9 < time.monotonic() - began < 25, "the server closed it, and not at once"
+            assert 0.9 < time.monotonic() - began < 25, "the server closed it, but not at once"
     finally:
         one.stop()
 
@@ -153,7 +153,7 @@ def test_a_body_that_does_not_come_is_given_up(monkeypatch: pytest.MonkeyPatch) 
 @pytest.mark.parametrize(("length", "status"), [(server.LARGEST_BODY, b"405"), (server.LARGEST_BODY + 1, b"400"), (10**9, b"400")])
 @pytest.mark.parametrize("chunked", [False, True])
 def test_too_large_a_body_is_refused(length: int, status: bytes, chunked: bool, dashboard: Listening) -> None:
-    """The largest is read, and refused by the page because it takes none; a larger one is not read."""
+    """The largest allowed body is read, and refused by the page, which accepts none; a larger one is not read."""
     head = b"Transfer-Encoding: chunked\r\n\r\n%x\r\n" % length if chunked else b"Content-Length: %d\r\n\r\n" % length
     sent = b"x" * length + (b"\r\n0\r\n\r\n" if chunked else b"") if length <= server.LARGEST_BODY else b""
     with socket.create_connection(("127.0.0.1", dashboard.port), timeout=30) as one:
@@ -162,7 +162,7 @@ def test_too_large_a_body_is_refused(length: int, status: bytes, chunked: bool, 
 
 
 def masked(opcode: int, payload: bytes = b"", final: bool = True) -> bytes:
-    """A frame as a browser sends it (RFC 6455, section 5.2), with a mask of zeros."""
+    """Return a frame as a browser sends it (RFC 6455, section 5.2), with a mask of zeros."""
     length = bytes([0x80 | len(payload)]) if len(payload) < 126 else bytes([0x80 | 127]) + len(payload).to_bytes(8)
     return bytes([opcode | 0x80 * final]) + length + bytes(4) + payload
 
@@ -173,12 +173,12 @@ TEXT, CONTINUED, PING, PONG = 1, 0, 9, 10
 
 
 def message(content: str = "{}", kind: str = "PULL-DOC-REQ") -> bytes:
-    """A message as BokehJS sends it, in three frames."""
+    """Return a message as BokehJS sends it, in three frames."""
     return b"".join(masked(TEXT, part.encode()) for part in (json.dumps({"msgid": "1", "msgtype": kind}), "{}", content))
 
 
 BOKEH_MESSAGE = message()
-#: Floods of frames, the first bytes of each and what is repeated.
+#: Floods of frames: the first bytes of each, and the repeated bytes.
 FLOODS = {
     "messages": (b"", BOKEH_MESSAGE), "pings": (b"", masked(PING, b"hello")), "pongs": (b"", masked(PONG)),
     "empty pieces of one message": (masked(TEXT, final=False), masked(CONTINUED, final=False)),
@@ -188,7 +188,7 @@ FLOODS = {
 
 @pytest.mark.parametrize("kind", FLOODS)
 def test_a_flood_of_frames_closes_the_connection(kind: str, dashboard: Listening, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Over a raw socket, since Tornado hands over whole messages only. The bucket gets no refill here."""
+    """The flood goes over a raw socket, since Tornado only delivers whole messages. The bucket is not refilled here."""
     monkeypatch.setattr(frame_rate, "FRAME_RATE", 0.0)
     monkeypatch.setattr(frame_rate, "FRAME_BURST", 60.0)
     refused = METRICS.counted["refused_messages"]
@@ -206,7 +206,7 @@ def test_a_flood_of_frames_closes_the_connection(kind: str, dashboard: Listening
 
 @pytest.mark.parametrize("kind", ["pings", "pongs", "empty pieces of one message", "frames without a mask"])
 def test_as_many_frames_as_are_allowed_at_once_are_taken(kind: str, dashboard: Listening, monkeypatch: pytest.MonkeyPatch) -> None:
-    """One more closes the connection with the code of a refusal."""
+    """One more frame closes the connection with the code of a refusal."""
     first, repeated = FLOODS[kind]
     monkeypatch.setattr(frame_rate, "FRAME_RATE", 0.0)
     monkeypatch.setattr(frame_rate, "FRAME_BURST", 200.5)
@@ -221,7 +221,7 @@ def test_as_many_frames_as_are_allowed_at_once_are_taken(kind: str, dashboard: L
 
 @pytest.fixture
 def unlimited_frames(monkeypatch: pytest.MonkeyPatch) -> Iterator[Listening]:
-    """A server of its own that takes any number of frames."""
+    """Yield a separate server that accepts any number of frames."""
     monkeypatch.setattr(frame_rate, "FRAME_RATE", 1e6)
     monkeypatch.setattr(frame_rate, "FRAME_BURST", 1e6)
     server = Listening(Access(secret=SECRET))
@@ -230,12 +230,12 @@ def unlimited_frames(monkeypatch: pytest.MonkeyPatch) -> Iterator[Listening]:
 
 
 def read_nothing(silent: socket.socket, refused: int) -> None:
-    """Send messages whose answers are not read, until the connection is refused.
+    """Send messages without reading their answers until the connection is refused.
 
-    The page may answer pings meanwhile. Its frames are within all limits, and their answers would fill the memory.
+    Meanwhile, the page may answer pings. Its frames are within all limits, and the answers would fill the memory.
     """
     silent.settimeout(60)
-    silent.sendall((masked(PONG) + message()) * 500)  # what the system keeps is a few megabytes more
+    silent.sendall((masked(PONG) + message()) * 500)  # the system buffers a few more megabytes
     waiting.until(lambda: METRICS.counted["refused_messages"] > refused, 60)
 
 
@@ -274,7 +274,7 @@ def test_unsent_bytes_are_counted_by_connection() -> None:
 
 
 def received(sent: socket.socket, patience: float, until: bytes | None = None) -> bytes:
-    """What comes until the other side closes, within so many seconds, or until something has come."""
+    """Return the bytes received until the other side closes, the time is up, or `until` has arrived."""
     sent.settimeout(patience)
     came = b""
     with contextlib.suppress(TimeoutError, ConnectionError):
@@ -286,26 +286,26 @@ def received(sent: socket.socket, patience: float, until: bytes | None = None) -
 
 
 def connected(one: Listening) -> socket.socket:
-    """A websocket of a new page, which Bokeh has acknowledged: before that it takes no messages."""
+    """Return a new page's websocket that Bokeh has acknowledged; before that, it accepts no messages."""
     status, there = one.open(one.token())
     assert status == 101 and b'"ACK"' in received(there, 30, b'"ACK"')
     return there
 
 
 def closed_with(sent: socket.socket, patience: float, reason: bytes = b"too many frames") -> int:
-    """The code in the closing frame that comes within so many seconds; 0 if none with this reason does."""
+    """Return the code of the closing frame with this reason; 0 if none arrives within this many seconds."""
     return code_of(received(sent, patience), reason)
 
 
 def code_of(came: bytes, reason: bytes) -> int:
-    """The code in a closing frame with this reason; 0 if there is none."""
+    """Return the code of a closing frame with this reason; 0 if there is none."""
     at = came.rfind(reason)
     return int.from_bytes(came[at - 2:at]) if at > 1 else 0
 
 
 @pytest.mark.parametrize("pieces", [1, 3])
 def test_a_message_may_have_so_many_bytes_and_no_more(pieces: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    """In one frame, or in several that Tornado joins."""
+    """This is true of one frame, and of several that Tornado joins."""
 
     def of_bytes(length: int) -> bytes:
         content = json.dumps({"a": "x" * (length - len(json.dumps({"a": ""})))}).encode()
@@ -327,7 +327,7 @@ def test_a_message_may_have_so_many_bytes_and_no_more(pieces: int, monkeypatch: 
 
 
 def test_only_a_message_with_a_file_may_be_long(dashboard: Listening, monkeypatch: pytest.MonkeyPatch) -> None:
-    """With one it is taken: what comes after it is answered."""
+    """A long message with a file is accepted, and the next message is answered."""
     monkeypatch.setattr(message_rules, "LARGEST_PLAIN_CONTENT", 5000)
     for do, taken in ((UPLOAD, True), ("go", False)):
         entries = [["do", do], ["name", "mine.csv"], ["content", "A" * 5000]]
@@ -342,7 +342,7 @@ def test_only_a_message_with_a_file_may_be_long(dashboard: Listening, monkeypatc
 
 def test_a_refused_message_closes_the_connection_and_what_comes_after_it_is_not_answered(
         dashboard: Listening, caplog: pytest.LogCaptureFixture) -> None:
-    """The log has one line of it, however much comes."""
+    """The log has one line about it, however many messages follow."""
     with caplog.at_level(logging.WARNING, "granchain.requests"), connected(dashboard) as sending:
         sending.sendall(message("{}", "PUSH-DOC") * 3 + message() * 3)
         came = received(sending, 30)
@@ -352,7 +352,7 @@ def test_a_refused_message_closes_the_connection_and_what_comes_after_it_is_not_
 
 @pytest.mark.parametrize("name", ["detach", "select_subprotocol"])
 def test_a_socket_that_tornado_treats_otherwise_takes_no_messages(name: str, monkeypatch: pytest.MonkeyPatch, dashboard: Listening) -> None:
-    """As if a release read frames in another way, which are not counted then, or gave no session its connection."""
+    """This simulates a release that reads frames in another way, which are then not counted, or gives no connection."""
     monkeypatch.delattr(guarded_socket.GuardedSocket, name)
     refused = METRICS.counted["refused_messages"]
     status, sending = dashboard.open(dashboard.token())

@@ -1,4 +1,4 @@
-"""What Bokeh would decode and no page sends does not reach it."""
+"""Messages that Bokeh would decode but no page sends do not reach Bokeh."""
 
 from __future__ import annotations
 
@@ -27,28 +27,28 @@ HEADER = json.dumps({"msgid": "1", "msgtype": "PATCH-DOC"})
 
 
 def content(value: Any, kind: str = "MessageSent") -> str:
-    """An event with a value."""
+    """Return an event with a value."""
     return json.dumps({"events": [{"kind": kind, "msg_type": "bokeh_event", "msg_data": value}]})
 
 
 def changed(name: object, value: object) -> str:
-    """A change of one property to a value."""
+    """Return a change of one property to a value."""
     return json.dumps({"events": [{"kind": "ModelChanged", "model": {"id": "p1"}, "attr": name, "new": value}]})
 
 
 def uploaded(do: str, *more: list[str]) -> str:
-    """A message of a part with a file of 200 kB."""
+    """Return a part's message with a file of 200 kB."""
     return of_a_part(["do", do], ["name", "mine.csv"], ["content", "A" * 200_000], *more)
 
 
 def of_a_part(*entries: list[Any]) -> str:
-    """A message of a part with these entries."""
+    """Return a part's message with these entries."""
     values = [["model", {"id": "p1"}], ["data", {"type": "map", "entries": entries}]]
     return content({"type": "event", "name": "data_event", "values": {"type": "map", "entries": values}})
 
 
 def nested(depth: int) -> list[Any]:
-    """Lists within each other."""
+    """Return nested lists."""
     return [nested(depth - 1)] if depth > 1 else []
 
 
@@ -77,7 +77,7 @@ def test_a_figure_reports_its_size(name: str, value: float | None) -> None:
 @pytest.mark.parametrize("name", ["tags", "name", "data", "children", "state", "subscribed_events", "js_property_callbacks", "title",
                                   "start", "inner_width ", "", None, 5, ["inner_width"], {"type": "map", "entries": []}])
 def test_no_other_property_is_set_by_a_browser(name: object) -> None:
-    """Bokeh keeps what a browser writes into `tags` of any model: 60 messages would take half a gigabyte."""
+    """Bokeh keeps whatever a browser writes into any model's `tags`: 60 messages would take half a gigabyte."""
     with pytest.raises(RefusedMessage, match="property that no page reports"):
         checked_content(HEADER, changed(name, 1))
 
@@ -114,7 +114,7 @@ def test_messages_that_no_page_sends_are_refused(header: str, given: str, why: s
 
 
 class Socket:
-    """What a guarded websocket is mixed with here; its frames have been counted."""
+    """The base class of the guarded websocket here; its frames have been counted."""
 
     def __init__(self) -> None:
         self.taken: list[str] = []
@@ -122,15 +122,15 @@ class Socket:
         self.request = type("Request", (), {"remote_ip": "127.0.0.1"})
 
     async def on_message(self, fragment: str) -> None:
-        """One more."""
+        """Record one fragment."""
         self.taken.append(fragment)
 
     def close(self, code: int, reason: str) -> None:
-        """Closed with a reason."""
+        """Record the reason."""
         self.closed = code
 
     def on_close(self) -> None:
-        """Bokeh's, which fails where the session has been taken from the connection."""
+        """Fail as Bokeh's method does if the connection has lost its session."""
         self.left += 1
 
 

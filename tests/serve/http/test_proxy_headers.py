@@ -1,4 +1,4 @@
-"""Behind a proxy, a visitor cannot choose the address or the protocol of a request; asked over a raw socket."""
+"""Behind a proxy, a visitor cannot choose a request's address or protocol; the tests use a raw socket."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ BEHIND = pytest.mark.parametrize("behind", [Access(secret=SECRET, proxy=True)], 
 
 @pytest.fixture
 def behind(request: pytest.FixtureRequest) -> Iterator[Listening]:
-    """A server behind a proxy, which is the test."""
+    """Yield a server behind a proxy, whose part the test plays."""
     one = Listening(request.param)
     yield one
     one.stop()
 
 
 def metrics(behind: Listening, *lines: str) -> int:
-    """The status of `/metrics` with these lines in the head of the request."""
+    """Return the status of `/metrics` with these header lines in the request."""
     with socket.create_connection(("127.0.0.1", behind.port), timeout=60) as one:
         head = ["GET /metrics HTTP/1.1", f"Host: 127.0.0.1:{behind.port}", "Connection: close", *lines, "", ""]
         one.sendall("\r\n".join(head).encode())
@@ -35,7 +35,7 @@ def metrics(behind: Listening, *lines: str) -> int:
 
 @BEHIND
 def test_metrics_are_closed_to_a_visitor_who_names_a_private_address(behind: Listening) -> None:
-    """The proxy adds one of the headers; the other, and what stands before its entry, is the visitor's own."""
+    """The proxy adds one of the headers. The other header, and anything before the proxy's entry, is the visitor's."""
     own = (f"X-Real-IP: {PRIVATE}", f"X-Forwarded-For: {OUTSIDE}")
     assert metrics(behind, *own) == metrics(behind, *reversed(own)) == 403
     assert metrics(behind, f"X-Forwarded-For: {PRIVATE}", f"X-Real-IP: {OUTSIDE}") == 403

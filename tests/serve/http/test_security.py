@@ -1,6 +1,6 @@
-"""What docs/security.md promises a server that strangers reach: headers, hosts, errors, signing in, metrics.
+"""The promises of docs/security.md for a public server: headers, hosts, errors, signing in, metrics.
 
-Its promises about sessions are tested in test_sessions.py, those about limits in test_limits.py.
+Promises about sessions are tested in test_sessions.py, those about limits in test_limits.py.
 """
 
 from __future__ import annotations
@@ -26,14 +26,14 @@ from app.server import Access
 
 @pytest.fixture(scope="module")
 def dashboard() -> Iterator[Listening]:
-    """As a public one is served, but here."""
+    """Yield a dashboard served like a public one, but locally."""
     one = Listening(Access(secret=SECRET))
     yield one
     one.stop()
 
 
-#: The whole policy of contents. No source is another host or a bare scheme of the network, so that data can neither
-#: come from elsewhere nor go there.
+#: The complete content security policy. No source is another host or a bare network scheme, so data can neither come
+#: from elsewhere nor go there.
 POLICY = {
     "default-src": {"'self'"}, "script-src": {"'self'", "'unsafe-inline'", "'unsafe-eval'", "blob:"},
     "style-src": {"'self'", "'unsafe-inline'"}, "img-src": {"'self'", "data:", "blob:"}, "font-src": {"'self'", "data:"},
@@ -43,7 +43,7 @@ POLICY = {
 
 
 def policy(header: str) -> dict[str, set[str]]:
-    """The sources of each directive."""
+    """Return the sources of each directive."""
     return {name: set(sources) for name, *sources in (one.split() for one in header.split(";"))}
 
 
@@ -63,7 +63,7 @@ def test_embedding_is_allowed_where_it_is_asked_for() -> None:
 
 
 def test_another_host_is_refused(dashboard: Listening) -> None:
-    """A page of a stranger's that resolves its own name to this machine asks under that name."""
+    """A stranger's page whose own name resolves to this machine makes requests under that name."""
     for name in ("evil.example.org", "127.0.0.1.evil.example.org", f"evil.example.org:{dashboard.port}"):
         assert dashboard.ask("/", Host=name)[0] == 421
     assert dashboard.ask("/", Host=f"localhost:{dashboard.port}")[0] == 200
@@ -100,7 +100,7 @@ def test_a_page_that_is_only_fetched_starts_no_compiler(dashboard: Listening, mo
 
 def test_every_handler_is_guarded_also_one_that_is_added_later() -> None:
     class Late(RequestHandler):
-        """Added to a server that runs."""
+        """A handler added to a running server."""
 
         def get(self) -> None:
             """Answer."""
@@ -123,7 +123,7 @@ def test_every_handler_is_guarded_also_one_that_is_added_later() -> None:
     ("127.0.0.1", True), ("::1", True), ("10.1.2.3", True), ("fd00::7", True), ("8.8.8.8", False), ("2001:4860::1", False),
     ("0.0.0.0", False), (None, False)])
 def test_metrics_are_for_known_private_addresses(remote_ip: str | None, allowed: bool) -> None:
-    """Tornado says 0.0.0.0 where it does not know the address."""
+    """Tornado reports 0.0.0.0 if it does not know the address."""
     asked = SimpleNamespace(request=SimpleNamespace(remote_ip=remote_ip), set_header=lambda *_: None, write=lambda _: None)
     if allowed:
         MetricsHandler.get(asked)  # type: ignore[arg-type]
@@ -158,7 +158,7 @@ def test_the_metrics_have_the_format_of_prometheus(dashboard: Listening) -> None
 
 
 def test_secrets_are_not_in_the_text_of_what_holds_them() -> None:
-    """A log or a traceback may write it."""
+    """A log or a traceback may contain that text."""
     access = Access(secret=SECRET, sign_in=(("oauth_secret", "of the provider"),))
     for one in (access, Rules(secret=SECRET)):
         assert "secret" not in repr(one) and "of the provider" not in repr(one) and SECRET.decode() not in repr(one)

@@ -1,4 +1,4 @@
-"""Sessions of a server that strangers reach: whose they are, how many there may be, and their one connection."""
+"""Sessions of a public server: their owners, their maximum number, and their single connection."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from app.server import Access
 
 @pytest.fixture(scope="module")
 def dashboard() -> Iterator[Listening]:
-    """A dashboard with the settings of a public server, on localhost."""
+    """Yield a dashboard with the settings of a public server, on localhost."""
     one = Listening(Access(secret=SECRET))
     yield one
     one.stop()
@@ -39,19 +39,19 @@ def test_a_session_has_one_connection(dashboard: Listening) -> None:
 
 
 def strangers_token(secret: bytes | None) -> str:
-    """A token that this server has not made: signed with another secret, or not at all."""
+    """Return a token that this server has not issued: signed with another secret, or unsigned."""
     session = generate_session_id(secret_key=secret, signed=secret is not None)
     return generate_jwt_token(session, secret_key=secret, signed=secret is not None)
 
 
 @pytest.mark.parametrize("secret", [b"another secret, of a stranger", None])
 def test_a_token_of_another_secret_gets_no_connection(secret: bytes | None, dashboard: Listening) -> None:
-    """Nor is its session's id remembered: anybody could fill the memory with them."""
+    """Its session's id is not remembered either; otherwise, anybody could fill the memory with them."""
     assert dashboard.connect(strangers_token(secret)) == 403
 
 
 def test_tokens_are_signed_also_where_no_secret_is_given() -> None:
-    """Otherwise anybody who reaches the port could open sessions without a page, and so more than are allowed."""
+    """Otherwise, anybody who reaches the port could open sessions without a page, and thus more than are allowed."""
     one = Listening(Access())
     try:
         assert [one.connect(strangers_token(secret)) for secret in (b"another secret, of a stranger", None)] == [403, 403]
@@ -82,10 +82,10 @@ def test_there_are_at_most_so_many_sessions(caplog: pytest.LogCaptureFixture) ->
         caplog.clear()
         with caplog.at_level(logging.DEBUG, "granchain.requests"):
             status, headers, text = one.ask("/readiness")
-            one.ask("/liveness")  # by then everything about the answer before is in the log
+            one.ask("/liveness")  # by then, everything about the previous answer is in the log
         assert status == 503 and 20 <= int(headers["Retry-After"]) <= 60
         assert json.loads(text) == {"/readiness": False, "reason": "all 2 places for sessions are taken"}
-        assert caplog.messages == [], "waiting pages ask again and again"
+        assert caplog.messages == [], "waiting pages repeat the request"
         for _, each in there:
             each.close()
         waiting.until(lambda: one.ask("/readiness")[0] == 200)
@@ -95,7 +95,7 @@ def test_there_are_at_most_so_many_sessions(caplog: pytest.LogCaptureFixture) ->
 
 
 def test_a_request_that_becomes_no_connection_takes_none_from_its_page() -> None:
-    """Without `Upgrade`, from a stranger's page or without a key: the page itself still connects."""
+    """Such requests lack `Upgrade` or a key, or come from a stranger's page. The page itself can still connect."""
     one = Listening(Access(secret=SECRET, max_sessions=4))
     try:
         token = one.token()
@@ -111,7 +111,7 @@ def test_a_request_that_becomes_no_connection_takes_none_from_its_page() -> None
 
 
 def test_pages_that_are_fetched_and_never_connect_leave_half_of_the_places(monkeypatch: pytest.MonkeyPatch) -> None:
-    """One client that fetches the page again and again: the oldest page that is still loading makes room."""
+    """If one client fetches the page repeatedly, the oldest page that is still loading makes room."""
     monkeypatch.setattr(server, "SESSION_CHECK_MS", 20)
     one = Listening(Access(secret=SECRET, max_sessions=8))
     try:
@@ -132,14 +132,14 @@ def test_pages_that_are_fetched_and_never_connect_leave_half_of_the_places(monke
 
 @pytest.mark.parametrize("path", ["/autoload.js", "/autoload.js?bokeh-autoload-element=a", "/autoload-js", "/metadata", "/metadata/"])
 def test_no_other_address_makes_a_session(path: str, dashboard: Listening) -> None:
-    """Bokeh's script for pages that embed it, which ours does not use, would make one for each request."""
+    """Bokeh's script for embedding, which granchain does not use, would create one for each request."""
     before = METRICS.opened
     assert dashboard.ask(path)[0] == 404
     assert METRICS.opened == before
 
 
 def test_a_token_of_a_page_that_was_dropped_needs_a_free_place(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Bokeh makes its session anew. Otherwise tokens that are collected for five minutes would be as many pages."""
+    """Bokeh creates its session again. Otherwise, tokens collected over five minutes would open as many pages."""
     monkeypatch.setattr(server, "SESSION_CHECK_MS", 20)
     monkeypatch.setattr(server, "UNCONNECTED_MS", 100)
     one = Listening(Access(secret=SECRET, max_sessions=2))

@@ -1,4 +1,4 @@
-"""Counts from many threads, and how long computations wait before they begin."""
+"""Counts from many threads, and the time that computations wait before they start."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def test_every_count_of_every_thread_is_kept() -> None:
     (0, "0"), (1_234_567, "1234567"), (2**53 + 1, str(2**53 + 1)), (123_456_789.0, "123456789"), (0.1, "0.1"),
     (1234.5678901, "1234.5678901"), (float("inf"), "+Inf"), (float("nan"), "NaN")])
 def test_numbers_are_written_with_all_digits(value: float, written: str) -> None:
-    """A counter rounded to six digits would stand still and then jump."""
+    """A counter rounded to six digits would stand still, then jump."""
     metrics = Metrics()
     metrics.counted["pictures"] = value  # type: ignore[assignment]
     metrics.added = (Metric("memory", "gauge", "Memory.", lambda: {"a": value}, "of"),)
@@ -51,7 +51,7 @@ def test_numbers_are_written_with_all_digits(value: float, written: str) -> None
 
 
 def test_every_counter_that_is_counted_is_in_the_table_and_every_one_in_the_table_is_counted() -> None:
-    """`count` fails for another one, and that in the middle of a failure."""
+    """For any other counter, `count` would fail, and in the middle of handling a failure."""
     sources = [path.read_text(encoding="utf-8") for path in (ROOT / "app").rglob("*.py")]
     assert {name for text in sources for name in re.findall(r"METRICS\.count\(([^)]*)\)", text)} == {f'"{name}"' for name in COUNTERS}
 
@@ -67,7 +67,7 @@ def test_names_and_kinds_are_those_of_prometheus() -> None:
 
 
 def waits_beside_another(turns: Turns, now: list[float], seconds: float, is_new: bool = True) -> None:
-    """A computation has a turn at once, and another one after it has waited so long."""
+    """Give one computation a turn at once, and another after it has waited this long."""
     first = turns.begin(CpuTime(), Stop())
     thread = threading.Thread(target=turns.begin, args=(CpuTime(), Stop(), is_new))
     thread.start()
@@ -109,7 +109,7 @@ def test_one_stall_is_seen_although_the_mean_hides_it() -> None:
 
 
 def shown(name: str) -> float:
-    """A number of `/metrics`."""
+    """Return a number from `/metrics`."""
     server.add_shared_metrics()
     found = re.search(rf"^granchain_{re.escape(name)} (\S+)$", METRICS.text(), re.MULTILINE)
     assert found is not None
@@ -141,7 +141,7 @@ def test_what_was_renamed_is_found_as_it_was_called() -> None:
 
 
 def test_pools_whose_threads_wait_for_others_do_not_count_as_computing() -> None:
-    """Those of PICTURES and SESSION_WORK wait for turns, those of CURVES for SWEEPS."""
+    """Threads of PICTURES and SESSION_WORK wait for turns, those of CURVES for SWEEPS."""
     assert set(POOLS) - set(COMPUTING) == {SESSION_WORK, PICTURES, CURVES, FILES, LOADING, COMPILATIONS}
 
 

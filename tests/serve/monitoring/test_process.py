@@ -1,4 +1,4 @@
-"""Numbers of the process, and what is given in their place on a system without /proc."""
+"""Numbers about the process, and their replacements on a system without /proc."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ linux = pytest.mark.skipif(sys.platform != "linux", reason="there is no /proc")
 
 
 def shown(name: str) -> float:
-    """A number of `/metrics`."""
+    """Return a number from `/metrics`."""
     (found,) = re.findall(rf"^{name} (\S+)$", Metrics().text(), re.MULTILINE)
     return float(found)
 
 
 @linux
 def test_threads_that_python_does_not_know_are_counted() -> None:
-    """Those of numerical libraries, for instance: a client of Prometheus for any program counts them."""
+    """For example, those of numerical libraries: any program's Prometheus client counts them."""
     before, held = shown("process_threads") - shown("granchain_threads"), _thread.allocate_lock()
     held.acquire()
     _thread.start_new_thread(held.acquire, ())

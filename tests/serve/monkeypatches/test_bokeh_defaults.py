@@ -1,4 +1,4 @@
-"""Remembered defaults of Bokeh's properties: a page is told as it would be without them."""
+"""Remembered defaults of Bokeh's properties: a page receives the same content as without them."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ CHANGES = Theme(json={"attrs": {"Axis": {"axis_label_text_font_size": "31px"}, "
 
 @pytest.fixture(autouse=True)
 def restored(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """Bokeh's own ways are there, and what was there before is at the end."""
+    """Restore Bokeh's own functions for a test, and the replacements after it."""
     for where, name, own in OWN:
         monkeypatch.setattr(where, name, own)
     yield
 
 
 def described(theme: Theme | None) -> str:
-    """What a browser is told of a figure and a widget, with models numbered as they come."""
+    """Return a figure and a widget as sent to a browser, with models numbered in order of appearance."""
     document = Document(theme=theme) if theme else Document()
     plot = figure(x_axis_label="time (s)")
     plot.line([0, 1], [0, 1], legend_label="force")
@@ -47,7 +47,7 @@ def test_remembered_defaults_describe_the_same_document() -> None:
     install_defaults_cache()
     assert (described(None), described(CHANGES)) == before
     assert PropertyDescriptor._get_default.known  # it is in use
-    assert (described(CHANGES), described(None)) == before[::-1]  # what is remembered now belongs to no theme
+    assert (described(CHANGES), described(None)) == before[::-1]  # remembered values belong to no theme
 
 
 def test_models_do_not_share_what_one_of_them_may_change() -> None:
@@ -70,7 +70,7 @@ def test_an_empty_default_is_made_when_it_is_asked_for_and_is_the_models_own() -
 
 
 def document_of(model: object) -> Document:
-    """A document with this root."""
+    """Return a document with this root."""
     document = Document()
     document.add_root(model)
     return document
@@ -102,7 +102,7 @@ def test_all_values_are_still_there_to_be_asked_for() -> None:
 @pytest.mark.parametrize(("owner", "name"), [(row.owner, name) for row in INTERNALS for name in row.names],
                          ids=lambda value: value.rpartition(".")[2])
 def test_a_release_without_a_part_of_it_keeps_its_own_ways(owner: str, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """What is replaced, and what the replacements use: no page could be made without it."""
+    """This covers replaced functions and those that the replacements use, without which no page could be created."""
     lose(monkeypatch, owner, name)
     before = [getattr(one, other, None) for one, other in REPLACED]
     install_defaults_cache()

@@ -1,4 +1,4 @@
-"""What is left out while a page is made for a visitor changes nothing of what the visitor gets."""
+"""Shortcuts taken while a visitor's page is created do not change the page."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from app.serve.monkeypatches.bokeh_defaults import install_defaults_cache
 
 
 def content() -> str:
-    """The JSON of a new page, with its numbered names in their order."""
+    """Return the JSON of a new page, with its ids renumbered in order."""
     document = Document()
     with set_curdoc(document):
         entry.page()
@@ -32,7 +32,7 @@ def content() -> str:
 
 @pytest.fixture
 def plain(monkeypatch: pytest.MonkeyPatch) -> str:
-    """The content of a page without shortcuts; those of other tests are forgotten, and put back after it."""
+    """The content of a page without shortcuts; those of other tests are removed, and restored afterwards."""
     for where, name, own in OWN:
         monkeypatch.setattr(where, name, own)
     assert not hasattr(PropertyDescriptor._get_default, "known")
@@ -44,7 +44,7 @@ def plain(monkeypatch: pytest.MonkeyPatch) -> str:
 
 
 def test_a_page_with_every_shortcut_is_the_same(plain: str) -> None:
-    """What `install_resources_cache` shortens is outside of the document: test_panel_resources.py beside this file."""
+    """The shortcuts of `install_resources_cache` are outside of the document; test_panel_resources.py tests them."""
     assert len(json.loads(plain)) > 15
     assert any(panel_overrides._COMMON.values()) and panel_overrides._CHILDLESS
     assert content() == plain  # with remembered properties, and without checks of values

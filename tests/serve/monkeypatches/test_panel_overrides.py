@@ -1,5 +1,4 @@
-"""What parts leave out of Panel's work changes nothing, and Panel's own way is taken where its methods are other ones.
-"""
+"""The steps of Panel that parts skip change nothing, and Panel's own code is used if its methods have changed."""
 
 from __future__ import annotations
 
@@ -44,7 +43,7 @@ def test_a_release_with_other_properties_is_asked_each_time(properties: dict[str
 
 @pytest.mark.parametrize("release", ["this one", "another"])
 def test_a_change_reaches_the_model_without_the_design(release: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """State and style sheets both; with a release that makes the changes elsewhere Panel's own way is taken."""
+    """This is true of state and style sheets. With a release that makes changes elsewhere, Panel's own code is used."""
     part, document = StatusLine(None), Document()
     model = part.get_root(document)
     asked: list[object] = []
@@ -77,7 +76,7 @@ def test_an_event_of_a_part_is_handled_with_and_without_panels_private_method(mo
 
 
 def test_an_event_of_a_part_is_handled_by_panel_where_that_has_no_set_curdoc(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The module is imported without it, and leaves the event to Panel."""
+    """The module can be imported without it, and leaves the event to Panel."""
     monkeypatch.delattr(sys.modules["panel.io.state"], "set_curdoc")
     monkeypatch.setattr(library_internals, "_TABLES", dict(library_internals._TABLES))  # the copy enters its own table
     spec = importlib.util.spec_from_file_location("app.serve.monkeypatches.without_set_curdoc", panel_overrides.__file__)
@@ -88,7 +87,7 @@ def test_an_event_of_a_part_is_handled_by_panel_where_that_has_no_set_curdoc(mon
     handled: list[Event] = []
 
     class Panel:
-        """What handles events where a release of Panel does it alone."""
+        """The class that handles events in a release in which Panel does so alone."""
 
         def _process_bokeh_event(self, document: Document, event: Event) -> None:
             handled.append(event)

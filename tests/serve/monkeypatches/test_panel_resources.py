@@ -15,13 +15,13 @@ from app.server import Access
 
 @pytest.fixture
 def own_way(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Panel's own functions are there, whatever server another test has started, and what was there is afterwards."""
+    """Restore Panel's own functions, whatever server another test has started, and the replacements afterwards."""
     for name in ("bundle_resources", "patch_model_css"):
         monkeypatch.setattr(pages, name, getattr(resources, name))
 
 
 def page_of(one: Listening) -> str:
-    """The page as it is served, without what is every visitor's own."""
+    """Return the page as served, without the parts that differ between visitors."""
     status, _, text = one.ask()
     assert status == 200
     text = re.sub(r'"token":"[^"]+"', "", text)
