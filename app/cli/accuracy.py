@@ -65,4 +65,4 @@ def _show_accuracy(result: Any) -> None:
             print(f"the cheapest way to {error:g} is {best.method}, {best.setting}: {1e3 * best.wall_s:.2f} ms")
     for drawing in result.lesson.drawn if result.lesson else ():
         drawn = drawing.failure or f"off by {100 * drawing.error:.2g} % of the largest"
-        print(f"output force by {drawing.method} with {drawing.steps} steps a period: {drawn}")
+        print(f"output force by {drawing.method} with {drawing.steps} steps per period: {drawn}")

@@ -19,7 +19,7 @@ def explanation(scene: Scene, method: str | None, samples: int) -> str:
     chosen = METHODS[setting.method]
     why = "asked for by --method" if method else f"chosen for an accuracy of {scene.accuracy:g}"
     resolution = (f"tolerance per step {setting.tolerance:.1e}" if chosen.error_control
-                else f"{setting.steps_per_period(scaled, samples)} steps a period")
+                else f"{setting.steps_per_period(scaled, samples)} steps per period")
     return "\n".join((
         f"compiled in: {', '.join(present)}",
         f"absent, with no code and no array: {', '.join(absent) if absent else 'nothing'}",

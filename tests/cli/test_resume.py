@@ -51,7 +51,7 @@ def interrupted(name: str, number: signal.Signals, out: Path, *more: str) -> set
     assert there > before
     if command.process.returncode != 0 and number is not signal.SIGKILL:
         said = command.err.splitlines()[-1]
-        assert said.endswith(("; go on with --resume.", f"the result is in {out}.")) and "Traceback" not in command.err
+        assert said.endswith(("; continue with --resume.", f"the result is in {out}.")) and "Traceback" not in command.err
     return there
 
 
