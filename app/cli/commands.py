@@ -126,7 +126,7 @@ COMMANDS = {
                        "fig12-60 --noise 0.2 --periods 12 --out virtual.csv", "data.md#a-virtual-experiment"),
     "fit": Command("SCENE --data FILE --free D=50:200", "parameters of a scene from a measurement, with 95 % intervals "
                    "and a verdict", "sec2 --data curve.csv --free D=50:200", "fit.md"),
-    "figure": Command("N", "a figure of the paper with our numbers, with --data and a measurement", "6", "paper.md"),
+    "figure": Command("N", "a figure of the paper with our numbers and, with --data, a measurement", "6", "paper.md"),
     "cite": Command("SCENE", "what to cite for the effects of a scene", "sec2", "references.md"),
     "accuracy": Command("SCENE", "the cost of accuracy: error against time for every method", "sec2", "accuracy.md"),
     "check": Command("[--quick]", "cases in which solvers fail silently: value, limit and verdict of each; status 3 if "

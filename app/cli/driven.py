@@ -77,7 +77,8 @@ def _fine_enough(signal: Signal, chosen: Scene, sensors: Sensors) -> Signal:
     finest = float(signal.time[-1] - signal.time[0]) / max(1, knots)
     if finest > needed:
         say(f"The low-pass of {sensors.bandwidth:g} Hz needs forces {needed:.3g} s apart; with {chosen.N} beads this "
-            f"record holds them {finest:.3g} s apart, so the comparison is less exact. A shorter record has room.")
+            f"record holds them {finest:.3g} s apart, so the comparison is less exact; shorten the record to avoid "
+            "this.")
     return signal.finer(max(needed, finest))
 
 

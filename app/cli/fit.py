@@ -171,7 +171,7 @@ def _free(arguments: argparse.Namespace) -> list[Free]:
     from granchain_core.fitting.parameters import free_of
 
     if not arguments.free:
-        raise BadInput("Say what is fitted, for example --free A0=5e-6:14e-6 --free D=10:100.")
+        raise BadInput("Say what to fit, for example --free A0=5e-6:14e-6 --free D=10:100.")
     priors = {text.partition("=")[0]: text for text in arguments.prior}
     free = [free_of(text, priors.pop(text.partition("=")[0], None)) for text in arguments.free]
     if priors:

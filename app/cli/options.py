@@ -57,7 +57,7 @@ def add_scheduler(parser: argparse.ArgumentParser) -> None:
 
 
 def scheduler_of(arguments: argparse.Namespace) -> AbstractContextManager[Any]:
-    """Return a client of the scheduler that --scheduler names, as a context that closes it; without it, of None.
+    """Return a context manager with a client of the scheduler that --scheduler names; without the option, with None.
 
     Raise `BadInput` if no scheduler answers.
     """

@@ -22,7 +22,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_scene(parser)
     parser.add_argument("--force", default="output", metavar="input|output|elastic", help="the force to analyse")
     parser.add_argument("--record", type=whole, default=64, metavar="R",
-                        help="drive periods to record of a motion without a period; of an orbit, one is recorded")
+                        help="drive periods to record of a motion without a period; of an orbit, its period")
     parser.add_argument("--samples", type=whole, default=256, metavar="S", help="samples per period, an even number")
     add_out(parser)
     add_json(parser)

@@ -15,7 +15,7 @@ _WITH_WINDOWS = ("chromium", "chromium-browser", "google-chrome", "google-chrome
 
 
 def installed_browser(with_window: bool = False) -> str | None:
-    """Return the path of Chromium or Chrome, if asked one that can show a window; None if none is on the PATH."""
+    """Return the path of Chromium or Chrome, None if none is on the PATH; `with_window` requires one with windows."""
     names = (*(() if with_window else _WITHOUT_WINDOWS), *_WITH_WINDOWS)
     return next((path for name in names if (path := shutil.which(name))), None)
 

@@ -57,7 +57,7 @@ def test_a_fit_of_force_trains_has_a_table_and_a_sentence(tmp_path: Path, capsys
     (["--free", "D=50:200"], "either --data FILE or --features paper"),
     (["--features", "mine", "--free", "D=50:200"], "'mine' is not known"),
     (["--features", "paper", "--per-frequency", "--free", "A0=1e-6:1e-5"], "states no forces"),
-    (["--features", "paper"], "Say what is fitted"),
+    (["--features", "paper"], "Say what to fit"),
     (["--features", "paper", "--free", "D=50:200", "--prior", "k=1:2"], "has no matching --free"),
     (["--features", "paper", "--free", "D=50:200", "--error", "0"], "must be above 0"),
     (["--features", "paper", "--free", "D=50:200", "--error", "3N"], "these data take Hz, for example --error 3Hz"),
