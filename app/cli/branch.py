@@ -207,7 +207,7 @@ def _in_file(arguments: argparse.Namespace) -> Branch:
 
 
 class _Progress:
-    """Keeps orbits and reports progress on stderr; the threads of both half-branches call it after every orbit."""
+    """Callback that keeps orbits and reports progress; the threads of both half-branches call it after each orbit."""
 
     def __init__(self, begun: _Begun) -> None:
         self._begun = begun

@@ -164,7 +164,7 @@ def _further(result: Any, kind: str) -> Callable[..., LayoutDOM]:
     """Return the function that draws a further figure of a result."""
     offered = {name: draw for (drawn, name), draw in FURTHER_DRAWERS.items() if isinstance(result, drawn)}
     if not offered:
-        raise BadInput(f"A {type(result).__name__} has no figure of the kind {kind!r}; leave the kind out.")
+        raise BadInput(f"A result of type {type(result).__name__} has no figure of the kind {kind!r}; leave it out.")
     if kind not in offered:
         raise unknown_name("kind of figure", kind, tuple(offered))
     return offered[kind]
@@ -181,6 +181,6 @@ def _drawing(result: Any) -> tuple[Callable[..., LayoutDOM], tuple[int, int]]:
         for kind, draw in _TOGETHER.items():
             if all(isinstance(item, kind) for item in result):
                 return draw, (WIDTH, HEIGHT)
-    raise BadInput(f"A {type(result).__name__} has no figure; there are figures of "
+    raise BadInput(f"A result of type {type(result).__name__} has no figure; there are figures of "
                    f"{', '.join(kind.__name__ for kind in DRAWERS)}, of lists of curves or branches, and of the "
                    "results of granchain_core.paper.compute.")

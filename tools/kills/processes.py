@@ -94,5 +94,5 @@ class Command:
 
 
 def _hear_interrupts() -> None:
-    """A shell's background jobs ignore interrupts, and their children inherit that."""
+    """Restore the handling of interrupts, which a shell's background jobs and therefore their children ignore."""
     signal.signal(signal.SIGINT, signal.default_int_handler)
