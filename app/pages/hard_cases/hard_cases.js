@@ -20,14 +20,14 @@ function rowTable(rows) {
       element(
         "tr",
         { className: passed ? "held" : "missed" },
-        element("td", { className: "verdict", textContent: passed ? "✓ holds" : "✕ FAILED" }),
+        element("td", { className: "verdict", textContent: passed ? "✓ passed" : "✕ FAILED" }),
         cell,
         element("td", { className: "number", textContent: value }),
         element("td", { className: "number", textContent: `≤ ${limit}` }),
       ),
     );
   }
-  return table(["", "what must hold", "value", "limit"], body);
+  return table(["", "requirement", "value", "limit"], body);
 }
 
 class Card {

@@ -42,7 +42,7 @@ def _travel(run: Run) -> str:
     """Describe the largest displacement of a bead from rest."""
     far = np.abs(run.displacement).max(axis=0)
     most = int(far.argmax())
-    return f"The bead that moves farthest, number {most + 1}, goes {in_words(float(far[most]), 'm', 3)} from its place."
+    return f"Bead {most + 1} moves farthest, {in_words(float(far[most]), 'm', 3)} from its rest position."
 
 
 def _where_energy_goes(run: Run) -> str:

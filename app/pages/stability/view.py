@@ -176,8 +176,8 @@ def _orbit_rows(row: Any, settled: Settled, analysis: OrbitAnalysis) -> None:
             "from it: the error of the method that settled it.")
     if analysis.target.distance_of_motion is not None:
         row("nearest to the motion", f"{analysis.target.distance_of_motion:.2g} of its size",
-            "Newton's method was started near the motion and may end elsewhere: least distance of the orbit from the "
-            "states of the section, relative to their largest displacement and velocity.")
+            "Newton's method was started near the motion and may end elsewhere: smallest distance of the orbit from "
+            "the states of the section, relative to their largest displacement and velocity.")
     why = ("the smallest multipliers are below rounding" if len(orbit.multipliers) == 2 * orbit.scene.N
            else f"only the {len(orbit.multipliers)} leading multipliers are computed")
     row("product of all μ", why if orbit.liouville_error is None else f"{short_error(orbit.liouville_error)} off",
