@@ -1,14 +1,14 @@
 # granchain's dashboard, for this machine only:
 #     docker build -t granchain . && docker run --rm -p 127.0.0.1:5006:5006 granchain
 #
-# Numba compiles for the kind of CPU it runs on and keeps that in the name of its cache files. The cache that is baked in
-# is therefore used by machines of the builder's kind; on another kind the kernels are compiled at the first visit
-# (seconds, once per container) into the same folder, which the user may write to. Build on the kind you run on, or
-# keep the folder with a volume:  -v granchain-kernels:/opt/granchain/kernels
+# Numba compiles for the CPU model it runs on and puts that model into the names of its cache files. The cache in the
+# image is therefore used on machines with the builder's CPU model. On any other machine, the kernels are compiled at the
+# first visit (seconds, once per container) into the same folder, which the container's user can write to. Build on the
+# CPU model that you run on, or keep the folder in a volume:  -v granchain-kernels:/opt/granchain/kernels
 
-# The base image is python:3.13-slim of September 2026 (Python 3.13.15, Debian 13.6), for all its platforms, by the digest
-# of its index. Security fixes of Debian come with a newer one: `docker buildx imagetools inspect python:3.13-slim` shows
-# its digest.
+# The base image is python:3.13-slim of September 2026 (Python 3.13.15, Debian 13.6), pinned for all its platforms by the
+# digest of its index. Debian's security fixes need a newer base image:
+# `docker buildx imagetools inspect python:3.13-slim` shows its digest.
 ARG BASE=python:3.13-slim@sha256:9d2e5553305c7c7b0097999bb17187c69b921ccd6bc9d40e4bb5ebe652c00285
 
 FROM ${BASE} AS build
@@ -26,13 +26,13 @@ COPY app ./app
 COPY assets ./assets
 COPY docs/glossary.md ./docs/
 RUN pip install --require-hashes -r requirements.lock
-# Built without isolation, in which pip would fetch hatchling without a hash, and where the image does not keep hatchling.
+# Built without isolation, because pip would fetch hatchling without a hash, and in an environment left out of the image.
 RUN python -m venv /opt/granchain/build && \
     /opt/granchain/build/bin/pip install --require-hashes -r requirements-build.lock && \
     /opt/granchain/build/bin/pip wheel --no-deps --no-build-isolation --wheel-dir /opt/granchain/wheel . && \
     pip install --no-deps /opt/granchain/wheel/*.whl
 
-# Work from another folder, so that the installed package is compiled and not the source beside it.
+# Work in another folder, so that the kernels are compiled from the installed package, not from the source tree.
 WORKDIR /opt/granchain
 ENV GRANCHAIN_CACHE=/opt/granchain/kernels
 RUN granchain warm
@@ -54,10 +54,10 @@ EXPOSE 5006
 HEALTHCHECK --interval=10s --timeout=5s --start-period=30s --retries=3 \
     CMD ["python", "-c", "import urllib.request; urllib.request.urlopen('http://127.0.0.1:5006/liveness', timeout=4)"]
 
-# Browsers may reach it as localhost; for another name add --allow-websocket-origin NAME:PORT to the run command, and a
-# --secret-file, which is then taken in place of --generate-secret (docs/deployment.md). The health check asks at port
-# 5006, so give it another one outside with -p.
-# Nothing is written outside /tmp and the folder of the kernels, so the container may run read-only:
+# Browsers may reach the dashboard as localhost. For another name, add --allow-websocket-origin NAME:PORT to the run
+# command, and --secret-file FILE, which then takes precedence over --generate-secret (docs/deployment.md). The health
+# check uses port 5006, so choose a different outside port with -p.
+# Nothing is written outside /tmp and the kernel folder, so the container can run read-only:
 #     docker run --rm -p 127.0.0.1:5006:5006 --read-only --tmpfs /tmp --cap-drop ALL --security-opt no-new-privileges granchain
 ENTRYPOINT ["granchain", "serve", "--address", "0.0.0.0", "--port", "5006", "--generate-secret", \
             "--allow-websocket-origin", "localhost:5006", "--allow-websocket-origin", "127.0.0.1:5006"]

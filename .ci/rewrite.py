@@ -1,7 +1,7 @@
 """Rewrite the assertions of all tests as pytest does, once and on all processors.
 
-In a clean clone each worker would rewrite all of them, which takes it six seconds of processor time. pytest has no
-public names for this: where one is missing, or rewrites otherwise, the workers do it after all.
+In a clean clone, each worker would rewrite all of them, which takes it six seconds of processor time. pytest has no
+public names for this: if one is missing or works differently, the workers rewrite the assertions after all.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ TESTS = Path(__file__).resolve().parents[1] / "tests"
 
 
 def rewrite(file: Path) -> None:
-    """Write the compiled module where pytest looks for it; it compares the source's hash before it is used."""
+    """Write the compiled module where pytest looks for it; before using it, pytest compares the source's hash."""
     folder = get_cache_dir(file)
     folder.mkdir(exist_ok=True)
-    source, code = _rewrite_test(file, None)  # type: ignore[arg-type]  # no settings of ours matter to it
+    source, code = _rewrite_test(file, None)  # type: ignore[arg-type]  # none of the project's settings matters to it
     _write_pyc(SimpleNamespace(trace=print), code, source, folder / f"{file.stem}{PYC_TAIL}")  # type: ignore[arg-type]
 
 

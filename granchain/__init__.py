@@ -1,10 +1,10 @@
-"""The public names of `granchain_core` under the project's name, and `figure` and `dashboard`.
+"""The public names of `granchain_core` under the project's name, with `figure` and `dashboard` added.
 
     import granchain
     result = granchain.run(granchain.scene("sec2").evolve(f=340.0))
-    granchain.figure(result)                  # the dashboard's picture of it, a figure of Bokeh
+    granchain.figure(result)                  # a Bokeh figure of the result, as the dashboard draws it
 
-`figure` and `dashboard` need Bokeh and Panel, which are imported when they are called.
+`figure` and `dashboard` need Bokeh and Panel, which are imported only when one of them is called.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ if TYPE_CHECKING:
     from .notebook import Dashboard, dashboard
     from .pictures import figure
 
-#: What the core does not have, and the module here in which it is.
+#: Public names that the core does not have, each with the module of this package that defines it.
 _OWN = {"Dashboard": "notebook", "dashboard": "notebook", "figure": "pictures"}
 
 __all__ = [*granchain_core.__all__, "Dashboard", "dashboard", "figure"]
 
 
 def __getattr__(name: str) -> Any:
-    """A public name, imported when it is first asked for."""
+    """Import a public name when it is first used."""
     if name in _OWN:
         return getattr(importlib.import_module(f".{_OWN[name]}", __name__), name)
     if present(name) in granchain_core.__all__:
@@ -38,5 +38,5 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    """What there is, for completion in an interpreter."""
+    """List the public names, for completion in an interpreter."""
     return [*__all__, "__version__"]

@@ -1,4 +1,4 @@
-"""The dashboard in a notebook: `granchain serve` in a separate process, shown in a cell."""
+"""The dashboard in a notebook: `granchain serve` runs in a separate process and is shown in a cell."""
 
 from __future__ import annotations
 
@@ -18,24 +18,24 @@ from granchain_core import BadInput, Scene, scene
 
 from .pictures import part_of_app
 
-#: What the process runs: the command `granchain`, and nothing that depends on the PATH. It ends with this process.
+#: The process's program: the command `granchain`, independent of the PATH. It ends when this process ends.
 _PROGRAM = ("import sys; from granchain_core.execution.child_processes import end_with_parent; "
             "end_with_parent(int(sys.argv.pop(1))); import granchain_start; sys.exit(granchain_start.entry())")
-#: Longest wait for the server's first answer [s]: the first start on a machine compiles.
+#: Longest wait for the server's first answer [s]: the first start on a machine compiles kernels.
 _START_TIMEOUT = 120.0
-#: Between two checks whether the server answers [s].
+#: Time between two checks for an answer of the server [s].
 _POLL_INTERVAL = 0.05
-#: Whose pages may show it in a frame: notebooks on this machine, at any port.
+#: Origins whose pages may show the dashboard in a frame: notebooks on this machine, at any port.
 _EMBEDDING = ("http://localhost:*", "http://127.0.0.1:*")
 
 
 class Dashboard:
-    """A running dashboard; as the last value of a notebook's cell it is shown there.
+    """A running dashboard, which a notebook shows if it is the last value of a cell.
 
     Attributes
     ----------
     url : str
-        Address of the dashboard, with the scene.
+        Address of the dashboard, including the scene.
     height : int
         Height of the frame in a cell [px].
 
@@ -51,7 +51,7 @@ class Dashboard:
         atexit.register(self.stop)
 
     def stop(self) -> None:
-        """End the server; it also ends with the notebook's kernel."""
+        """Stop the server, which otherwise stops when the notebook's kernel ends."""
         atexit.unregister(self.stop)
         if self._process is not None and self._process.poll() is None:
             self._process.terminate()
@@ -75,16 +75,16 @@ class Dashboard:
 
 
 def dashboard(shown: Scene | str = "sec2", height: int = 800, port: int = 0) -> Dashboard:
-    """The dashboard with a scene, in a notebook's cell or at its address.
+    """Start the dashboard with a scene, for a notebook's cell or for a browser at its address.
 
-    The server runs in a process of its own, so that it answers while the notebook computes, and is reached from this
-    machine only. Where the notebook's browser is on another machine, the port has to be forwarded to it under the same
-    number: `ssh -L 5006:localhost:5006 …` and `dashboard(port=5006)`.
+    The server runs in a process of its own, so that it answers while the notebook computes. It can be reached only from
+    this machine. If the notebook's browser is on another machine, forward the port to it under the same number:
+    `ssh -L 5006:localhost:5006 …` and `dashboard(port=5006)`.
 
     Parameters
     ----------
     shown : Scene or str
-        A scene or the name of a preset. From a scene, the dashboard takes its preset and the knobs that differ from it.
+        A scene or the name of a preset. Of a scene, the dashboard uses its preset and the knobs that differ from it.
     height : int
         Height of the frame in a cell [px].
     port : int
@@ -93,12 +93,12 @@ def dashboard(shown: Scene | str = "sec2", height: int = 800, port: int = 0) -> 
     Returns
     -------
     Dashboard
-        It has `url` and `stop()`, and ends with this process.
+        The running dashboard, with `url` and `stop()`; it ends when this process ends.
 
     Raises
     ------
     BadInput
-        The scene is unknown, or the server did not start; the message has the server's last line.
+        The scene is unknown, or the server did not start; the message contains the server's last line of output.
 
     Examples
     --------
@@ -133,7 +133,7 @@ def _free_port() -> int:
 
 
 def _answers(process: subprocess.Popen[bytes], port: int) -> bool:
-    """Wait until the server answers; False if it ends before."""
+    """Wait until the server answers; return False if it ends first or does not answer in time."""
     end = time.monotonic() + _START_TIMEOUT
     while process.poll() is None and time.monotonic() < end:
         connection = http.client.HTTPConnection("127.0.0.1", port, timeout=1.0)

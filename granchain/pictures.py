@@ -11,29 +11,29 @@ if TYPE_CHECKING:
 
 def figure(result: Any, theme: str = "light", width: int | None = None, height: int | None = None,
            kind: str = "", **options: Any) -> LayoutDOM:
-    """A Bokeh figure of a result, drawn by the same functions as the dashboard's pages.
+    """Draw a Bokeh figure of a result, with the functions that draw it on the dashboard's pages.
 
     Only the dashboard's main picture and its resonance curve have separate drawing code, because they follow every move
-    of a knob. `bokeh.io.show` displays the figure, in a notebook after `bokeh.io.output_notebook()`;
+    of a knob. `bokeh.io.show` displays the figure (in a notebook, after `bokeh.io.output_notebook()`), and
     `bokeh.plotting.save` writes it to a file.
 
     Parameters
     ----------
     result : Run, Settled, Driven, Pulse, Curve, Orbit, Branch, ParameterMap, Observation, Fit, Spectrum, …
-        What a function of granchain returned, a list of curves or of branches, or a result of
+        The return value of a function of granchain, a list of curves or of branches, or a result of
         `granchain_core.paper.compute`.
     theme : str
-        Name of a theme, "light" by default; `granchain figure --help` lists them.
+        Name of a theme, "light" by default; `granchain figure --help` lists the names.
     width, height : int, optional
-        Size of the figure [px]; by default one that suits a notebook's cell.
+        Size of the figure [px]; by default a size that suits a notebook's cell.
     kind : str
-        A further figure of the result: of a run or a settled motion "displacement", "velocity", "forces", "phase",
-        "spectrum" (those of one `bead`, the last by default) and "contacts", as on the page Probe.
+        Another figure of the same result. Of a run or a settled motion: "displacement", "velocity", "forces", "phase"
+        and "spectrum" of one `bead`, the last by default, and "contacts", as on the page Probe.
     **options
-        Of some figures: `elastic` of a curve, `measured` of a curve and of a driven motion (a measurement that
+        Options of some figures: `elastic` of a curve, `measured` of a curve and of a driven motion (a measurement that
         `read_experiment` of granchain_core.experiment has read), `shown` ("force", "regime" or "both") and `curves`
-        (what `bifurcation_curves` found) of a parameter map, `bead` of a bifurcation diagram, `asked` (an accuracy) of
-        a work-precision diagram, `now` (a value of the knob) of a branch, `rank` of an orbit.
+        (the result of `bifurcation_curves`) of a parameter map, `bead` of a bifurcation diagram, `asked` (an accuracy)
+        of a work-precision diagram, `now` (a value of the knob) of a branch, `rank` of an orbit.
 
     Returns
     -------
@@ -43,7 +43,7 @@ def figure(result: Any, theme: str = "light", width: int | None = None, height: 
     Raises
     ------
     BadInput
-        There is no figure of such a result, or no such theme, kind or option.
+        The result has no figure, or there is no such theme, kind or option.
 
     Examples
     --------
@@ -56,9 +56,9 @@ def figure(result: Any, theme: str = "light", width: int | None = None, height: 
 
 
 def part_of_app(name: str) -> Any:
-    """A module of the dashboard's package, which is `app` in the tree and `granchain_app` where it is installed.
+    """Import a module of the dashboard's package, which is `app` in the source tree and `granchain_app` when installed.
 
-    `entry` of granchain_start finds it in the same way.
+    `entry` of granchain_start finds the package in the same way.
     """
     try:
         return importlib.import_module(f"granchain_app.{name}")

@@ -1,1 +1,1 @@
-"""Programs about the project that no test run needs: long checks, pictures, the site, the lock file."""
+"""Programs that no test run needs: long checks, pictures of the docs, the site, the lock file."""

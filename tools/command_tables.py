@@ -11,7 +11,7 @@ from app.cli.commands import COMMANDS, module_of
 
 
 def table_of_commands() -> str:
-    """The table of README.md: every command with what it does, and the page about it."""
+    """Return the table of README.md: every command, what it does, and the page about it."""
     rows = []
     for name, row in COMMANDS.items():
         page = f" ([docs/{row.page.partition('#')[0]}](docs/{row.page}))" if row.page else ""
@@ -20,19 +20,19 @@ def table_of_commands() -> str:
 
 
 def table_of_json() -> str:
-    """The table of docs/command-line.md: every command, an example, and where the keys of its JSON are."""
+    """Return the table of docs/command-line.md: every command, an example, and where its JSON keys are described."""
     rows = [f"| `{name}` | {_with_marks(row.about)} | `granchain {name} {row.example}` | "
             f"{f'[{name}](#{name})' if '--json' in _help(name) else 'none'} |" for name, row in COMMANDS.items()]
     return "\n".join(["| command | what it does | example | keys |", "|---|---|---|---|", *rows])
 
 
-#: Functions of commands that have another name than these.
+#: Functions whose name differs from their command's.
 _FUNCTIONS = {"curve": "resonance_curve", "lyapunov": "lyapunov_spectrum", "rotation": "rotation_number",
               "bifurcation-diagram": "bifurcation_diagram", "map": "parameter_map", "accuracy": "work_precision"}
 
 
 def table_of_functions() -> str:
-    """The table of README.md: the commands with a function, in the order of `granchain --help`."""
+    """Return the table of README.md: the commands with a function, in the order of `granchain --help`."""
     unknown = {*_FUNCTIONS} - {*COMMANDS} | {*_FUNCTIONS.values()} - {*granchain.__all__}
     assert not unknown, f"no command or public function: {unknown}"
     rows = [f"| `{name}` | `{function}` |" for name in COMMANDS
@@ -41,18 +41,18 @@ def table_of_functions() -> str:
 
 
 def _with_marks(words: str) -> str:
-    """Words with their options in backquotes."""
+    """Put the options in a text into backquotes."""
     return re.sub(r"--[\w-]+", r"`\g<0>`", words)
 
 
 def commands_with_pictures() -> str:
-    """The list of README.md: every command that has the option --picture, in the order of `granchain --help`."""
+    """Return the list of README.md: every command with the option --picture, in the order of `granchain --help`."""
     drawing = [f"`{name}`" for name in COMMANDS if "--picture" in _help(name)]
     return "\n".join(textwrap.wrap(f"{', '.join(drawing[:-1])} and {drawing[-1]}.", 120))
 
 
 def _help(command: str) -> str:
-    """What `granchain COMMAND --help` says of its options."""
+    """Return the text of `granchain COMMAND --help` about its options."""
     parser = argparse.ArgumentParser()
     module_of(command).add_options(parser)
     return parser.format_help()

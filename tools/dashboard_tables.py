@@ -1,4 +1,4 @@
-"""Tables of docs/dashboard.md that follow from the dashboard's code: its messages."""
+"""The tables of messages in docs/dashboard.md, which follow from the dashboard's code."""
 
 from __future__ import annotations
 
@@ -10,21 +10,21 @@ from app.dashboard.controller import Controller
 from app.scripts import FILES
 from app.session.session import Session
 
-#: In the scripts: a comparison of the message's type with a name.
+#: A comparison, in a script, of a message's type with a name.
 _READS = re.compile(r'(?:\bmessage\.|(?<![.\w]))type [!=]==\s+"([\w-]+)"')
-#: A message whose type no script compares: any message of the chain shows that the server answers.
+#: A message whose type no script compares, because any message to the chain shows that the server answers.
 _READ_OTHERWISE = {"chain.js": ["pong"]}
 
 
 def messages_of_the_browser() -> dict[str, list[str]]:
-    """The messages that the dashboard understands, by owner."""
+    """Return the messages that the dashboard understands, by owner."""
     dashboard = Controller(Document(), Session())
     dashboard.close()
     return {owner: list(actions) for owner, actions in dashboard.owners.items() if actions}
 
 
 def messages_of_the_server() -> dict[str, list[str]]:
-    """The messages that the scripts read, by script."""
+    """Return the messages that the scripts read, by script."""
     found: dict[str, list[str]] = {}
     for name, path in sorted(FILES.items()):
         read = list(dict.fromkeys(_READS.findall(path.read_text(encoding="utf-8")))) + _READ_OTHERWISE.get(name, [])
@@ -34,12 +34,12 @@ def messages_of_the_server() -> dict[str, list[str]]:
 
 
 def table_of_messages_of_the_browser() -> str:
-    """Each owner with its messages."""
+    """Return the table of the owners with their messages."""
     return _table("owner", messages_of_the_browser())
 
 
 def table_of_messages_of_the_server() -> str:
-    """Each script with the messages that it reads."""
+    """Return the table of the scripts with the messages that they read."""
     return _table("read by", {f"`{script}`": names for script, names in messages_of_the_server().items()})
 
 

@@ -1,8 +1,8 @@
-"""A small picture of every scene for the gallery: its chain, the map of its kinetic energy, the force at its wall.
+"""A small picture of every scene for the gallery: its chain, its energy map, and the force on its wall.
 
-Every scene of `assets/scenes` is settled from rest with the knobs of its preset, and drawn to its own largest values as
-`assets/gallery/NAME.svg`, with a digest of the preset. `python -m tools.update` does it for the scenes that are new or
-changed. To draw any again, or without names all:
+Every scene of `assets/scenes` is settled from rest with the knobs of its preset, and drawn on the scale of its own
+largest values as `assets/gallery/NAME.svg`, with a digest of the preset. `python -m tools.update` draws scenes that are
+new or changed. To draw some again, or without names all:
 
     python -m tools.gallery NAME …
 """
@@ -24,18 +24,18 @@ from app.plots.theme import THEMES
 from granchain_core import Scene, scene, scene_names, settle
 from tools.scales import digest_of
 
-#: Rows of a map; a browser smooths nothing.
+#: Rows of an energy map, which browsers do not smooth.
 ROWS = 72
-#: Colours of a map.
+#: Colours of an energy map.
 COLOURS = 32
-#: The edges of the map and of the force beside it, in units of the picture, which is 160 wide and 100 high.
+#: The edges of the map and of the force next to it, in units of the picture, which is 160 wide and 100 high.
 LEFT, RIGHT, TOP, BOTTOM = 12.0, 108.0, 24.0, 97.0
 FORCE_FROM, FORCE_TO = 116.0, 157.0
 STEEL = "#8a93a6"
 
 
 def drawn(chain: Scene) -> str:
-    """The picture of a scene, as SVG."""
+    """Draw the picture of a scene as SVG."""
     frames = settled_frames(settle(chain, samples=samples_for(chain)).run)
     picture = base64.b64encode(energy_png(frames.kinetic_energy)).decode()
     high = BOTTOM - TOP
@@ -47,7 +47,7 @@ def drawn(chain: Scene) -> str:
 
 
 def bodies(chain: Scene) -> str:
-    """Driver, beads and wall over the columns of the map."""
+    """Draw driver, beads and wall above the columns of the map."""
     radii = np.array([bead.radius for bead in chain.beads])
     long = RIGHT - LEFT
     sizes = radii * long / (2.0 * radii.sum())
@@ -58,7 +58,7 @@ def bodies(chain: Scene) -> str:
 
 
 def force_line(frames: Frames) -> str:
-    """The output force over time, which runs downwards; of several rows the largest."""
+    """Return the points of the output force over time, which runs downwards; each is the largest of several rows."""
     force = _largest_of(frames.output_force[:, None], 2 * ROWS)[:, 0]
     low, high = min(float(force.min()), 0.0), float(force.max())
     across = FORCE_FROM + (FORCE_TO - FORCE_FROM) * (force - low) / max(high - low, 1e-300)
@@ -67,7 +67,7 @@ def force_line(frames: Frames) -> str:
 
 
 def energy_png(energy: np.ndarray) -> bytes:
-    """The map of the kinetic energy (T, N) in the page's colours as a PNG, a pixel for a bead."""
+    """Return the map of the kinetic energy (T, N) in the page's colours as a PNG, with one pixel per bead."""
     rows = _largest_of(energy, ROWS)
     steps = np.rint((COLOURS - 1) * np.sqrt(rows / rows.max())).astype(np.uint8)
     palette = bytes.fromhex("".join(
@@ -81,18 +81,18 @@ def energy_png(energy: np.ndarray) -> bytes:
 
 
 def _largest_of(values: np.ndarray, most: int) -> np.ndarray:
-    """At most so many rows, each the largest values of its share of the rows."""
+    """Return at most `most` rows, each with the largest values of its share of the rows."""
     edges = np.linspace(0, len(values), min(most, len(values)) + 1).round().astype(int)[:-1]
     return np.maximum.reduceat(values, edges, axis=0)
 
 
 def digest_in(chain: Scene) -> str:
-    """The attribute of a picture that says of which preset it is."""
+    """Return the attribute of a picture that identifies its preset."""
     return f'data-scene-digest="{digest_of(chain, with_f=True)}"'
 
 
 def changed() -> list[str]:
-    """The scenes without a picture, and those whose picture is of an earlier preset."""
+    """Return the scenes without a picture, and those whose picture is of an earlier preset."""
     paths = {name: FOLDER / f"{name}.svg" for name in scene_names()}
     return [name for name, path in paths.items()
             if not path.exists() or digest_in(scene(name)) not in path.read_text(encoding="utf-8")]

@@ -22,7 +22,7 @@ FILE = Path(__file__).with_name("hard-cases.json")
 
 @dataclass(frozen=True)
 class Row:
-    """One row of a recorded run: "case: measurement", its limit, the value."""
+    """One row of a recorded run: its name, "case: measurement", the limit and the value."""
 
     name: str
     limit: float
@@ -30,13 +30,13 @@ class Row:
 
 
 def recorded(form: str, case: str) -> list[Row]:
-    """The rows of one case in the recorded run of a form, "quick" or "full"."""
+    """Return the rows of one case in the recorded run of a form, "quick" or "full"."""
     rows = json.loads(FILE.read_text(encoding="utf-8"))[form]
     return [Row(*row) for row in rows if row[0].startswith(f"{case}: ")]
 
 
 def table_of_hard_cases() -> str:
-    """A row with the oracle for every case in the order of the code, and below it a row for every measurement."""
+    """Return the table: for every case, in the order of the code, a row with the oracle and one per measurement."""
     lines = ["| measurement | limit | quick form | full form |", "|---|---|---|---|"]
     for case in CASES:
         lines.append(f"| **{case.name}**; oracle: {case.oracle} | | | |")
@@ -49,7 +49,7 @@ def table_of_hard_cases() -> str:
 
 
 def _pairs(quick: list[Row], full: list[Row]) -> list[tuple[Row | None, Row | None]]:
-    """The rows of both forms side by side: names differ in counts, and the full form may have more rows."""
+    """Return the rows of both forms side by side; names differ in counts, and the full form may have more rows."""
     if len(quick) == len(full):
         return list(zip(quick, full, strict=True))
     by_name = {row.name: row for row in quick}
@@ -57,7 +57,7 @@ def _pairs(quick: list[Row], full: list[Row]) -> list[tuple[Row | None, Row | No
 
 
 def _printed(value: float | None) -> str:
-    """A number to two digits, as the pages write numbers; a dash for None."""
+    """Return a number to two digits, as the pages write numbers; a dash for None."""
     return "–" if value is None else f"{value:.2g}".replace("e-0", "e-")
 
 

@@ -1,8 +1,8 @@
-"""What a link with nothing but the name of a scene means: tests/session/links.json.
+"""The meaning of a link that contains only the name of a scene: tests/session/links.json.
 
-A link that was sent keeps only what differs from its scene, so a scene must not change its meaning. The file has the
-knobs and beads of `sec2`, and of every other scene those that differ. A row is added when a scene is new and is never
-written again.
+A share link contains only the differences from its scene, so the meaning of a scene must not change. The file has the
+knobs and beads of `sec2` and, for every other scene, those that differ. A row is added for a new scene and is never
+changed afterwards.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ FILE = Path(__file__).resolve().parents[1] / "tests" / "session" / "links.json"
 
 
 def meaning(chain: Scene) -> dict[str, Any]:
-    """Knobs and beads (mass, radius, young, poisson) of `sec2`; those of another scene that differ from them."""
+    """Return the knobs and beads (mass, radius, young, poisson) of `sec2`; of another scene, those that differ."""
     found = {**chain.knobs, "beads": [list(astuple(bead)) for bead in chain.pattern]}
     if chain.name == "sec2":
         return found
@@ -27,7 +27,7 @@ def meaning(chain: Scene) -> dict[str, Any]:
 
 
 def with_new_scenes() -> str:
-    """The file's text with a row for every scene that has none."""
+    """Return the file's text with a row added for every scene without one."""
     rows = json.loads(FILE.read_text(encoding="utf-8"))
     rows |= {name: meaning(scene(name)) for name in scene_names() if name not in rows}
     lines = (f"  {json.dumps(name)}: {json.dumps(row)}" for name, row in rows.items())

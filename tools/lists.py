@@ -1,7 +1,8 @@
-"""Lists that follow from tables in the code: knobs (docs/model.md), methods (docs/method.md), equations, scenes and the
-command that runs all tests (README.md), drives by a formula (docs/scenes.md), what is used of libraries
-(docs/libraries.md), metrics (docs/deployment.md), former names (docs/python.md), worker pools and the times of the
-connection (docs/dashboard.md).
+"""Lists of the docs that follow from tables in the code.
+
+They are knobs (docs/model.md), methods (docs/method.md), equations, scenes and the command that runs all tests
+(README.md), drives by a formula (docs/scenes.md), library internals in use (docs/libraries.md), metrics
+(docs/deployment.md), former names (docs/python.md), worker pools and connection times (docs/dashboard.md).
 """
 
 from __future__ import annotations
@@ -30,14 +31,14 @@ ROOT = Path(__file__).resolve().parents[1]
 
 
 def table_of_knobs() -> str:
-    """The table of docs/model.md: every knob with its symbol, unit, values and meaning."""
+    """Return the table of docs/model.md: every knob with its symbol, unit, values and meaning."""
     rows = [f"| `{knob.name}` | {knob.symbol or '–'} | {knob.unit or '–'} | {allowed(knob)} | {knob.meaning} |"
             for knob in QUANTITIES.values()]
     return "\n".join(["| knob | symbol | unit | values | meaning |", "|---|---|---|---|---|", *rows])
 
 
 def allowed(knob: Quantity) -> str:
-    """The values that a knob takes, in words."""
+    """Return the values that a knob can have, in words."""
     words = ", ".join(f"`{word}`" for word in knob.choices)
     if not knob.numeric:
         return words
@@ -46,13 +47,13 @@ def allowed(knob: Quantity) -> str:
 
 
 def list_of_methods() -> str:
-    """The list of docs/method.md: every method, what it is, and its limits."""
+    """Return the list of docs/method.md: every method, what it is, and its limits."""
     items = (f"- **`{one.name}`**: {one.title}. *Limits:* {one.restrictions}." for one in METHODS.values())
     return "\n".join("\n".join(textwrap.wrap(item, 120, subsequent_indent="  ")) for item in items)
 
 
 def table_of_orders() -> str:
-    """The table of docs/method.md: the orders of every method in theory and as observed."""
+    """Return the table of docs/method.md: the orders of every method, in theory and observed."""
     rows = []
     for one in METHODS.values():
         orders = (one.order, one.observed_smooth, one.order_at_events, one.observed_order, one.observed_with_cut)
@@ -62,15 +63,15 @@ def table_of_orders() -> str:
 
 
 def table_of_drives() -> str:
-    """The table of docs/scenes.md: every drive by a formula, and a measured one."""
+    """Return the table of docs/scenes.md: every drive by a formula, and a measured one."""
     rows = [f"| `{name}={one.form}` | {one.meaning} |" for name, one in FORMULAS.items()]
     return "\n".join(["| drive | motion of the driver |", "|---|---|", *rows,
-                      "| a file | the measured velocity of the shaker over time, or its displacement where no velocity is "
-                      "there; what files are read is in [data.md](data.md) |"])
+                      "| a file | the measured velocity of the shaker over time, or its displacement if there is no velocity; "
+                      "[data.md](data.md) describes the files that can be read |"])
 
 
 def equations() -> str:
-    """The equations of README.md: the first block of docs/model.md below its heading “Equations”."""
+    """Return the equations of README.md: the first block of docs/model.md below its heading “Equations”."""
     _, _, below = (ROOT / "docs" / "model.md").read_text(encoding="utf-8").partition("\n## Equations\n")
     block = re.search(r"\n\n((?:    .+\n)+)", below)
     assert block is not None
@@ -78,13 +79,13 @@ def equations() -> str:
 
 
 def table_of_scenes() -> str:
-    """The table of README.md: every scene with its title, in teaching order."""
+    """Return the table of README.md: every scene with its title, in teaching order."""
     rows = [f"| `{name}` | {scene(name).title} |" for name in scene_names()]
     return "\n".join(["| scene | what it is |", "|---|---|", *rows])
 
 
 def table_of_libraries() -> str:
-    """The table of docs/libraries.md: what is used of libraries beyond their documentation, and where."""
+    """Return the table of docs/libraries.md: the undocumented parts of libraries in use, and where they are used."""
     rows = []
     for module, table in library_internals.tables().items():
         for without in dict.fromkeys(row.without for row in table):
@@ -94,26 +95,26 @@ def table_of_libraries() -> str:
 
 
 def table_of_connection_times() -> str:
-    """The table of docs/dashboard.md: the times of the script that watches the connection."""
+    """Return the table of docs/dashboard.md: the times in the script that watches the connection."""
     rows = re.findall(r"^ +(?:const )?([A-Z_]+) = (\d+)[,;] // (.+)$", FILES["connection.js"].read_text(encoding="utf-8"), re.MULTILINE)
     return "\n".join(["| constant | ms | what it is |", "|---|---|---|", *(f"| `{name}` | {value} | {words} |" for name, value, words in rows)])
 
 
 def table_of_worker_pools() -> str:
-    """The table of docs/dashboard.md: every pool of threads, its limits and its purpose."""
+    """Return the table of docs/dashboard.md: every thread pool, its limits and its purpose."""
     rows = [f"| `{pool.name.upper()}` | {pool.workers} | {f'+{ADDED_NICENESS}' if pool.low_priority else '0'} | "
             f"{pool.per_owner_limit or '–'} | {pool.purpose} |" for pool in POOLS]
     return "\n".join(["| pool | threads | nice value | work of one session at once | what runs there |", "|---|---|---|---|---|", *rows])
 
 
 def table_of_picture_stages() -> str:
-    """The table of docs/deployment.md: the stages of a picture, and what helps if one takes long."""
+    """Return the table of docs/deployment.md: the stages of a picture, and what helps if one takes long."""
     return "\n".join(["| stage | what happens | if it takes long |", "|---|---|---|",
                       *(f"| `{name}` | {stage.what} | {stage.remedy} |" for name, stage in STAGES.items())])
 
 
 def table_of_metrics() -> str:
-    """The table of docs/deployment.md: every metric of the server, its kind and its help text."""
+    """Return the table of docs/deployment.md: every metric of the server, its kind and its help text."""
     add_shared_metrics()
     rows = []
     for metric in METRICS.table():
@@ -124,19 +125,19 @@ def table_of_metrics() -> str:
 
 
 def _also(former: FormerMetric) -> str:
-    """The former name of a metric, in words."""
+    """Return the former name of a metric, in words."""
     changed = "".join(f", where `{now}` is `{then}`" for now, then in former.values.items())
     label = f", with the label `{former.label}`{changed}" if former.label else ""
     return f" Also under its former name `{former.former}`{label}."
 
 
 def test_command() -> str:
-    """The command of README.md that runs all tests: the two lines of .ci/test-command as one."""
+    """Return the command of README.md that runs all tests: the two lines of .ci/test-command as one."""
     return f"```sh\n{' && '.join((ROOT / '.ci' / 'test-command').read_text(encoding='utf-8').splitlines())}\n```"
 
 
 def table_of_former_names() -> str:
-    """The table of docs/python.md: every former name that still works, with the present one."""
+    """Return the table of docs/python.md: every former name that still works, with the present one."""
     kinds = (("", core.NAMES), ("", core.ATTRIBUTES), ("", core.PARAMETERS), ("", core.EXTRAS), ("", core.VARIABLES),
              ("column ", core.COLUMNS), ("command ", own.COMMANDS), ("tab ", own.TABS), ("option ", own.OPTIONS), ("JSON key ", (*own.KEYS, *core.KEYS)))
     rows = [f"| {kind}`{row.name}` | `{row.former}` | {row.removed_in} |" for kind, table in kinds for row in table]

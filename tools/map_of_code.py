@@ -1,6 +1,6 @@
-"""The map of docs/design.md: what is in each folder, from the docstring of its `__init__.py`.
+"""The map of the code in docs/design.md: the contents of each folder, from the docstring of its `__init__.py`.
 
-The order of the rows and their last column, the folders that a folder imports, are written by hand: the generator keeps
+The order of the rows and their last column, the folders that a folder imports, are written by hand. The generator keeps
 them, and `tests/architecture/test_design_map.py` compares them with the imports.
 """
 
@@ -18,7 +18,7 @@ _ROW = re.compile(r"^\| `([\w/]+)` \| [^|]+ \| ([^|]+) \|$", re.MULTILINE)
 
 
 def table_of_folders() -> str:
-    """The rows of all folders with code but those of pages; a new folder comes after the folder in which it is."""
+    """Return the rows of all folders with code except those of pages; a new folder is put after its parent folder."""
     uses = {folder: used for folder, used in _ROW.findall(_MAP.read_text(encoding="utf-8")) if _is_on_map(folder)}
     there = [folder for folder in _folders() if _is_on_map(folder)]
     order = [folder for folder in uses if folder in there]
@@ -31,7 +31,7 @@ def table_of_folders() -> str:
 
 
 def table_of_pages() -> str:
-    """The rows of the folders of `app/pages`."""
+    """Return the rows of the folders in `app/pages`."""
     rows = [_row(folder, "–") for folder in _folders() if folder.startswith(f"{_PAGES}/")]
     return "\n".join(["| page | what is in it | uses |", "|---|---|---|", *rows])
 
@@ -45,7 +45,7 @@ def _is_on_map(folder: str) -> bool:
 
 
 def _row(folder: str, uses: str) -> str:
-    """A row; its words are the first paragraph of the docstring, and pages of docs that it names are links."""
+    """Return a row; its text is the docstring's first paragraph, with links to the pages of docs that it names."""
     text = (_ROOT / folder / "__init__.py").read_text(encoding="utf-8")
     words = " ".join((ast.get_docstring(ast.parse(text)) or "").partition("\n\n")[0].split()).removesuffix(".")
     linked = re.sub(r"docs/([\w-]+[.]md)", r"[\1](\1)", words)

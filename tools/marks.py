@@ -1,4 +1,4 @@
-"""The tables of docs/marks.md: what lines and marks of the figures mean, from the code that draws them."""
+"""The tables of docs/marks.md: the meaning of the figures' lines and marks, from the code that draws them."""
 
 from __future__ import annotations
 
@@ -9,21 +9,21 @@ from app.plots.force_lines import DRIVE, ELASTIC, INPUT, MEASURED, OUTPUT
 from app.plots.regimes import REGIME_MARKS, SYMBOLS
 from app.plots.theme import AMBER, BLUE, DRIVE_COLOUR, GREY, OUTPUT_COLOUR, TEAL, VIOLET
 
-#: Colours in words.
+#: The names of colours.
 _WORDS = {AMBER: "amber", BLUE: "blue", DRIVE_COLOUR: "red", GREY: "grey", OUTPUT_COLOUR: "green", TEAL: "teal",
           VIOLET: "violet", "#a855f7": "purple", "#f59e0b": "orange", "#06b6d4": "turquoise", "#ec4899": "pink",
           "#ef4444": "red"}
-#: Signs of drawn marks by Bokeh's marker, and whether it is filled.
+#: Characters for marks, by Bokeh's marker and whether it is filled.
 _SIGNS = {("inverted_triangle", True): "▼", ("hex", True): "⬢", ("circle", False): "○", ("square", False): "□",
           ("cross", True): "+"}
 
 
 def table_of_lines_over_a_knob() -> str:
-    """Resonance curves, branches and bifurcation curves: lines."""
+    """Return the table of lines over a knob: resonance curves, branches and bifurcation curves."""
     rows = [(f"{style.line_words}", f"resonance curve, {style.words}: {style.meaning}") for style in SWEEPS.values()]
     for name, (_, dash) in LINES.items():
         rows.append((f"{'solid' if dash == 'solid' else 'dashed'} green line", f"{name} periodic orbits of a branch"))
-    rows += [("black line edged in white, with marks", "bifurcation curve of a parameter map; the marks say which kind"),
+    rows += [("black line edged in white, with marks", "bifurcation curve of a parameter map; the marks show its kind"),
              ("pale grey line", "resonance curve before the last change of a knob; behind a branch, the curve from rest"),
              (f"grey line, {', '.join(SIGNS)}", "curves of the first, second and third pin"),
              ("hollow squares in the colour of the text", "measured values, with their errors as bars"),
@@ -32,20 +32,20 @@ def table_of_lines_over_a_knob() -> str:
 
 
 def table_of_special_points() -> str:
-    """Special points of branches, and the marks on bifurcation curves."""
+    """Return the table of special points of branches, which also mark bifurcation curves."""
     return _table(("mark", "meaning"), [
         (f"{_SIGNS[style['marker'], style['filled']]} {_WORDS[style['colour']]}", SPECIAL[kind])
         for kind, style in SPECIAL_STYLES.items()])
 
 
 def table_of_regime_marks() -> str:
-    """Marks of the regimes."""
+    """Return the table of the regimes' marks."""
     return _table(("mark", "motion"), [(f"{SYMBOLS[marker]} {_WORDS[colour]}", name)
                                        for name, (marker, colour, _) in REGIME_MARKS.items()])
 
 
 def table_of_lines_over_time() -> str:
-    """Forces and drive over time."""
+    """Return the table of lines over time: forces and drive."""
     rows = [(f"{'dashed' if style.dash else 'solid'} {_WORDS[style.colour]} line", style.title)
             for style in (DRIVE, INPUT, OUTPUT, ELASTIC)]
     rows += [("thin line in the colour of the text", f"{MEASURED.title} force or displacement"),

@@ -1,8 +1,8 @@
-"""Numbers of the code in sentences of the docs, which `python -m tools.update` writes.
+"""Numbers from the code in sentences of the docs, written by `python -m tools.update`.
 
-A mark behind a number names its constant by the module's last name: `400<!--regime_decisions.EXAMINED_AFTER-->`. A
-unit behind a colon says how the number is written: `30<!--steps.LARGEST_CORRECTION:%-->`. A number that follows from
-several constants is one of `DERIVED`.
+A mark after a number gives its constant with the last part of the module's name:
+`400<!--regime_decisions.EXAMINED_AFTER-->`. A unit after a colon says how the number is written:
+`30<!--steps.LARGEST_CORRECTION:%-->`. A number that follows from several constants is one of `DERIVED`.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ from granchain_core.steady.settling import regime_decisions
 from tools.thresholds import printed
 
 _CORE = Path(__file__).resolve().parents[1] / "granchain_core"
-#: A number, or a word for one, and its mark.
+#: A number, or a word for a number, and its mark.
 _MARKED = re.compile(r"[\w.,-]+<!--([a-z_0-9]+\.\w+|\w+)(?::(\S+?))?-->")
-#: How a number is written in other units, and as a word.
+#: Functions that write a number in other units, or as a word.
 _UNITS: dict[str, Callable[[float], str]] = {
     "": lambda value: _plain(value),
     "%": lambda value: f"{100.0 * value:g}",
@@ -34,7 +34,7 @@ _UNITS: dict[str, Callable[[float], str]] = {
 
 
 def _plain(value: float) -> str:
-    """As the pages write numbers: 16,000 and 1e-4."""
+    """Return a number as the pages write it: 16,000 or 1e-4."""
     if isinstance(value, int) and value >= 10_000:
         return f"{value:,}"
     power = f"{value:.0e}".replace("e-0", "e-")
@@ -42,14 +42,14 @@ def _plain(value: float) -> str:
 
 
 def _least_width_over_range() -> float:
-    """The width that is narrow enough between two orbits at which the knob is 0, over the larger end of its range."""
+    """Return the width that is narrow enough between two orbits at which the knob is 0, over its range's upper end."""
     at_zero, axis = SimpleNamespace(knob=0.0), SimpleNamespace(high=1.0)
     return special_search._wanted(axis, at_zero, at_zero)  # type: ignore[arg-type]
 
 
 #: Numbers that follow from several constants.
 DERIVED: dict[str, Callable[[], float]] = {
-    #: Below this exponent the drive periods of a comparison would be more than `_LONGEST_COMPARISON`.
+    #: Below this exponent, a comparison would take more drive periods than `_LONGEST_COMPARISON`.
     "smallest_exponent": lambda: round(regime_criteria._BOUNDED_GROWTH / regime_criteria._LONGEST_COMPARISON, 4),
     "least_width_over_range": _least_width_over_range,
     "hard_cases": lambda: len(CASES),
@@ -61,7 +61,7 @@ DERIVED: dict[str, Callable[[], float]] = {
 
 
 def with_numbers(text: str) -> str:
-    """A page's text with the numbers before its marks as the code has them. KeyError for a mark that names none."""
+    """Return a page's text with the code's numbers before its marks. Raise KeyError for a mark of no constant."""
     def as_it_is(match: re.Match[str]) -> str:
         mark = match[0].partition("<")[2]
         return f"{_UNITS[match[2] or ''](value_of(match[1]))}<{mark}"
@@ -70,13 +70,13 @@ def with_numbers(text: str) -> str:
 
 
 def marks(text: str) -> list[str]:
-    """What the marks of a text name."""
+    """Return the names in the marks of a text."""
     return [match[1] for match in _MARKED.finditer(text)]
 
 
 @cache
 def value_of(name: str) -> float:
-    """The value of `module.CONSTANT`, which must be in one file only, or of one of `DERIVED`."""
+    """Return the value of `module.CONSTANT`, which must be in exactly one file, or of one of `DERIVED`."""
     if name in DERIVED:
         return DERIVED[name]()
     module, _, constant = name.partition(".")

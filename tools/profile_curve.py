@@ -1,9 +1,9 @@
-"""Program: where does the time of a resonance curve go? cProfile in the thread that computes.
+"""Program: profile where a resonance curve spends its time, with cProfile in the computing thread.
 
     python -m tools.profile_curve [--scene sec2] [--from 30] [--to 3000] [--points 298] [--rows 30]
 
-Kernels appear as built-in methods (`run_batch` is the batch), Python as functions of the package. Profiling makes
-Python slower and kernels not, so the shares of Python are too large; the last line has the time without it.
+Kernels appear as built-in methods (`run_batch` is the batch), Python code as functions of the package. Profiling slows
+down Python but not kernels, so the shares of Python are too large. The last line has the time without profiling.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from granchain_core import resonance_curve, scene
 
 
 def profiled(work: Callable[[], object]) -> pstats.Stats:
-    """What the threads that `work` starts spend their time on."""
+    """Run `work`, and return the profile of the threads that it starts."""
     profiles: list[cProfile.Profile] = []
     run = threading.Thread.run
 
@@ -37,7 +37,7 @@ def profiled(work: Callable[[], object]) -> pstats.Stats:
 
 
 def main() -> None:
-    """Print the functions that take most time, then the time of a curve on one thread."""
+    """Print the functions that take the most time, then the time of a curve on one thread."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--scene", default="sec2")
     parser.add_argument("--from", dest="low", type=float, default=30.0)

@@ -1,4 +1,4 @@
-"""The table at the head of each recipe docs/add-….md: every numbered step with the files that it writes and edits."""
+"""The table at the top of each recipe docs/add-….md: every numbered step with its new and edited files."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ _FILE = re.compile(r"`([\w./-]+\.\w+)`")
 
 
 def tables() -> list[tuple[str, str, Callable[[], str]]]:
-    """Of every recipe its page, the table's name in the page's marks, and what writes it."""
+    """Return, for every recipe, its page, the table's name in the page's marks, and the function that writes it."""
     return [(f"docs/{path.name}", "steps", partial(table_of_steps, path)) for path in sorted(_DOCS.glob("add-*.md"))]
 
 
 def table_of_steps(page: Path) -> str:
-    """Every numbered step of a recipe, the files that it writes, and those that it edits."""
+    """Return the table of a recipe's numbered steps, with the files that each writes and edits."""
     _, *parts = _STEP.split(page.read_text(encoding="utf-8"))
     rows = []
     for title, text in zip(parts[::2], parts[1::2], strict=True):
@@ -29,7 +29,7 @@ def table_of_steps(page: Path) -> str:
 
 
 def _files(text: str) -> tuple[list[str], list[str]]:
-    """The files of a step's blocks: new ones, and those edited. The paragraph before a block names its file last."""
+    """Return a step's new and edited files. The paragraph before a block names the block's file last."""
     new: list[str] = []
     edited: list[str] = []
     for block in _BLOCK.finditer(text):

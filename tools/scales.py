@@ -1,9 +1,9 @@
-"""The largest forces, energy and motion of every scene over its range of f: what the dashboard draws its pictures to.
+"""The largest forces, energy and motion of every scene over its range of f, which scale the dashboard's pictures.
 
 Every scene of `assets/scenes` is settled from rest at POINTS equally spaced frequencies of its slider, with the knobs
-of its preset, and at some more around each where a value is largest: a peak lies between them. The largest values over
-all become its table in `assets/scales.toml`, beside a digest of the preset. `python -m tools.update` does it for the
-scenes that are new or changed. To compute any again, or without names all:
+of its preset, and at further frequencies around each at which a value is largest, since a peak is between two points.
+The largest values of all become its table in `assets/scales.toml`, along with a digest of the preset. `python -m
+tools.update` does this for scenes that are new or changed. To compute some again, or without names all:
 
     python -m tools.scales NAME …
 """
@@ -25,10 +25,10 @@ from app.frames import Extremes, samples_for, settled_frames
 from app.session.scene_facts import slider_range
 from granchain_core import Scene, scene, scene_names, settle
 
-#: Frequencies over the range of f, and around each at which a value is largest.
+#: Number of frequencies over the range of f, and around each frequency at which a value is largest.
 POINTS = 150
 AROUND = 8
-#: Fields of a scene that no value follows from; f takes all values of its range, which is part of the digest.
+#: Fields of a scene that do not affect the values; f takes all values of its range, which is part of the digest.
 _NO_PHYSICS = ("name", "title", "look_at", "paper", "ranges", "preset", "f")
 
 _HEAD = """\
@@ -38,7 +38,7 @@ _HEAD = """\
 
 
 def over_frequencies(chain: Scene, points: int = POINTS) -> Extremes:
-    """The largest values of a scene's settled pictures over its range of f."""
+    """Return the largest values of a scene's settled pictures over its range of f."""
     grid = np.linspace(*slider_range(chain, "f"), points)
     coarse = [_at(chain, float(frequency)) for frequency in grid]
     found = functools.reduce(Extremes.widened, coarse)
@@ -50,9 +50,10 @@ def over_frequencies(chain: Scene, points: int = POINTS) -> Extremes:
 
 
 def digest_of(chain: Scene, with_f: bool = False) -> str:
-    """A digest of what a scene's largest values follow from: its physics and its range of f; `with_f` with its own f.
+    """Return a digest of what determines a scene's largest values: its physics and, unless `with_f`, its range of f.
 
-    A field at its default is left out, so that a new effect, which is absent by default, changes no digest.
+    `with_f` includes the scene's own f instead. A field at its default is left out, so that a new effect, which is
+    absent by default, changes no digest.
     """
     defaults = {field.name: field.default for field in fields(chain) if field.default is not MISSING}
     physics = {name: value for name, value in chain.to_json().items()
@@ -62,7 +63,7 @@ def digest_of(chain: Scene, with_f: bool = False) -> str:
 
 
 def table(name: str, digest: str, values: dict[str, float]) -> str:
-    """A scene's table in the file."""
+    """Return a scene's table in the file."""
     lines = (f"{field} = {value:.3g}" for field, value in values.items())
     return "\n".join((f"[{name}]", f'{DIGEST} = "{digest}"', *lines)) + "\n"
 
@@ -73,13 +74,13 @@ def _at(chain: Scene, frequency: float) -> Extremes:
 
 
 def changed() -> list[str]:
-    """The scenes without a table, and those whose table belongs to an earlier preset."""
+    """Return the scenes without a table, and those whose table is of an earlier preset."""
     tables = tomllib.loads(Path(FILE).read_text(encoding="utf-8"))
     return [name for name in scene_names() if tables.get(name, {}).get(DIGEST) != digest_of(scene(name))]
 
 
 def main(chosen: list[str]) -> None:
-    """Write `assets/scales.toml`: the scenes named afresh, or all, and the others as they are."""
+    """Write `assets/scales.toml`: compute the named scenes, or all, and keep the other tables."""
     old = tomllib.loads(Path(FILE).read_text(encoding="utf-8"))
     tables = [_HEAD]
     for name in scene_names():

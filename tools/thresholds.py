@@ -1,11 +1,12 @@
-"""The tables of thresholds in docs/regimes.md and other pages, which `python -m tools.update` writes.
+"""The tables of thresholds in docs/regimes.md and other pages, written by `python -m tools.update`.
 
-A threshold is a constant in `granchain_core` whose `#:` comment begins with a mark: `[period n]` names the regimes that
-it decides, `[rotation]` puts it into the table of docs/rotation-number.md, `[response]` into that of docs/orbits.md,
-`[fit]` into that of docs/fit.md and `[safety factor]` into that of docs/accuracy.md. `[step size]`, `[branch]` and
-`[attractors]` put it into the tables of docs/constants.md.
-The comment's first sentence is its row; what follows, the reason, stays in the code. A number beside thresholds that is
-none itself is marked `[no threshold]`.
+A threshold is a constant in `granchain_core` whose `#:` comment begins with a mark. A mark such as `[period n]` names
+the regimes that it decides. `[rotation]` puts it into the table of docs/rotation-number.md, `[response]` into that of
+docs/orbits.md, `[fit]` into that of docs/fit.md and `[safety factor]` into that of docs/accuracy.md. `[step size]`,
+`[branch]` and `[attractors]` put it into the tables of docs/constants.md.
+
+The comment's first sentence becomes its row; the rest, the reason, stays in the code. A number next to thresholds that
+is not a threshold itself is marked `[no threshold]`.
 """
 
 from __future__ import annotations
@@ -23,13 +24,13 @@ _MARKED = re.compile(r"^#: \[([a-z, -]+)\] ((?:.*\n)(?:#: .*\n)*)(\w+)\b.*=", re
 #: The first two lines of a table.
 _HEAD = ("| what | threshold | constant and file |", "|---|---|---|")
 _REGIMES = ("period n", "followed", "chaotic", "quasi-periodic", "unsettled", "all")
-#: Marks that a heading has in other words: `followed` is the name of the regime's key in JSON and files.
+#: Marks that headings spell out: `followed` is the name of the regime's key in JSON and files.
 _IN_WORDS = {"followed": "an orbit that the motion still approaches", "all": "every regime"}
 
 
 @dataclass(frozen=True)
 class Marked:
-    """A constant with a mark: the regimes it decides, what it is, its file below `granchain_core`, its name."""
+    """A constant with a mark: the mark, what the constant is, its file below `granchain_core`, its name."""
 
     mark: str
     what: str
@@ -49,7 +50,7 @@ class Marked:
 
 @cache
 def marked_constants() -> tuple[Marked, ...]:
-    """All constants with a mark, file by file."""
+    """Return all constants with a mark, file by file."""
     found = []
     for path in sorted(_CORE.rglob("*.py")):
         for mark, comment, name in _MARKED.findall(path.read_text(encoding="utf-8")):
@@ -60,20 +61,20 @@ def marked_constants() -> tuple[Marked, ...]:
 
 
 def printed(value: float | tuple[float, ...]) -> str:
-    """A number to six digits, as a fraction where these are not all; several numbers one after another."""
+    """Return a number to six digits, or as a fraction if it has more; several numbers are separated by commas."""
     if isinstance(value, tuple):
         return ", ".join(map(printed, value))
     short = re.sub(r"e([+-])0*", lambda power: "e" + power[1].strip("+"), f"{value:g}")
     return short if float(short) == value else str(Fraction(value).limit_denominator(100))
 
 
-#: How the text of a threshold of `period n` begins if it holds for one of the two ways to a steady state, and the
-#: heading of the table of these.
+#: The beginning of the text of a `period n` threshold that applies to only one of the two ways to a steady state, and
+#: the heading of the table of such thresholds.
 _WAYS = {"": "period n", "A batch: ": "period n, in a batch", "A chain alone: ": "period n, of a chain settled alone"}
 
 
 def tables_of_regimes() -> str:
-    """The tables of docs/regimes.md, one below a heading for each set of regimes, in their order."""
+    """Return the tables of docs/regimes.md, one for each set of regimes, in order, below a heading."""
     parts: dict[str, list[str]] = {}
     rows = sorted((one for one in marked_constants() if one.mark.split(", ")[0] in _REGIMES),
                   key=lambda one: [_REGIMES.index(regime) for regime in one.mark.split(", ")])
@@ -88,60 +89,60 @@ def tables_of_regimes() -> str:
 
 
 def _way(one: Marked) -> str:
-    """How the text of a threshold begins: a key of `_WAYS`."""
+    """Return the beginning of a threshold's text, as a key of `_WAYS`."""
     return next((begin for begin in _WAYS if begin and one.what.startswith(begin)), "")
 
 
 def _row(one: Marked, begin: str = "") -> str:
-    """A row without the words that the heading above it has."""
+    """Return a row without the words that are in the heading above it."""
     cells = one.cells.removeprefix(begin)
     return f"| {cells[0].upper()}{cells[1:]}"
 
 
-#: The constants that decide what a motion is called, in the order of the definitions.
+#: The constants that decide the regime of a motion, in the order of the definitions.
 _DECIDING = ("SETTLED_DISTANCE", "STANDARD_ERRORS", "_BOUNDED_GROWTH", "_LARGEST_NEUTRAL_EXPONENT", "_RETURN_FACTOR",
              "_SHRINK_FACTOR", "CLEAR_GROWTH", "_EXPONENT_DIFFERENCE", "LONGEST_LOCKED_PERIOD")
 
 
 def table_of_deciding() -> str:
-    """The short table of docs/regimes.md: the thresholds that decide what a motion is called."""
+    """Return the short table of docs/regimes.md: the thresholds that decide the regime of a motion."""
     rows = {one.name: one for one in marked_constants()}
     return "\n".join(["| regime | what | threshold | constant and file |", "|---|---|---|---|",
                       *(f"| {rows[name].mark} | {rows[name].cells}" for name in _DECIDING)])
 
 
 def table_of_responses() -> str:
-    """The table of docs/orbits.md: the rules on a curve, then those of an orbit alone."""
+    """Return the table of docs/orbits.md: the rules for a curve, then those for an orbit alone."""
     return _table("response", reverse=True)
 
 
 def table_of_rotation_numbers() -> str:
-    """The table of docs/rotation-number.md."""
+    """Return the table of docs/rotation-number.md."""
     return _table("rotation")
 
 
 def table_of_safety_factors() -> str:
-    """The table of docs/accuracy.md."""
+    """Return the table of docs/accuracy.md."""
     return _table("safety factor")
 
 
 def table_of_branches() -> str:
-    """The table of docs/constants.md."""
+    """Return the table of branch constants in docs/constants.md."""
     return _table("branch")
 
 
 def table_of_fits() -> str:
-    """The table of docs/fit.md."""
+    """Return the table of docs/fit.md."""
     return _table("fit")
 
 
 def table_of_attractors() -> str:
-    """The table of docs/constants.md."""
+    """Return the table of constants of the attractor search in docs/constants.md."""
     return _table("attractors")
 
 
 def table_of_step_sizes() -> str:
-    """The table of docs/constants.md: what sets the steps of each method, method by method."""
+    """Return the table of step sizes in docs/constants.md, method by method."""
     rows = sorted((one for one in marked_constants() if one.mark == "step size"), key=lambda one: _METHODS.index(_method(one)))
     table = ["| method | what | value | constant and file |", "|---|---|---|---|"]
     for one in rows:
@@ -150,16 +151,16 @@ def table_of_step_sizes() -> str:
     return "\n".join(table)
 
 
-#: What the steps in the table of docs/constants.md belong to, in its order: how the comment of such a constant begins.
+#: The methods in the table of step sizes, in its order; the comment of such a constant begins with one of them.
 _METHODS = ("Fixed steps", "Error control", "dop853", "dop853, tension cut", "dop853-root", "flow")
 
 
 def _method(one: Marked) -> str:
-    """Whose steps a constant sets."""
+    """Return the method whose steps a constant sets."""
     return one.what.partition(":")[0]
 
 
 def _table(mark: str, reverse: bool = False) -> str:
-    """All constants with a mark, file by file."""
+    """Return the table of all constants with a mark, file by file."""
     rows = sorted((one for one in marked_constants() if one.mark == mark), key=lambda one: one.file, reverse=reverse)
     return "\n".join([*_HEAD, *(f"| {one.cells}" for one in rows)])

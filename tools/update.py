@@ -1,20 +1,20 @@
-"""Writes again what follows from the code and the scenes: run it after a change of either.
+"""Updates everything that follows from the code and the scenes; run it after a change of either.
 
     python -m tools.update
 
 - tables in the docs: thresholds (docs/regimes.md, rotation-number.md, orbits.md, fit.md, accuracy.md, constants.md),
   methods (docs/method.md), hard cases (docs/hard-cases.md), knobs (docs/model.md), equations and scenes (README.md),
   commands (README.md, docs/command-line.md), drives by a formula (docs/scenes.md), marks of figures (docs/marks.md),
-  special points and their names in AUTO and MatCont (docs/branches.md, glossary.md), uses of libraries
+  special points and their names in AUTO and MatCont (docs/branches.md, glossary.md), library internals
   (docs/libraries.md), metrics (docs/deployment.md), the map of the code (docs/design.md), the dashboard's messages and
   worker pools (docs/dashboard.md);
 - the table of steps in each recipe docs/add-….md;
-- numbers of the code in sentences of the docs (tools/numbers.py);
+- numbers from the code in sentences of the docs (tools/numbers.py);
 - a row for every new scene in the test of share links (tools/links.py);
-- for every new or changed scene the largest values that its pictures are drawn to (tools/scales.py) and its picture in
-  the gallery (tools/gallery.py).
+- for every new or changed scene, the largest values that scale its pictures (tools/scales.py) and its picture in the
+  gallery (tools/gallery.py).
 
-Tests compare all of them with what this program would write.
+Tests compare all of them with the output of this program.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ from tools.thresholds import (
 
 _ROOT = Path(__file__).resolve().parents[1]
 _COMMAND = "python -m tools.update"
-#: Every table that follows from the code: its page, its name in the page's marks, and what writes it.
+#: Every table that follows from the code: its page, its name in the page's marks, and the function that writes it.
 _TABLES = (
     ("docs/regimes.md", "deciding thresholds", table_of_deciding),
     ("docs/regimes.md", "thresholds", tables_of_regimes),
@@ -107,14 +107,14 @@ _TABLES = (
 )
 
 
-#: The pages with such tables, and those with numbers of the code in their sentences.
+#: The pages with such tables, and those with numbers from the code in their sentences.
 PAGES = tuple(dict.fromkeys([*(page for page, _, _ in _TABLES),
                              *(path.relative_to(_ROOT).as_posix() for path in sorted((_ROOT / "docs").glob("*.md"))
                                if marks(path.read_text(encoding="utf-8")))]))
 
 
 def pages() -> dict[Path, str]:
-    """The pages with a table or numbers that follow from the code, and their text as it should be now."""
+    """Return the pages with a table or numbers that follow from the code, with their text as it should be."""
     found: dict[Path, str] = {}
     for page, name, table in _TABLES:
         path = _ROOT / page
@@ -126,7 +126,7 @@ def pages() -> dict[Path, str]:
 
 
 def main() -> None:
-    """Write everything that is not as it should be, and say what was written."""
+    """Write everything that is out of date, and print the names of the changed files."""
     texts = {**pages(), links.FILE: links.with_new_scenes()}
     for path, text in texts.items():
         if path.read_text(encoding="utf-8") != text:

@@ -1,10 +1,10 @@
-"""The command line: a module for each command (`commands.py` lists them), and what commands share.
+"""The command line: one module for each command (`commands.py` lists them), and modules that the commands share.
 
-Names, JSON keys and exit statuses are what others script against: 0 done, 2 bad input, 3 the computation failed,
-130 cancelled by Ctrl-C, 143 by SIGTERM.
+Command names, JSON keys and exit statuses are a contract for scripts. The statuses are 0 done, 2 bad input, 3 the
+computation failed, 130 cancelled by Ctrl-C, 143 terminated by SIGTERM.
 
-Nothing is imported here: the commands take a second to load, and Ctrl-C in that second must end as it does later.
-`entry` therefore first says what signals do (ending.py), and then loads the rest.
+Nothing is imported here: the commands take a second to load, and Ctrl-C during that second must work as it does later.
+`entry` therefore first takes over the signals (ending.py) and then loads the rest.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run one command in this process, by default that of its command line; returns the exit status."""
+    """Run one command in this process, by default that of its command line, and return the exit status."""
     import sys
 
     from .commands import do
@@ -24,13 +24,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def entry() -> int:
-    """The entry of `granchain` and `python -m app.cli`: `main` in a whole process, which signals may end."""
+    """Run `granchain` or `python -m app.cli`: `main` in a process of its own, which signals may end."""
     try:
         from . import ending
 
         ending.begin()
         return ending.leave(main())
-    except KeyboardInterrupt:  # signals were not taken over yet
+    except KeyboardInterrupt:  # before the signals were taken over
         import os
 
         os.write(2, b"Cancelled.\n")

@@ -1,4 +1,4 @@
-"""`granchain accuracy`: what accuracy costs, as error against time for every method."""
+"""`granchain accuracy`: the cost of accuracy, as error against time for every method."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def do(arguments: argparse.Namespace) -> None:
 
 
 def _accuracy_json(result: Any) -> dict[str, Any]:
-    """The measurement as one JSON object; "naive" is what plain steps in (u, v) make of the output force."""
+    """Return the measurement as one JSON object; "naive" has the output force's error with plain steps in (u, v)."""
     naive = [{"method": drawing.method, "steps_per_period": drawing.steps,
               "output_force_error": finite_or_null(drawing.error), "failure": drawing.failure}
              for drawing in result.lesson.drawn]
@@ -50,7 +50,7 @@ def _accuracy_json(result: Any) -> dict[str, Any]:
 
 
 def _show_accuracy(result: Any) -> None:
-    """The measurement as a table, with the cheapest ways to three accuracies and the naive forces below it."""
+    """Print the measurement as a table; below it, the cheapest methods for three accuracies and the naive forces."""
     print(f"reference: {result.reference}")
     print(f"second reference: {result.second}: " + (result.disagreement or f"agrees to {result.agreement:.1e}"))
     print("method          setting                   error     time_ms  evaluations")
@@ -65,4 +65,4 @@ def _show_accuracy(result: Any) -> None:
             print(f"the cheapest way to {error:g} is {best.method}, {best.setting}: {1e3 * best.wall_s:.2f} ms")
     for drawing in result.lesson.drawn if result.lesson else ():
         drawn = drawing.failure or f"off by {100 * drawing.error:.2g} % of the largest"
-        print(f"output force by {drawing.method} with {drawing.steps} steps a period: {drawn}")
+        print(f"output force by {drawing.method} with {drawing.steps} steps per period: {drawn}")

@@ -20,8 +20,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `attractors`."""
     add_scene(parser)
     parser.add_argument("--random-states", type=whole, default=64, metavar="n",
-                        help="random starts, 0 to 10,000, besides rest and the sweeps up and down")
-    parser.add_argument("--seed", type=whole, default=0, metavar="S", help="of the random starts")
+                        help="random starts, 0 to 10,000, in addition to rest and the sweeps up and down")
+    parser.add_argument("--seed", type=whole, default=0, metavar="S", help="seed of the random starts")
     add_out(parser)
     add_json(parser)
     add_picture(parser)
@@ -59,13 +59,13 @@ def _stability(attractor: Attractor) -> str:
 
 
 def _interval(attractor: Attractor) -> dict[str, float | None]:
-    """The 95 % interval of a share; null where no random state was drawn."""
+    """Return the 95 % interval of a share; null if no random state was drawn."""
     low, high = attractor.share_interval or (None, None)
     return {"share_low": low, "share_high": high}
 
 
 def _json(result: Attractors, arguments: argparse.Namespace) -> dict[str, Any]:
-    """All steady states as one JSON object; shares are null where no random state was drawn."""
+    """Return all steady states as one JSON object; shares are null if no random state was drawn."""
     return {"scene": result.scene.name, "knobs": result.scene.knobs, "random_states": arguments.random_states,
             "seed": arguments.seed, "failed": [origin.name for origin in result.failed], "attractors": [{
                 "regime": attractor.regime.name, "period": attractor.regime.period, "stable": attractor.stable,

@@ -54,7 +54,7 @@ def do(arguments: argparse.Namespace) -> None:
 
 
 def _why(result: Basins, number: int) -> str:
-    """Where the start with this number is in the plane, and why it has no steady state: it is computed once more."""
+    """Compute a failed start again, and return its place in the plane and the reason why it has no steady state."""
     from granchain_core import ComputationError, State, settle
 
     row, column = divmod(number, len(result.x[1]))

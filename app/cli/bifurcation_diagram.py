@@ -1,4 +1,4 @@
-"""`granchain bifurcation-diagram`: the bifurcation diagram, a bead's states once a drive period over a knob."""
+"""`granchain bifurcation-diagram`: a bead's strobes, its states once a drive period, over a knob."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--start", default="up", metavar="rest|up|down",
                         help="up and down carry the state along from value to value")
     parser.add_argument("--keep", type=whole, default=60, metavar="K", help="strobes at each value")
-    parser.add_argument("--bead", type=whole, default=1, metavar="i", help="whose strobes are printed and drawn")
+    parser.add_argument("--bead", type=whole, default=1, metavar="i", help="bead whose strobes are printed and drawn")
     add_out(parser)
     add_json(parser)
     add_picture(parser)

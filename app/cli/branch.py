@@ -32,17 +32,17 @@ _EVERY = 25
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `branch`."""
     add_result(parser)
-    parser.add_argument("--knob", metavar="NAME", help=f"knob that is moved: {', '.join(CONTINUOUS)}")
+    parser.add_argument("--knob", metavar="NAME", help=f"the knob that varies: {', '.join(CONTINUOUS)}")
     parser.add_argument("--from", dest="start", metavar="a", help="its value where the branch begins")
     parser.add_argument("--to", dest="end", metavar="b", help="its value where it ends")
     parser.add_argument("--period", type=whole, metavar="n",
                         help="drive periods of the orbits; by default those of the settled motion, 1 if it has none")
     parser.add_argument("--both", action="store_true",
-                        help="begin at the scene's own value of the knob and go both ways, to a and to b")
+                        help="begin at the scene's own value of the knob and continue both ways, to a and to b")
     parser.add_argument("--points", type=whole, default=MOST_POINTS, metavar="m", help="most orbits each way")
     add_amplitude(parser)
     parser.add_argument("--resume", nargs="?", const="", metavar="FILE",
-                        help="go on with the branch of --out that was interrupted, or with the one in FILE")
+                        help="continue the interrupted branch of --out, or the branch in FILE")
     add_picture(parser)
 
 
@@ -62,7 +62,7 @@ def do(arguments: argparse.Namespace) -> None:
 
 
 def branch_json(branch: Branch) -> dict[str, Any]:
-    """The output of `--json`."""
+    """Return the output of `--json`."""
     return {
         "knob": [p.knob for p in branch.points],
         "max_output_force_elastic": [p.max_output_force_elastic for p in branch.points],
@@ -80,14 +80,14 @@ def branch_json(branch: Branch) -> dict[str, Any]:
 
 
 def _evidence(point: SpecialPoint) -> dict[str, Any]:
-    """On what the kind of a special point rests: the multiplier that passes the circle, or what a contact does."""
+    """Return the evidence for a special point's kind: the multiplier that passes the circle, or a contact's event."""
     passing = point.multiplier
     return {"multiplier": None if passing is None else [passing.real, passing.imag], "contact": point.contact,
             "event": point.gained and EVENTS[point.gained], "gained": point.gained, "gained_side": point.gained_side}
 
 
 def _normal_form(point: SpecialPoint) -> dict[str, Any] | None:
-    """Criticality of a special point and its coefficient; None for a grazing."""
+    """Return the criticality of a special point and its coefficient; None for a grazing."""
     form = point.normal_form
     return None if form is None else {
         "criticality": form.criticality, "coefficient": finite_or_null(form.coefficient),
@@ -95,7 +95,7 @@ def _normal_form(point: SpecialPoint) -> dict[str, Any] | None:
 
 
 def _followed(arguments: argparse.Namespace) -> Branch:
-    """The branch and its file; of an interrupted branch only the missing orbits are computed."""
+    """Compute the branch and write its file; of an interrupted branch, only the missing orbits are computed."""
     from granchain_core.store import save_branch
 
     begun: list[_Begun] = []
@@ -111,9 +111,9 @@ def _followed(arguments: argparse.Namespace) -> Branch:
     try:
         branch = in_background(work, reports=True)
     except (Cancelled, KeyboardInterrupt):
-        if arguments.out and begun:  # the orbits found so far can be continued
+        if arguments.out and begun:  # --resume continues from the orbits found so far
             save_branch(begun[0].branch, arguments.out)
-            written = f"{len(begun[0].branch.points)} orbits are in {arguments.out}; go on with --resume"
+            written = f"{len(begun[0].branch.points)} orbits are in {arguments.out}; continue with --resume"
             ending.wrote(written)
             _remove(begun[0].kept)
             raise Cancelled(written) from None
@@ -136,14 +136,14 @@ def _remove(kept: OrbitCheckpoints | None) -> None:
 
 @dataclass
 class _Begun:
-    """A branch that is to be followed, and where its orbits are kept meanwhile."""
+    """A branch to be followed, and the checkpoints that keep its orbits in the meantime."""
 
     branch: Branch
     kept: OrbitCheckpoints | None
 
 
 def _begun(arguments: argparse.Namespace, stop: Any) -> _Begun:
-    """A new branch, or the one that --resume goes on with."""
+    """Return a new branch, or the branch that --resume continues."""
     if arguments.resume:
         branch = _in_file(arguments)
         kept = OrbitCheckpoints(branch.axis, len(branch.half_branches) > 1, arguments.out) if arguments.out else None
@@ -169,7 +169,7 @@ def _begun(arguments: argparse.Namespace, stop: Any) -> _Begun:
 
 
 def _interrupted(arguments: argparse.Namespace, kept: OrbitCheckpoints) -> Branch | None:
-    """The orbits that were followed before an interruption, from their blocks or from --out; None if there are none."""
+    """Return the orbits found before an interruption, from their blocks or from --out; None if there are none."""
     from granchain_core.store import load_branch
 
     if arguments.resume is None:
@@ -182,19 +182,19 @@ def _interrupted(arguments: argparse.Namespace, kept: OrbitCheckpoints) -> Branc
             if interrupted is None:
                 raise
         else:
-            if kept.asks_for(written):  # the blocks may be gone in part, if the command was killed while removing them
+            if kept.asks_for(written):  # some blocks may be missing, if the command was killed while it removed them
                 interrupted = max(filter(None, (interrupted, written)), key=lambda branch: len(branch.points))
             elif interrupted is None:
                 raise BadInput(f"{file} holds another branch; give another --out.")
     if interrupted is not None:
         if arguments.period not in (None, interrupted.period):
-            raise BadInput(f"The branch to go on with has period {interrupted.period}, not {arguments.period}.")
-        say(f"{len(interrupted.points)} orbits are there already.")
+            raise BadInput(f"The branch to be continued has period {interrupted.period}, not {arguments.period}.")
+        say(f"{len(interrupted.points)} orbits have already been computed.")
     return interrupted
 
 
 def _in_file(arguments: argparse.Namespace) -> Branch:
-    """The branch in the file of --resume."""
+    """Load the branch in the file of --resume."""
     from granchain_core.store import load_branch
 
     if arguments.knob or arguments.start or arguments.end or arguments.period or arguments.set or arguments.amplitude:
@@ -207,7 +207,7 @@ def _in_file(arguments: argparse.Namespace) -> Branch:
 
 
 class _Progress:
-    """Keeps orbits and reports progress on stderr; the threads of both half-branches call it after every orbit."""
+    """Callback that keeps orbits and reports progress; the threads of both half-branches call it after each orbit."""
 
     def __init__(self, begun: _Begun) -> None:
         self._begun = begun
@@ -239,14 +239,14 @@ def _show(branch: Branch) -> None:
 
 
 def _grazing_words(point: SpecialPoint, axis: KnobAxis) -> str:
-    """Which contact event an orbit has once more, and on which side of the grazing."""
+    """Say which contact event an orbit has once more, and on which side of the grazing."""
     value = axis.text(point.knob).partition(" = ")[2]
     side = "on one side" if point.gained_side is None else f"{point.gained_side} {value}"
     return f"contact {point.contact}: one {point.gained} more {side}"
 
 
 def normal_form_words(point: SpecialPoint) -> str:
-    """Criticality, coefficient with its error, and the angle of a Neimark–Sacker point."""
+    """Return the criticality, the coefficient with its error, and the angle of a Neimark–Sacker point."""
     form = point.normal_form
     if form is None:
         return ""

@@ -1,4 +1,4 @@
-"""`granchain check`: the hard cases: each value, its limit and the verdict."""
+"""`granchain check`: the hard cases, with each value, its limit and the verdict."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def do(arguments: argparse.Namespace) -> int:
-    """Run all hard cases; the exit status is 3 if a value is above its limit, and stderr names it."""
+    """Run all hard cases; return 3, the exit status, if a value is above its limit, and name it on stderr."""
     from granchain_core.hard_cases.runner import in_order, run_cases
     from granchain_core.hard_cases.table import CASES
 
@@ -50,7 +50,7 @@ def do(arguments: argparse.Namespace) -> int:
 
 
 def _say_case(number: str, name: str, rows: list[Check]) -> None:
-    """Say on stderr how a case went, with the values above their limits."""
+    """Report on stderr whether a case passed, with the values above their limits."""
     verdict = "passed" if all(row.passed for row in rows) else "FAILED"
     say(f"{number}  {name}: {verdict}, {rows[0].seconds:.1f} s")
     for row in rows:
@@ -86,6 +86,6 @@ def _drawn() -> Any:
 
 
 def heading(name: str) -> str:
-    """The name of a case with a capital letter, and with its powers, "10^5" and "F^{1/6}", raised."""
+    """Return the name of a case with a capital letter and with powers, such as "10^5" and "F^{1/6}", raised."""
     raised = re.sub(r"\^\{([^}]+)\}|\^(-?\d+)", lambda match: f"<sup>{match[1] or match[2]}</sup>", html.escape(name))
     return f"<h3>{raised[0].upper()}{raised[1:]}</h3>"

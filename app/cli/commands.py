@@ -1,7 +1,7 @@
-"""The table of commands; parsing and running one, and turning failures into a sentence and an exit status.
+"""The table of commands; how one is parsed and run, and how a failure becomes a sentence and an exit status.
 
-With --json exactly one object goes to stdout: the result or, if the computation failed or was over budget, its outcome,
-a sentence and what is known. Progress goes to stderr.
+With --json, exactly one object goes to stdout: the result or, if the computation failed or was over budget, its outcome
+with a sentence and the values known so far. Progress goes to stderr.
 """
 
 from __future__ import annotations
@@ -27,13 +27,13 @@ from ..former_names import present_command
 from . import ending
 from .common import say, show_json
 
-#: Exit status of a command that did what it was asked for.
+#: Exit status of a command that succeeded.
 DONE = 0
-#: Exit status of one whose input was refused (`BadInput`).
+#: Exit status of a command whose input was refused (`BadInput`).
 BAD_INPUT = 2
-#: Exit status of one whose computation failed (`ComputationError`).
+#: Exit status of a command whose computation failed (`ComputationError`).
 FAILED = 3
-#: Errors of a stream that takes no more.
+#: Error numbers of a stream that can take no more output.
 _CANNOT_BE_WRITTEN = (errno.ENOSPC, errno.EIO, errno.EFBIG, errno.EDQUOT)
 
 
@@ -44,7 +44,7 @@ class _Parser(argparse.ArgumentParser):
     commands: Mapping[str, argparse.ArgumentParser] = MappingProxyType({})
 
     def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
-        """The words in a namespace; words that the command does not know are refused with the nearest option."""
+        """Parse the words; words that the command does not know are refused, and the nearest option is suggested."""
         parsed, left = self.parse_known_args(args, namespace)
         if left:
             command = self.commands[parsed.command]
@@ -69,9 +69,9 @@ class Command:
     about : str
         What it does, for `--help` and the tables of README.md and docs/command-line.md.
     example : str
-        What follows its name in an example that takes seconds; `--help` shows it.
+        The arguments of an example that takes seconds; `--help` shows it.
     page : str
-        The page of docs about it, with a heading if need be.
+        The page of docs about it, with a heading if needed.
     """
 
     form: str
@@ -80,8 +80,8 @@ class Command:
     page: str = ""
 
 
-#: Every command, in the order of `granchain --help`. Its module (`module_of`) has its options, `add_options`, and does
-#: it, `do`; only the one that is asked for is imported, because some need what takes a second to load. After a change
+#: Every command, in the order of `granchain --help`. Its module (`module_of`) adds its options (`add_options`) and runs
+#: it (`do`). Only the module of the command that runs is imported, because some take a second to load. After a change,
 #: run `python -m tools.update`.
 COMMANDS = {
     "serve": Command("[--port P] [--address A]", "open the dashboard", "--port 5007", "deployment.md"),
@@ -92,7 +92,7 @@ COMMANDS = {
         "scenes.md#drives-other-than-the-harmonic-one"),
     "curve": Command(
         "SCENE --from F --to F --points n", "resonance curve: largest forces over the drive frequency, with --data "
-        "beside a measured curve", "sec2 --from 300 --to 400 --points 11 --picture curve.html", "regimes.md"),
+        "next to a measured curve", "sec2 --from 300 --to 400 --points 11 --picture curve.html", "regimes.md"),
     "orbit": Command("SCENE", "periodic orbit by Newton's method and its Floquet multipliers", "sec2 --set f=1130",
                      "orbits.md"),
     "branch": Command(
@@ -107,7 +107,7 @@ COMMANDS = {
     "bifurcation-diagram": Command(
         "SCENE --over KNOB=a:b:n", "bifurcation diagram: strobes over one knob",
         "sec2 --over f=1900:2000:21 --picture diagram.html", "analysis.md#bifurcation-diagram"),
-    "basins": Command("SCENE --x u1=a:b:n --y v1=a:b:n", "to which steady state each start of a plane leads",
+    "basins": Command("SCENE --x u1=a:b:n --y v1=a:b:n", "the steady state that each start in a plane leads to",
                       "sec2 --set N=2 --x u1=0:2e-7:9 --y v1=0:1e-3:9", "analysis.md#basins"),
     "map": Command(
         "SCENE --x f=a:b:n --y A0=a:b:n --out FILE", "parameter map: regime and largest forces over two knobs, with "
@@ -116,7 +116,7 @@ COMMANDS = {
     "attractors": Command(
         "SCENE", "the steady states that coexist at one setting, and the share of random starts that lead to each",
         "sec2 --set f=900 --random-states 20", "parameter-map.md#all-attractors-of-one-setting"),
-    "observe": Command("SCENE --input FILE", "push a scene's chain by a measured force", "sec2 --input force.csv",
+    "observe": Command("SCENE --input FILE", "push a scene's chain with a measured force", "sec2 --input force.csv",
                        "observers.md"),
     "pulse": Command("SCENE", "the first pulse along a chain after an impact: its force, speed and width at every "
                      "contact", "impact", "scenes.md"),
@@ -126,9 +126,9 @@ COMMANDS = {
                        "fig12-60 --noise 0.2 --periods 12 --out virtual.csv", "data.md#a-virtual-experiment"),
     "fit": Command("SCENE --data FILE --free D=50:200", "parameters of a scene from a measurement, with 95 % intervals "
                    "and a verdict", "sec2 --data curve.csv --free D=50:200", "fit.md"),
-    "figure": Command("N", "a figure of the paper with our numbers, with --data beside a measurement", "6", "paper.md"),
+    "figure": Command("N", "a figure of the paper with our numbers and, with --data, a measurement", "6", "paper.md"),
     "cite": Command("SCENE", "what to cite for the effects of a scene", "sec2", "references.md"),
-    "accuracy": Command("SCENE", "what accuracy costs: error against time for every method", "sec2", "accuracy.md"),
+    "accuracy": Command("SCENE", "the cost of accuracy: error against time for every method", "sec2", "accuracy.md"),
     "check": Command("[--quick]", "cases in which solvers fail silently: value, limit and verdict of each; status 3 if "
                      "one fails", "--quick", "hard-cases.md"),
     "warm": Command("[SCENE …]", "compile the kernels of the paper's scenes, or of those named, ahead of time", "sec2",
@@ -136,17 +136,17 @@ COMMANDS = {
 }
 
 
-#: Words that ask for the list of commands.
+#: Options that show the list of commands.
 _HELP = ("-h", "--help")
 
 
 def module_of(command: str) -> ModuleType:
-    """The module of a command, which has its name with underscores; imported now."""
+    """Import the module of a command, whose name is the command's with underscores."""
     return import_module(f".{command.replace('-', '_')}", __package__)
 
 
 def parser_for(words: Sequence[str]) -> _Parser:
-    """The parser, with the options of the command in `words`."""
+    """Return the parser, with the options of the command in `words`."""
     asked_for = next((word for word in words if not word.startswith("-")), None)
     parser = _Parser(prog="granchain", description="Driven granular chains: simulate, sweep, show.",
                      allow_abbrev=False)
@@ -163,7 +163,7 @@ def parser_for(words: Sequence[str]) -> _Parser:
 
 
 def do(words: list[str]) -> int:
-    """Run one command; returns the exit status."""
+    """Run one command and return the exit status."""
     try:
         if not words:
             raise BadInput("granchain needs a command, for example 'granchain serve'; 'granchain --help' lists them.")
@@ -175,7 +175,7 @@ def do(words: list[str]) -> int:
         _refuse_empty_files(parsed)
         status = parsed.do(parsed) or DONE
         if sys.stdout is not None:
-            sys.stdout.flush()  # a full disk or a reader that has gone is noticed here, not when Python ends
+            sys.stdout.flush()  # a full disk or a reader that is gone is noticed here, not when Python exits
         return int(status)
     except (BadInput, ComputationError) as problem:
         say(problem)
@@ -185,7 +185,7 @@ def do(words: list[str]) -> int:
     except (KeyboardInterrupt, Cancelled) as end:
         say(f"{ending.word()}{f': {end}' if str(end) else ''}.")
         return ending.status()
-    except OSError as problem:  # of stdout: a file's has its name, and is a `BadInput` where the file is written
+    except OSError as problem:  # of stdout: that of a file has its name and becomes `BadInput` on writing
         if isinstance(problem, BrokenPipeError):
             status = DONE
         elif problem.errno in _CANNOT_BE_WRITTEN and problem.filename is None:
@@ -198,14 +198,14 @@ def do(words: list[str]) -> int:
 
 
 def _refuse_empty_files(parsed: argparse.Namespace) -> None:
-    """Refuse --out "" and --picture "", as an unset variable of a shell gives: the result would be lost."""
+    """Refuse --out "" and --picture "", which an unset shell variable gives: the result would be lost."""
     for option in ("out", "picture"):
         if getattr(parsed, option, None) == "":
             raise BadInput(f"--{option} is empty; name a file.")
 
 
 def _give_stdout_up() -> None:
-    """Discard output that has not been written: at its end Python would try to write it once more, and complain."""
+    """Discard unwritten output: at exit, Python would try to write it again and report an error."""
     with suppress(OSError, ValueError):
         nowhere = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nowhere, sys.stdout.fileno())

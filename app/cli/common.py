@@ -1,4 +1,4 @@
-"""Shared by all commands: the scene from the options, messages on stderr, JSON on stdout."""
+"""Functions that all commands share: the scene from the options, messages on stderr, JSON on stdout."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ from .foundation import kept_spring
 
 T = TypeVar("T")
 
-#: Time between two checks whether a computation has ended [s].
+#: Time between two checks for the end of a computation [s].
 _LOOK = 0.05
-#: Time within which a computation has to end after its stop flag is set [s].
+#: Time within which a computation has to end once its stop flag is set [s].
 _PATIENCE = 1.2
 
 
 def chosen_scene(arguments: argparse.Namespace) -> Scene:
-    """The scene that SCENE, a name or a file NAME.toml, --set and --accuracy describe."""
+    """Return the scene that SCENE (a name or a file NAME.toml), --set and --accuracy describe."""
     changes: dict[str, str] = {}
     settings = list(arguments.set)
     if getattr(arguments, "accuracy", None) is not None:
@@ -50,18 +50,18 @@ def chosen_scene(arguments: argparse.Namespace) -> Scene:
 
 
 def say(*args: object) -> None:
-    """Tell a person something, on stderr: stdout is for results."""
+    """Print a message for a person on stderr; stdout is for results."""
     print(*args, file=sys.stderr, flush=True)
 
 
 def say_if(sentence: str) -> None:
-    """Tell a person something if there is something to tell."""
+    """Print a message for a person on stderr, unless it is empty."""
     if sentence:
         say(sentence)
 
 
 def accuracy_unused(scene: Scene, what: str) -> str:
-    """A sentence where the user has set `accuracy`, which does not change what a batch computes."""
+    """Return a sentence if the user has set `accuracy`, which does not affect a batch; otherwise return ""."""
     if "accuracy" not in scene.differences() or scene.cuts_tension:
         return ""
     return (f"accuracy = {scene.accuracy:g} does not change {what} that a batch computes with fixed steps; each has "
@@ -69,32 +69,32 @@ def accuracy_unused(scene: Scene, what: str) -> str:
 
 
 def show_json(data: dict[str, Any]) -> None:
-    """Print the one JSON object of a command."""
+    """Print the JSON object of a command."""
     print(json.dumps(data, allow_nan=False))
 
 
 def finite_or_null(value: float) -> float | None:
-    """A number for JSON, or null for NaN and infinity, which JSON does not have."""
+    """Return a number for JSON: None (null) for NaN and infinity, which JSON does not have."""
     return value if math.isfinite(value) else None
 
 
 def show_percent(fraction: float) -> None:
-    """Show how much is done, on one line of stderr that is written again and again."""
+    """Show how much is done, on one line of stderr that is overwritten each time."""
     print(f"\r{100 * fraction:3.0f} %", end="\n" if fraction >= 1.0 else "", file=sys.stderr, flush=True)
 
 
 def check_points(points: int, fewest: int, most: int) -> None:
-    """Refuse a number of points outside the range of the command."""
+    """Refuse a number of points outside the command's range."""
     if not fewest <= points <= most:
         raise BadInput(f"--points {points} is outside {fewest} to {most}; the nearest valid value is "
                        f"{min(max(points, fewest), most)}.")
 
 
 def in_background(work: Callable[[Any], T], reports: bool = False) -> T:
-    """Run `work(stop)` beside the main thread, so that a signal reaches a running kernel through its stop flag.
+    """Run `work(stop)` in a second thread, so that a signal reaches a running kernel through its stop flag.
 
-    Work that does not report how far it is has the seconds counted for a person at a terminal, from the first one on.
-    Raises `Cancelled` after a signal, when the work has ended or has been given up: a compiler cannot be stopped.
+    For work that does not report its progress, a terminal shows the seconds that have passed, from the first one on.
+    After a signal, raise `Cancelled` once the work has ended or has been abandoned, since a compiler cannot be stopped.
     """
     stop = Stop()
     result: list[T] = []
@@ -103,7 +103,7 @@ def in_background(work: Callable[[Any], T], reports: bool = False) -> T:
     def target() -> None:
         try:
             result.append(work(stop))
-        except BaseException as error:  # handed to the main thread, which knows what to say
+        except BaseException as error:  # passed to the main thread, which reports it
             problem.append(error)
 
     announce_compiling()
@@ -116,7 +116,7 @@ def in_background(work: Callable[[Any], T], reports: bool = False) -> T:
                 thread.join(_LOOK)
                 if began and time.monotonic() - began >= 1.0:
                     print(f"\r{time.monotonic() - began:3.0f} s", end="", file=sys.stderr, flush=True)
-        except KeyboardInterrupt:  # in a process that has not taken signals over
+        except KeyboardInterrupt:  # in a process that has not taken over the signals
             stop.set()
         if stop or has_to_end():
             thread.join(_PATIENCE)
@@ -130,7 +130,7 @@ def in_background(work: Callable[[Any], T], reports: bool = False) -> T:
 
 @contextmanager
 def unbroken(file: str | None) -> Iterator[None]:
-    """Finish this block, which writes a result to `file` if there is one, before a signal ends the command."""
+    """Finish this block, which writes a result to `file` (if given), before a signal ends the command."""
     with ending.asking() as has_to_end:
         yield
         written = f"the result is in {file}" if file else ""

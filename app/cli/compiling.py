@@ -1,4 +1,4 @@
-"""A first run waits for the compiler: a person at a terminal learns why, and a second core helps."""
+"""A first run waits for the compiler: a message at the terminal says why, and a second core helps."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from granchain_core.execution.child_processes import end_with_parent, starting
 from granchain_core.execution.cores import usable_cores
 from granchain_core.precompile.pieces import BRANCH_KERNELS, COMPILE_SECONDS, FIXED_STEP_KERNELS, MOTION_KERNELS
 
-#: The times are those of the kernels of one method, and of a branch with the motions that it needs.
+#: The two times are for the kernels of one method, and for those of a branch and the motions that it needs.
 WORDS = (f"Compiling the kernels for this set of effects: {COMPILE_SECONDS[FIXED_STEP_KERNELS]} to "
          f"{sum(COMPILE_SECONDS[piece] for piece in (*MOTION_KERNELS, BRANCH_KERNELS))} s, once per machine. "
          "`granchain warm` does it ahead of time.")
@@ -22,10 +22,10 @@ WORDS = (f"Compiling the kernels for this set of effects: {COMPILE_SECONDS[FIXED
 
 @functools.cache
 def announce_compiling() -> None:
-    """From now on, tell a person at a terminal when Numba begins to compile; a kernel read from disk is no news."""
+    """From now on, report at a terminal when Numba starts to compile, but not when a kernel is read from disk."""
     if not sys.stderr.isatty():
         return
-    from numba.core import event  # it loads the compiler, a second that commands without kernels save
+    from numba.core import event  # loads the compiler, which takes a second that commands without kernels save
 
     class Listener(event.Listener):
         announced = False
@@ -43,9 +43,9 @@ def announce_compiling() -> None:
 
 @contextmanager
 def compiling_beside(chosen: Scene, *pieces: str) -> Iterator[None]:
-    """When Numba begins to compile in this block, compile these pieces (precompile/warm.py) in another process.
+    """When Numba starts to compile in this block, compile these pieces (precompile/warm.py) in another process.
 
-    The block needs the pieces later; it then waits for them or loads them. With one core, nothing is done.
+    When the block needs the pieces later, it waits for them or loads them. With only one core, nothing is done.
     """
     if usable_cores() < 2:
         yield
@@ -82,5 +82,5 @@ def _compile(parent: int, chosen: Scene, pieces: tuple[str, ...]) -> None:
     try:
         for piece in pieces:
             compile_piece(chosen, piece)
-    except Exception:  # the command has the same error, and reports it
+    except Exception:  # the command meets the same error and reports it
         sys.exit(1)

@@ -36,20 +36,20 @@ if TYPE_CHECKING:
     from granchain_core.experiment import Difference, Measured
     from granchain_core.steady.curve.request import CurveRequest
 
-#: The numbers behind the regime of a point that the JSON has.
+#: The numbers behind a point's regime that the JSON contains.
 _EVIDENCE = ("decay", "distance", "multiplier", "lyapunov", "lyapunov_periods", "return_distance", "return_limit",
              "window_ratios", "orbit_found_by")
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `curve`."""
-    add_result(parser, "; a batch does not use it, a point settled alone is computed to 1e-5 at best")
+    add_result(parser, "; a batch does not use it, and a point settled alone is computed to 1e-5 at best")
     parser.add_argument("--from", dest="low", type=number, required=True, metavar="F", help="lowest frequency [Hz]")
     parser.add_argument("--to", dest="high", type=number, required=True, metavar="F", help="highest frequency [Hz]")
     parser.add_argument("--points", type=whole, required=True, metavar="n")
     parser.add_argument("--start", default="rest", metavar="rest|up|down")
     parser.add_argument("--data", metavar="FILE",
-                        help="a measured curve, drawn over it in --picture; the misfit is printed")
+                        help="a measured curve, drawn over the computed one in --picture; the misfit is printed")
     parser.add_argument("--elastic", action="store_true",
                         help="compare and draw the elastic part of the output force, as the paper does")
     add_amplitude(parser)
@@ -59,7 +59,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def do(arguments: argparse.Namespace) -> int:
-    """Compute the resonance curve of a scene; the status is that of a failure where every point failed."""
+    """Compute the resonance curve of a scene; return 3, the status of a failure, if every point failed."""
     from granchain_core.steady.curve.request import CurveRequest
     from granchain_core.steady.curve.resonance_curve import MOST_POINTS
 
@@ -87,7 +87,7 @@ def do(arguments: argparse.Namespace) -> int:
 
 
 def _measured(arguments: argparse.Namespace) -> Measured | None:
-    """The curve of --data, said to the user; None without it."""
+    """Read the curve of --data and report how it was understood; return None without it."""
     from granchain_core.experiment import Measured, read_experiment
 
     if arguments.data is None:
@@ -99,7 +99,7 @@ def _measured(arguments: argparse.Namespace) -> Measured | None:
 
 
 def _difference(swept: Curve, measured: Measured, elastic: bool) -> Difference:
-    """The computed curve beside the measured one; failed points are left out."""
+    """Compare the computed curve with the measured one; failed points are left out."""
     from granchain_core.experiment import compared
 
     force = swept.column("max_output_force_elastic" if elastic else "max_output_force")
@@ -108,14 +108,14 @@ def _difference(swept: Curve, measured: Measured, elastic: bool) -> Difference:
 
 
 def _misfit_json(difference: Difference) -> dict[str, Any]:
-    """The misfit as an object: null where no measured frequency lies on the curve."""
+    """Return the misfit as an object; its values are null if no measured frequency lies on the curve."""
     misfit = difference.misfit
     return {"compared": int(difference.compared.sum()), "rms": None if misfit is None else misfit.rms,
             "mean": None if misfit is None else misfit.mean}
 
 
 def _swept(arguments: argparse.Namespace, request: CurveRequest) -> Curve:
-    """The curve, of which only points that are not there yet are computed, and its file."""
+    """Compute the points of the curve that are still missing, and write its file."""
     from granchain_core.steady.curve.point_checkpoints import point_checkpoints, points_in
     from granchain_core.steady.curve.request import CurveRequest
     from granchain_core.store import save_curve
@@ -133,7 +133,7 @@ def _swept(arguments: argparse.Namespace, request: CurveRequest) -> Curve:
         kept.open(arguments.resume)
         known = points_in(kept)
     if known:
-        say(f"{len(known)} of {points} points are there already.")
+        say(f"{len(known)} of {points} points have already been computed.")
     done = [len(known)]
 
     def count(point: CurvePoint) -> None:
@@ -157,7 +157,7 @@ def _swept(arguments: argparse.Namespace, request: CurveRequest) -> Curve:
 
 
 def _curve_json(swept: Any) -> dict[str, Any]:
-    """A curve as one JSON object."""
+    """Return a curve as one JSON object."""
     return {
         "frequency": [p.frequency for p in swept.points],
         **{name: [finite_or_null(getattr(p, name)) for p in swept.points]
@@ -174,14 +174,14 @@ def _curve_json(swept: Any) -> dict[str, Any]:
 
 
 def _plain(value: float | tuple[float, ...] | None) -> float | list[float | None] | None:
-    """A number, or several, of a regime as JSON has them."""
+    """Return a regime's number, or several, in a form that JSON can represent."""
     if isinstance(value, tuple):
         return [finite_or_null(number) for number in value]
     return value if value is None or isinstance(value, str) else finite_or_null(value)
 
 
 def _show_curve(swept: Any) -> None:
-    """A curve as a table."""
+    """Print a curve as a table."""
     print("frequency_Hz  max_output_force_N    error  elastic_N    error  max_input_force_N    error  regime")
     for p in swept.points:
         regime = f"period {p.regime.period}" if p.regime.period else p.regime.name

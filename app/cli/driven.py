@@ -1,4 +1,4 @@
-"""`granchain run --drive`: a chain whose driver moves other than harmonically."""
+"""`granchain run --drive`: a chain whose driver does not move harmonically."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from granchain_core.experiment import Answers, ForceDifference, Sensors, Series
     from granchain_core.fitting import Beginning
 
-#: Options of `run` that count drive periods, or choose among methods, with the values they have if they are not given.
+#: Options of `run` that count drive periods or choose a method, with their default values.
 PERIODIC = {"periods": 100, "record": 20, "samples": 96, "method": None, "resume": False, "explain": False}
 
 
@@ -64,8 +64,10 @@ def do_driven(arguments: argparse.Namespace, chosen: Scene) -> None:
 
 
 def _fine_enough(signal: Signal, chosen: Scene, sensors: Sensors) -> Signal:
-    """The signal with the knots at which the low-pass of the sensors needs forces; fewer, with a sentence, if a record
-    of this chain cannot hold so many."""
+    """Return the signal with the knots at which the low-pass of the sensors needs forces.
+
+    If a record of this chain cannot hold that many, say so and return fewer.
+    """
     from granchain_core.experiment.sensors import SAMPLES_PER_BANDWIDTH
     from granchain_core.prescribed_drive.signal import MOST_KNOTS
     from granchain_core.results.recorded_motion import MOST_RECORDED
@@ -75,12 +77,13 @@ def _fine_enough(signal: Signal, chosen: Scene, sensors: Sensors) -> Signal:
     finest = float(signal.time[-1] - signal.time[0]) / max(1, knots)
     if finest > needed:
         say(f"The low-pass of {sensors.bandwidth:g} Hz needs forces {needed:.3g} s apart; with {chosen.N} beads this "
-            f"record holds them {finest:.3g} s apart, so the comparison is less exact. A shorter record would do.")
+            f"record holds them {finest:.3g} s apart, so the comparison is less exact; shorten the record to avoid "
+            "this.")
     return signal.finer(max(needed, finest))
 
 
 def chosen_signal(arguments: argparse.Namespace, chosen: Scene) -> tuple[Signal, Series | None]:
-    """The signal that --drive names, a formula with the scene's A0 or a file, and the series in that file."""
+    """Return the signal that --drive names (a formula with the scene's A0, or a file), and the series in that file."""
     from granchain_core.prescribed_drive.formulas import formula_signal
 
     if not chosen.is_driven:
@@ -99,7 +102,7 @@ def chosen_signal(arguments: argparse.Namespace, chosen: Scene) -> tuple[Signal,
 
 
 def check_no_samples(arguments: argparse.Namespace) -> None:
-    """Refuse --gap, --bandwidth and --tip-mass where no samples are read."""
+    """Refuse --gap, --bandwidth and --tip-mass if no samples are read."""
     if arguments.gap != "refuse":
         raise BadInput("--gap is for --drive FILE, the samples of a measured motion.")
     if math.isfinite(arguments.bandwidth):
@@ -109,7 +112,7 @@ def check_no_samples(arguments: argparse.Namespace) -> None:
 
 
 def _beginning(start: str, chosen: Scene, series: Series, sensors: Sensors) -> Beginning | None:
-    """Where chain and driver begin; None at rest, with a warning if the record does not begin so."""
+    """Return where chain and driver begin; None for rest, with a warning if the record does not begin at rest."""
     from granchain_core.fitting import settled_beginning
     from granchain_core.fitting.beginning import in_motion
 
@@ -123,7 +126,7 @@ def _beginning(start: str, chosen: Scene, series: Series, sensors: Sensors) -> B
 
 
 def _last_of(path: str, chosen: Scene) -> Beginning:
-    """The last sample of a recorded run."""
+    """Return the last sample of a recorded run as a beginning."""
     from granchain_core.fitting import Beginning
     from granchain_core.scene.state import State
     from granchain_core.store import load
@@ -137,7 +140,7 @@ def _last_of(path: str, chosen: Scene) -> Beginning:
 
 
 def _measured(path: str, answers: Answers, gap: str) -> tuple[Signal, Series]:
-    """The signal in a file (the velocity or, if none was measured, the displacement), and all that is in the file."""
+    """Return the signal in a file (the velocity or, if none was measured, the displacement), and the whole series."""
     from granchain_core import Signal
     from granchain_core.experiment.reader import read_experiment
     from granchain_core.experiment.series import Series
@@ -159,7 +162,7 @@ def _measured(path: str, answers: Answers, gap: str) -> tuple[Signal, Series]:
 
 
 def _uses(series: Series) -> str:
-    """The treatment of each column of a series."""
+    """Say how each column of a series is used."""
     from granchain_core.experiment.compare_forces import FORCES
 
     moves = "velocity" if series.velocity is not None else "displacement"
@@ -173,7 +176,7 @@ def _uses(series: Series) -> str:
 
 
 def _limited_by_samples(motion: Driven) -> str:
-    """A sentence if the samples of a measured motion limit its accuracy; otherwise empty."""
+    """Return a sentence if the samples of a measured motion limit its accuracy; otherwise return ""."""
     steps = motion.displacement_error - motion.interpolation_error
     if motion.interpolation_error <= steps:
         return ""
@@ -182,7 +185,7 @@ def _limited_by_samples(motion: Driven) -> str:
 
 
 def _json(motion: Driven, series: Series | None, differences: dict[str, ForceDifference]) -> dict[str, Any]:
-    """A driven motion as one JSON object."""
+    """Return a driven motion as one JSON object."""
     from granchain_core.experiment.compare_forces import FORCES
 
     return {**scene_json(motion.scene), "drive": motion.signal.words,
@@ -194,7 +197,7 @@ def _json(motion: Driven, series: Series | None, differences: dict[str, ForceDif
 
 
 def _residual_json(difference: ForceDifference | None) -> dict[str, Any] | None:
-    """How far a computed force is from the measured one; None if none was measured."""
+    """Return the difference of a computed force from the measured one; None if no force was measured."""
     if difference is None:
         return None
     return {name: getattr(difference, name)
@@ -202,7 +205,7 @@ def _residual_json(difference: ForceDifference | None) -> dict[str, Any] | None:
 
 
 def _show(motion: Driven, differences: dict[str, ForceDifference]) -> None:
-    """A driven motion in a few lines."""
+    """Print a driven motion in a few lines."""
     print(f"{motion.scene.name}: {motion.signal.words}; {status_in_words(motion.status)}")
     print(forces_in_words(motion))
     print(errors_in_words(motion))

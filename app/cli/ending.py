@@ -1,11 +1,11 @@
 """Ending a process by Ctrl-C (SIGINT, status 130) or SIGTERM (143): at any time, within three seconds, with a sentence.
 
 Python would raise `KeyboardInterrupt` wherever the main thread happens to be: in an import, in a callback that swallows
-it, or only after a compiler has come back. Here a thread waits for the signals instead. While nothing is to be kept it
-ends the process at once. Inside `asking` it asks the computation to end and gives it some time to keep what it has.
-Processes that were started end with this one by themselves (granchain_core/execution/child_processes.py).
+it, or only after the compiler has returned. Here a thread waits for the signals instead. While there is nothing to
+keep, it ends the process at once. Inside `asking`, it asks the computation to end and gives it some time to keep its
+results. Child processes end automatically with this one (granchain_core/execution/child_processes.py).
 
-The module is loaded before anything else and imports only what takes no time.
+This module is loaded before anything else, so it imports only modules that take no time.
 """
 
 from __future__ import annotations
@@ -27,15 +27,15 @@ if TYPE_CHECKING:
 _GRACE = 2.5
 #: Exit status by signal.
 _STATUS: dict[int, int] = {signal.SIGINT: 130, signal.SIGTERM: 143}
-#: The word for it by exit status.
+#: The word that reports the ending, by exit status.
 _WORDS = {130: "Cancelled", 143: "Terminated"}
 
 
 class _EndRequest:
-    """A request to end this process: the exit status of the first signal, and what to call when it comes.
+    """A request to end this process: the exit status of the first signal, and the function to call when it arrives.
 
-    `kept` is the folder of what the command has finished so far, if it keeps anything; `written` says in words what is
-    in the result's file once that is written.
+    `kept` is the folder of the pieces finished so far, if the command keeps any. `written` says what the result's file
+    contains, once that file is written.
     """
 
     def __init__(self) -> None:
@@ -50,7 +50,7 @@ _REQUEST = _EndRequest()
 
 
 def begin() -> None:
-    """Take over both signals; one that the process was started to ignore stays ignored."""
+    """Take over both signals; a signal that the process ignored from its start stays ignored."""
     reading, writing = os.pipe()
     os.set_blocking(writing, False)
     threading.Thread(target=_wait, args=(reading,), daemon=True, name="signals").start()
@@ -63,11 +63,11 @@ def begin() -> None:
 
 
 def _noted(_number: int, _frame: FrameType | None) -> None:
-    """Nothing: the number has been written to the pipe before Python calls this."""
+    """Do nothing: the signal's number was written to the pipe before Python calls this."""
 
 
 def _forget() -> None:
-    """A forked process has no such thread: it takes signals as any program does by default."""
+    """Restore the default handling of signals in a forked process, which does not have the waiting thread."""
     signal.set_wakeup_fd(-1)
     for number in _STATUS:
         if signal.getsignal(number) is _noted:
@@ -75,7 +75,7 @@ def _forget() -> None:
 
 
 def _wait(reading: int) -> None:
-    """End the process at the first signal, or tell the computation and end at the second or after the grace."""
+    """End the process at the first signal or, if a computation has to be asked, at the second or after `_GRACE`."""
     while True:
         status = _STATUS.get(os.read(reading, 1)[0])
         if status is None:
@@ -90,19 +90,19 @@ def _wait(reading: int) -> None:
 
 
 def keeps(folder: str) -> None:
-    """Name the folder of finished pieces, for the last sentence of a computation that does not end in time."""
+    """Record the folder of finished pieces, for the last sentence of a computation that does not end in time."""
     _REQUEST.kept = folder
 
 
 def wrote(words: str) -> None:
-    """Say what the result's file holds now, for a signal that comes while the rest of the command runs."""
+    """Record what the result's file now contains, for a signal that arrives while the rest of the command runs."""
     _REQUEST.written = words
 
 
 def _end() -> NoReturn:
     sentence = _REQUEST.written
     if not sentence and os.path.isdir(_REQUEST.kept):
-        sentence = f"what was finished is kept in {_REQUEST.kept}; go on with --resume"
+        sentence = f"finished work is kept in {_REQUEST.kept}; continue with --resume"
     with suppress(OSError):
         os.write(2, f"{word()}{f': {sentence}' if sentence else ''}.\n".encode())
     os._exit(status())
@@ -110,9 +110,9 @@ def _end() -> NoReturn:
 
 @contextmanager
 def asking(stop_computation: Callable[[], None] = lambda: None) -> Iterator[Callable[[], bool]]:
-    """Within this block a signal calls `tell`, in another thread, and the block has some time to end.
+    """Let a signal call `stop_computation` in another thread, and give the block some time to end.
 
-    Gives a function that says whether a signal has come. A block inside another one changes nothing.
+    Yield a function that returns whether a signal has arrived. A block inside another one changes nothing.
     """
     with _REQUEST.lock:
         before = _REQUEST.tell
@@ -126,22 +126,22 @@ def asking(stop_computation: Callable[[], None] = lambda: None) -> Iterator[Call
 
 
 def status() -> int:
-    """The exit status of a cancelled command."""
+    """Return the exit status of a cancelled command."""
     return _REQUEST.status or _STATUS[signal.SIGINT]
 
 
 def word() -> str:
-    """The outcome of a cancelled command in a word."""
+    """Return the word for the outcome of a cancelled command."""
     return _WORDS[status()]
 
 
 def leave(done: int) -> int:
-    """The exit status of a command that has ended; after a signal, end the process here.
+    """Return the exit status of a command that has ended; after a signal, end the process here instead.
 
-    Threads may still wait for a compiler, and Python would wait for them.
+    Threads may still be waiting for the compiler, and Python would wait for them.
     """
     if _REQUEST.status is None:
-        for number in _STATUS:  # one that comes now is too late, and Python would go back to the default
+        for number in _STATUS:  # a signal that arrives now is too late, and Python would restore the default
             signal.signal(number, signal.SIG_IGN)
         return done
     for stream in (sys.stdout, sys.stderr):

@@ -1,4 +1,4 @@
-"""The output of --explain: effects compiled in, absent effects, the method with its reason, the machine."""
+"""The output of --explain: effects compiled in, absent effects, the method and why it is used, the machine."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from granchain_core.scene import Scene
 
 
 def explanation(scene: Scene, method: str | None, samples: int) -> str:
-    """The slots of the kernel that `run` uses, its method and the machine; `samples` a period may set its steps."""
+    """Describe the kernel's slots, the method and the machine of a run; `samples` per period may set its steps."""
     scaled = scale_chain(scene)
     slots = slots_of(scene, account=True)
     present = [f"{title} ({kind})" for _, title, kind in slots if kind is not None]
@@ -19,7 +19,7 @@ def explanation(scene: Scene, method: str | None, samples: int) -> str:
     chosen = METHODS[setting.method]
     why = "asked for by --method" if method else f"chosen for an accuracy of {scene.accuracy:g}"
     resolution = (f"tolerance per step {setting.tolerance:.1e}" if chosen.error_control
-                else f"{setting.steps_per_period(scaled, samples)} steps a period")
+                else f"{setting.steps_per_period(scaled, samples)} steps per period")
     return "\n".join((
         f"compiled in: {', '.join(present)}",
         f"absent, with no code and no array: {', '.join(absent) if absent else 'nothing'}",

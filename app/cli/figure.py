@@ -20,11 +20,11 @@ _KINDS = (".html", ".htm", ".png", ".svg", ".csv")
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `figure`."""
-    parser.add_argument("number", metavar="N", help="1 to 12, 3a or 3b; 'list' says what each shows")
+    parser.add_argument("number", metavar="N", help="1 to 12, 3a or 3b; 'list' shows what each is about")
     parser.add_argument("--out", metavar="FILE", help="FILE.html, .png, .svg or .csv; figure-N.html by default")
     parser.add_argument("--data", action="append", default=[], metavar="[HZ=]FILE",
-                        help="your measurement over it: a curve, the shaker's amplitude, or a series (HZ is its "
-                             "frequency in the paper); CSV in any dialect, WebPlotDigitizer, HDF5, netCDF-4")
+                        help="a measurement of yours to draw over it: a curve, the shaker's amplitude, or a series (HZ "
+                             "is its frequency in the paper); CSV in any dialect, WebPlotDigitizer, HDF5, netCDF-4")
     add_answers(parser)
     parser.add_argument("--theme", default="light", metavar="|".join(THEMES), help="colours of the picture")
 
@@ -53,11 +53,11 @@ def do(arguments: argparse.Namespace) -> None:
 
 
 def _quiet(_: float) -> None:
-    """Progress is for a person at a terminal."""
+    """Show no progress, which is only for a person at a terminal."""
 
 
 def _checked(name: str, theme: str) -> str:
-    """The kind of file; `BadInput`, before anything is computed, for one that cannot be written."""
+    """Return the kind of file, or raise `BadInput`, before anything is computed, if it cannot be written."""
     from granchain_core.inputs.checks import unknown_name
 
     kind = Path(name).suffix.lower()
@@ -74,7 +74,7 @@ def _checked(name: str, theme: str) -> str:
 
 
 def _written(figure: Any, result: Any, kind: str, theme: str) -> bytes:
-    """The content of the file."""
+    """Return the content of the file."""
     if kind == ".csv":
         return table_of(result).encode("utf-8")
     from ..plots.browser import png_of, svg_of
@@ -91,7 +91,7 @@ def _written(figure: Any, result: Any, kind: str, theme: str) -> bytes:
 
 
 def table_of(result: Any) -> str:
-    """The numbers of a figure as CSV: columns with their units, empty where a line has no such number."""
+    """Return the numbers of a figure as CSV, in columns with units; a field is empty if its row has no such number."""
     rows = list(result.rows())
     names = list(dict.fromkeys(name for row in rows for name in row))
     file = io.StringIO()
@@ -103,5 +103,5 @@ def table_of(result: Any) -> str:
 
 
 def _number(value: Any) -> Any:
-    """Nine significant figures; words and nothing as they are."""
+    """Return a number with nine significant figures, and any other value unchanged."""
     return f"{value:.9g}" if isinstance(value, float) else value

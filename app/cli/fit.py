@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from granchain_core.fitting import Free
 
 
-#: An error by the unit of the data.
+#: Examples of --error by the unit of the data.
 _EXAMPLES = {"%": "3%", "N": "0.2N", "Hz": "3Hz"}
 
 
@@ -34,23 +34,23 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--at", action="append", type=number, default=[], metavar="f",
                         help="drive frequency of a series [Hz]; once for each --data, in their order; for one series "
                              "without it the scene's f")
-    parser.add_argument("--features", metavar="paper", help="the peaks and valleys that the paper states, in place of "
+    parser.add_argument("--features", metavar="paper", help="the peaks and valleys that the paper states, instead of "
                                                             "--data")
     parser.add_argument("--free", action="append", default=[], metavar="NAME=low:high",
                         help="a parameter with its bounds [SI]: A0, k, kappa, D, K, F0 or wall; once for each")
     parser.add_argument("--prior", action="append", default=[], metavar="NAME=mean:sd",
-                        help="mean and standard deviation of what is known of a parameter besides the data")
+                        help="mean and standard deviation of a parameter as known from elsewhere than the data")
     parser.add_argument("--per-frequency", action="store_true", help="one A0 for each frequency")
     parser.add_argument("--error", metavar="E",
-                        help="standard deviation of the data where the file states none: a fraction of each force or "
+                        help="standard deviation of the data if the file states none: a fraction of each force or "
                              "per cent (curve: 0.03 or 3%%), newtons (series: 0.2 or 0.2N), hertz (features: 3 or 3Hz)")
     parser.add_argument("--elastic", action="store_true", help="compare the elastic part of the output force")
-    add_bandwidth(parser, ", which the model's forces pass before they are compared with a series")
+    add_bandwidth(parser, ", which is applied to the model's forces before they are compared with a series")
     parser.add_argument("--start", default="rest", metavar="rest|up|down")
-    parser.add_argument("--design", type=whole, default=0, metavar="n", help="sets of parameters that are tried first")
+    parser.add_argument("--design", type=whole, default=0, metavar="n", help="sets of parameters to try first")
     parser.add_argument("--points", type=whole, default=71, metavar="n",
-                        help="frequencies, over the scene's range, among which peaks and valleys are sought")
-    parser.add_argument("--no-intervals", action="store_true", help="best values alone")
+                        help="frequencies, over the scene's range, at which to look for peaks and valleys")
+    parser.add_argument("--no-intervals", action="store_true", help="compute the best values only")
     add_scheduler(parser)
     parser.add_argument("--out", metavar="FILE.json", help="write the result, with its landscape, as JSON")
     add_answers(parser)
@@ -96,7 +96,7 @@ def do(arguments: argparse.Namespace) -> None:
 
 
 def _target(arguments: argparse.Namespace, chosen: Scene) -> Any:
-    """The quantities that are compared."""
+    """Return the quantities that are compared."""
     import numpy as np
 
     from granchain_core.experiment import stated_features
@@ -108,7 +108,7 @@ def _target(arguments: argparse.Namespace, chosen: Scene) -> Any:
         _only_series(arguments)
         error = _error(arguments.error, "Hz")
         if arguments.features != "paper":
-            raise BadInput(f"--features {arguments.features!r} is not known; there is 'paper'.")
+            raise BadInput(f"--features {arguments.features!r} is not known; the only choice is 'paper'.")
         if arguments.per_frequency:
             raise BadInput("The paper states no forces at its frequencies, so one A0 for each could make any heights; "
                            "fit a constant one, or give --data.")
@@ -120,7 +120,7 @@ def _target(arguments: argparse.Namespace, chosen: Scene) -> Any:
 
 
 def _measured_target(arguments: argparse.Namespace) -> Any:
-    """The measurement: a curve, a series, or series at several frequencies."""
+    """Read the measurement: a curve, a series, or series at several frequencies."""
     from granchain_core.experiment import Measured, Series, read_experiment
     from granchain_core.fitting import CurveTarget, RecordsTarget, SeriesTarget
 
@@ -147,13 +147,13 @@ def _measured_target(arguments: argparse.Namespace) -> Any:
 
 
 def _only_series(arguments: argparse.Namespace) -> None:
-    """Refuse --bandwidth where no series is compared."""
+    """Refuse --bandwidth if no series is compared."""
     if math.isfinite(arguments.bandwidth):
-        raise BadInput("--bandwidth is for a series; largest forces alone do not tell what a low-pass made of them.")
+        raise BadInput("--bandwidth is for a series; largest forces alone do not show what a low-pass did to them.")
 
 
 def _error(text: str | None, unit: str) -> float | None:
-    """The standard deviation that --error gives, with or without its unit; a per cent is a hundredth of each force."""
+    """Return the standard deviation that --error gives, with or without unit; 1 % is a hundredth of each force."""
     if text is None:
         return None
     plain = text.removesuffix(unit)
@@ -167,22 +167,22 @@ def _error(text: str | None, unit: str) -> float | None:
 
 
 def _free(arguments: argparse.Namespace) -> list[Free]:
-    """The parameters that are fitted."""
+    """Return the parameters to be fitted."""
     from granchain_core.fitting.parameters import free_of
 
     if not arguments.free:
-        raise BadInput("Say what is fitted, for example --free A0=5e-6:14e-6 --free D=10:100.")
+        raise BadInput("Say what to fit, for example --free A0=5e-6:14e-6 --free D=10:100.")
     priors = {text.partition("=")[0]: text for text in arguments.prior}
     free = [free_of(text, priors.pop(text.partition("=")[0], None)) for text in arguments.free]
     if priors:
-        raise BadInput(f"--prior {next(iter(priors))} belongs to no --free.")
+        raise BadInput(f"--prior {next(iter(priors))} has no matching --free.")
     if arguments.per_frequency and not any(parameter.name == "A0" for parameter in free):
         raise BadInput("--per-frequency needs --free A0=low:high.")
     return free
 
 
 def _show(result: Fit) -> None:
-    """A fit as a table and a sentence."""
+    """Print a fit as a table and a sentence."""
     print("parameter        best                95 % interval             bounds")
     for i, parameter in enumerate(result.free):
         interval = "–"
@@ -201,7 +201,7 @@ def _show(result: Fit) -> None:
 
 
 def _correlations(result: Fit) -> list[tuple[str, str, float]]:
-    """Each pair of parameters with the correlation of their estimates, where there is one."""
+    """Return each pair of parameters whose estimates have a correlation, with that correlation."""
     if result.correlation is None:
         return []
     names = [parameter.name for parameter in result.free]
@@ -210,7 +210,7 @@ def _correlations(result: Fit) -> list[tuple[str, str, float]]:
 
 
 def _rows(result: Fit) -> list[str]:
-    """A line for every datum of a curve, every feature, and every record of several; one series has none."""
+    """Return a line for each point of a curve, each feature or each of several records; none for a single series."""
     from granchain_core.fitting import CurveTarget, FeatureTarget, RecordsTarget
 
     target, evaluation = result.target, result.evaluation
@@ -232,5 +232,5 @@ def _rows(result: Fit) -> list[str]:
 
 
 def _in_words(regime: str) -> str:
-    """A regime of a fit in words: "period 3" for "periodic3"."""
+    """Return a fit's regime in words: "period 3" for "periodic3"."""
     return re.sub(r"^periodic(\d+)$", r"period \1", regime)

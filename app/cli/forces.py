@@ -1,4 +1,4 @@
-"""The output for a chain in motion, in JSON and in words: the scene, the largest forces, the errors, the cost."""
+"""The output for a motion, in JSON and in words: the scene, the largest forces, the errors and the cost."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from granchain_core.results.run import Cost
 
 
 def scene_json(scene: Scene) -> dict[str, Any]:
-    """The scene of a result: its name, knobs and effects."""
+    """Return the scene of a result: its name, knobs and effects."""
     return {"scene": scene.name, "knobs": scene.knobs, "effects": scene.effects}
 
 
 def forces_json(forces: LargestForces) -> dict[str, Any]:
-    """The largest forces [N]."""
+    """Return the largest forces [N]."""
     return {"max_output_force": forces.max_output_force, "max_output_force_elastic": forces.max_output_force_elastic,
             "max_input_force": forces.max_input_force}
 
 
 def errors_json(motion: Run | Driven) -> dict[str, Any]:
-    """The relative errors of displacements and of each largest force, and the residual of the energy account."""
+    """Return the relative errors of displacements and of each largest force, and the energy residual."""
     errors = motion.force_errors
     return {"error_estimate": motion.displacement_error, "error_estimate_output": errors.output,
             "error_estimate_input": errors.input, "error_estimate_elastic": errors.elastic,
@@ -33,13 +33,13 @@ def errors_json(motion: Run | Driven) -> dict[str, Any]:
 
 
 def forces_in_words(forces: LargestForces) -> str:
-    """The largest forces, in one line."""
+    """Return the largest forces in one line."""
     return (f"largest output force {forces.max_output_force:.6g} N (elastic {forces.max_output_force_elastic:.6g} N), "
             f"input force {forces.max_input_force:.6g} N")
 
 
 def errors_in_words(motion: Run | Driven) -> str:
-    """The errors, the energy account and the cost, in one line."""
+    """Return the errors, the energy residual and the cost in one line."""
     errors = motion.force_errors
     inward, outward, elastic = ("none stated" if e is None else f"{e:.1e}"
                                 for e in (errors.input, errors.output, errors.elastic))
@@ -49,23 +49,23 @@ def errors_in_words(motion: Run | Driven) -> str:
 
 
 def status_in_words(status: str) -> str:
-    """Whether the accuracy asked for was reached, from a `status`."""
+    """Say, from a `status`, whether the requested accuracy was reached."""
     return {"done": "accuracy reached", "accuracy-not-reached": "accuracy not reached",
             "over-budget": "accuracy not reached within the budget"}[status]
 
 
 def energy_in_words(residual: float | None) -> str:
-    """How well the energy account closes; a method in (u, v) has none."""
+    """Say how well the energy account closes; a method in (u, v) does not have one."""
     return "no energy account" if residual is None else f"energy closes to {residual:.1e}"
 
 
 def cost_in_words(cost: Cost) -> str:
-    """Method, steps, events and time."""
+    """Return method, steps, events and time in one line."""
     return f"{cost.method}, {cost.steps} steps, {cost.events} contact events, {1e3 * cost.wall_s:.1f} ms"
 
 
 def warn(result: Run, budget: float) -> None:
-    """Say on stderr what the numbers do not show: warnings, an accuracy not reached, touches not resolved."""
+    """Report on stderr what the numbers do not show: warnings, an accuracy not reached, unresolved touches."""
     from granchain_core.runs.to_accuracy import warnings
 
     for warning in warnings(result):
@@ -76,14 +76,14 @@ def warn(result: Run, budget: float) -> None:
             f"displacement.{_forces_in_words(result)}")
     if result.status == "over-budget":
         say(f"A finer computation would not fit the budget of {budget:g} s: the error may be {error:.1e} of the "
-            f"largest displacement, {accuracy:g} was asked for.")
+            f"largest displacement, and {accuracy:g} was asked for.")
     if result.jumps.unresolved:
         say(f"{result.jumps.unresolved} touches were shorter than a step of {result.cost.method} and are not resolved: "
             "their jumps are read off the step's ends.")
 
 
 def _forces_in_words(result: Run) -> str:
-    """A sentence if the largest forces are as accurate as asked for and a displacement is not; otherwise empty."""
+    """Return a sentence if the largest forces are accurate enough and a displacement is not; otherwise return ""."""
     stated = [error for error in asdict(result.force_errors).values() if error is not None]
     if not stated or max(stated) > result.scene.accuracy:
         return ""

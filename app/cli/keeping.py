@@ -20,15 +20,15 @@ Result = TypeVar("Result")
 def add_resume(parser: argparse.ArgumentParser, what: str) -> None:
     """Add `--resume`."""
     parser.add_argument("--resume", action="store_true",
-                        help=f"go on with a {what} that was interrupted; --out names its file")
+                        help=f"continue an interrupted {what}; --out names its file")
 
 
 def finished(arguments: argparse.Namespace, what: str, load: Callable[[str], Result],
              same: Callable[[Result], bool]) -> Result | None:
-    """With --resume, the result in --out if the file has the complete result of these options; else None.
+    """With --resume, return the result in --out if it is the complete result of these options; otherwise None.
 
-    Its blocks may still stand, if the command was killed between writing the result and removing them. Raises
-    `BadInput` for --resume without --out, and for another result where there are no blocks to go on with.
+    Its blocks may still exist, if the command was killed between writing the result and removing them. Raise `BadInput`
+    for --resume without --out, and for a file with another result if there are no blocks to continue from.
     """
     if arguments.out:
         ending.keeps(str(folder_of(arguments.out)))
@@ -42,7 +42,7 @@ def finished(arguments: argparse.Namespace, what: str, load: Callable[[str], Res
     try:
         result = load(arguments.out)
     except BadInput:
-        if unfinished:  # an older file that this result will replace
+        if unfinished:  # an older file, which this result will replace
             return None
         raise
     if not same(result):
@@ -50,15 +50,15 @@ def finished(arguments: argparse.Namespace, what: str, load: Callable[[str], Res
             return None
         raise BadInput(f"{arguments.out} is a finished {what} that was computed with other options; give another "
                        "--out.")
-    say(f"{arguments.out} is finished already; nothing was computed.")
+    say(f"{arguments.out} is already finished; nothing was computed.")
     return result
 
 
 @contextmanager
 def keeping(kept: Kept[Any] | None, done: Callable[[], str]) -> Iterator[None]:
-    """Compute in this block: however it ends, the pieces finished so far are written.
+    """Compute in this block and write the pieces finished so far, however the block ends.
 
-    After a signal the sentence of `done`, which says how many there are, is what the command says.
+    After a signal, the command's last message is the sentence of `done`, which says how many pieces there are.
     """
     try:
         yield
@@ -68,7 +68,7 @@ def keeping(kept: Kept[Any] | None, done: Callable[[], str]) -> Iterator[None]:
         kept.write()
         if not kept.folder.exists():
             raise
-        raise Cancelled(f"{done()} are kept in {kept.folder}; go on with --resume") from None
+        raise Cancelled(f"{done()} are kept in {kept.folder}; continue with --resume") from None
     except BaseException:
         if kept is not None:
             kept.write()

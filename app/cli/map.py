@@ -1,4 +1,4 @@
-"""`granchain map`: the parameter map, regime and largest forces over two knobs. An interrupted one can be continued."""
+"""`granchain map`: the parameter map, regime and largest forces over two knobs; --resume continues it."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def axis_from(option: str, text: str) -> Axis:
-    """The axis that KNOB=a:b:n or KNOB=a:b:n:log describes."""
+    """Return the axis that KNOB=a:b:n or KNOB=a:b:n:log describes."""
     knob, ends, spaced = values_from(option, text, MOST_CELLS)
     allowed = Axis.of(knob, sorted(set(ends))).values
     return Axis.of(knob, spaced(allowed[0], allowed[-1]).tolist())
@@ -88,7 +88,7 @@ def do(arguments: argparse.Namespace) -> None:
 
 
 def _found(arguments: argparse.Namespace, grid: Grid) -> tuple[ParameterMap, int]:
-    """The parameter map and its file, of which only missing cells are computed, and how many those were."""
+    """Compute the missing cells of the parameter map and write its file; return the map and how many were missing."""
     from granchain_core.store.parameter_maps import load_parameter_map, save_parameter_map
 
     written = finished(arguments, "map", load_parameter_map,
@@ -112,18 +112,18 @@ def _refuse_too_many(grid: Grid) -> None:
     from ..plots.parameter_map import MOST_DRAWN_CELLS as MOST_DRAWN
 
     if grid.size > MOST_DRAWN:
-        raise BadInput(f"--picture draws up to {MOST_DRAWN} cells and this map has {grid.size}; take fewer points on "
+        raise BadInput(f"--picture draws up to {MOST_DRAWN} cells and this map has {grid.size}; use fewer points on "
                        "an axis, or leave --picture out.")
 
 
 def _filled(blocks: Blocks, client: Any, stop: Stop, done: list[int]) -> tuple[ParameterMap, int]:
-    """The whole parameter map, of which only missing cells are computed, and how many those were; counts in `done`."""
+    """Compute the missing cells, counting in `done`; return the whole map and how many were missing."""
     began, grid = time.perf_counter(), blocks.grid
     cells = blocks.cells()
     missing = [int(number) for number in grid.coarse_first() if cells["regime"][number] < 0]
     done[0] = grid.size - len(missing)
     if done[0]:
-        say(f"{done[0]} of {grid.size} cells are there already.")
+        say(f"{done[0]} of {grid.size} cells have already been computed.")
     for rows in _rows(grid, missing, client, stop):
         cells[rows["number"]] = rows
         blocks.add(rows)
@@ -136,7 +136,7 @@ def _filled(blocks: Blocks, client: Any, stop: Stop, done: list[int]) -> tuple[P
 
 
 def _rows(grid: Grid, missing: list[int], client: Any, stop: Stop) -> Iterator[np.ndarray]:
-    """Finished cells, a few at a time."""
+    """Yield finished cells, a few at a time."""
     if client is not None:
         from granchain_core.parameter_maps.scheduled import iter_blocks
 
@@ -179,5 +179,5 @@ def _curve_json(curve: BifurcationCurve) -> dict[str, Any]:
 
 
 def _largest(errors: np.ndarray) -> float:
-    """The largest error that is stated; NaN where none is."""
+    """Return the largest stated error; NaN if none is stated."""
     return float(np.nanmax(errors)) if np.isfinite(errors).any() else math.nan

@@ -1,4 +1,4 @@
-"""`granchain observe`: a scene's chain without its driver, pushed by a measured force (model 3 of the paper)."""
+"""`granchain observe`: a scene's chain, pushed by a measured force instead of its driver (the paper's model 3)."""
 
 from __future__ import annotations
 
@@ -34,12 +34,12 @@ def add_options(parser: argparse.ArgumentParser) -> None:
                         help="what to do where samples are missing")
     parser.add_argument("--start", default="rest", metavar="rest|input",
                         help="start at rest, or in the state an HDF5 input begins with")
-    add_bandwidth(parser, ", which the computed output force passes before it is compared with a measured one")
+    add_bandwidth(parser, ", which is applied to the computed output force before it is compared with a measured one")
     add_picture(parser)
 
 
 def do(arguments: argparse.Namespace) -> None:
-    """Push a scene's chain by a measured force."""
+    """Push a scene's chain with a measured force."""
     from granchain_core import observe as push
     from granchain_core.observers import first_state, read_force
     from granchain_core.store import check_writable, save_observation
@@ -81,7 +81,7 @@ def do(arguments: argparse.Namespace) -> None:
 
 
 def _json(seen: Observation) -> dict[str, Any]:
-    """An observation as one JSON object."""
+    """Return an observation as one JSON object."""
     from granchain_core.observers.observation import written
 
     scene = scene_json(seen.scene)

@@ -12,7 +12,7 @@ from granchain_core.inputs.text import number_in, whole_in
 
 
 def number(text: str) -> float:
-    """The number of an option, read as that of a knob."""
+    """Read the number of an option in the same way as a knob's value."""
     value = number_in(text)
     if value is None:
         raise argparse.ArgumentTypeError(f"{text[:40]!r} is not a number")
@@ -20,7 +20,7 @@ def number(text: str) -> float:
 
 
 def whole(text: str) -> int:
-    """The whole number of an option."""
+    """Read the whole number of an option."""
     value = whole_in(text)
     if value is None:
         raise argparse.ArgumentTypeError(f"{text[:40]!r} is not a whole number")
@@ -34,12 +34,12 @@ def add_scene(parser: argparse.ArgumentParser) -> None:
 
 
 def add_json(parser: argparse.ArgumentParser) -> None:
-    """Add the choice between words and one JSON object."""
+    """Add --json, the choice between words and one JSON object."""
     parser.add_argument("--json", action="store_true", help="print one JSON object on stdout")
 
 
 def add_result(parser: argparse.ArgumentParser, accuracy: str = "") -> None:
-    """Add a scene, the accuracy asked for (its help ends with `accuracy`), and the file that keeps the result."""
+    """Add a scene, the requested accuracy (`accuracy` ends its help text), and the file for the result."""
     add_scene(parser)
     parser.add_argument("--accuracy", metavar="E", help=f"the same as --set accuracy=E{accuracy}")
     add_out(parser)
@@ -47,19 +47,19 @@ def add_result(parser: argparse.ArgumentParser, accuracy: str = "") -> None:
 
 
 def add_out(parser: argparse.ArgumentParser) -> None:
-    """Add the file that keeps the result."""
+    """Add the file for the result."""
     parser.add_argument("--out", metavar="FILE", help="write an HDF5 file")
 
 
 def add_scheduler(parser: argparse.ArgumentParser) -> None:
-    """Add the workers of a scheduler; `scheduler_of` opens its client."""
+    """Add the scheduler whose workers compute; `scheduler_of` opens its client."""
     parser.add_argument("--scheduler", metavar="ADDRESS", help="compute on the workers of a Dask scheduler")
 
 
 def scheduler_of(arguments: argparse.Namespace) -> AbstractContextManager[Any]:
-    """A client of the scheduler that --scheduler names, to be closed; None without it.
+    """Return a context manager with a client of the scheduler that --scheduler names; without the option, with None.
 
-    Raises `BadInput` where no scheduler answers.
+    Raise `BadInput` if no scheduler answers.
     """
     if arguments.scheduler is None:
         return nullcontext()
@@ -70,7 +70,7 @@ def scheduler_of(arguments: argparse.Namespace) -> AbstractContextManager[Any]:
 
 
 def values_from(option: str, text: str, most: int) -> tuple[str, tuple[float, float], Callable[[float, float], Any]]:
-    """NAME=a:b:n or NAME=a:b:n:log: the name, both ends, and what spaces n values from one number to another."""
+    """Read NAME=a:b:n or NAME=a:b:n:log: the name, both ends, and a function that spaces n values between any two."""
     import numpy as np
 
     name, equals, values = text.partition("=")

@@ -26,11 +26,11 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `orbit`."""
     add_scene(parser)
     parser.add_argument("--period", type=whole, metavar="n",
-                        help="drive periods of the orbit; by default those of the settled motion, 1 if it has none or "
-                             "with another --start")
+                        help="drive periods of the orbit; by default those of the settled motion, or 1 if it has none "
+                             "or with another --start")
     parser.add_argument("--start", default="settled", metavar="settled|rest|random|near|FILE",
                         help="where Newton's method starts; near: near the settled motion, for an orbit that it does "
-                             "not follow; FILE is a recorded run, whose last sample counts")
+                             "not follow; FILE: at the last sample of a recorded run")
     parser.add_argument("--seed", type=whole, default=0, help="seed of the random start")
     parser.add_argument("--observer", action="store_true",
                         help="also compute the multipliers of the observer of model (4)")
@@ -78,7 +78,7 @@ def _pairs(multipliers: Any) -> list[list[float]]:
 
 
 def _numbers(errors: Any) -> list[float | None] | None:
-    """Numbers for JSON, which has no infinity."""
+    """Return the errors for JSON, which has no infinity."""
     return None if errors is None else [float(error) if np.isfinite(error) else None for error in errors]
 
 
@@ -90,7 +90,7 @@ def _show_multipliers(title: str, multipliers: Any, errors: Any) -> None:
 
 
 def _search(chosen: Scene, arguments: argparse.Namespace) -> Callable[[Stop], Orbit]:
-    """The method that finds the orbit."""
+    """Return the function that finds the orbit."""
     from granchain_core.orbits import orbit_near_motion, periodic_orbit
 
     if arguments.start == "near":
@@ -102,7 +102,7 @@ def _search(chosen: Scene, arguments: argparse.Namespace) -> Callable[[Stop], Or
 
 
 def _start(chosen: Scene, name: str, seed: int) -> State | None:
-    """The state in which Newton's method starts: the last sample if `name` is a file, None for the settled motion."""
+    """Return the state in which Newton's method starts: None for the settled motion, the last sample of a file."""
     from granchain_core.orbits import random_state
     from granchain_core.scene.state import rest
     from granchain_core.store import load
@@ -125,7 +125,7 @@ def _start(chosen: Scene, name: str, seed: int) -> State | None:
 
 
 def _other_values(chosen: Scene, recorded: Scene) -> str:
-    """In which values a recorded chain differs from the chosen one, in words; empty where it does not move otherwise.
+    """Say in which values a recorded chain differs from the chosen one, apart from those that do not change its motion.
     """
     names = [f"{name} = {value:g}" if isinstance(value, float) else f"{name} = {value}"
              for name, value in {**recorded.knobs, "reference_overlap": recorded.reference_overlap}.items()

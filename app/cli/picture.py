@@ -1,4 +1,4 @@
-"""`--picture FILE.html`: the dashboard's figure of a result in a self-contained file."""
+"""`--picture FILE.html`: the figure of a result, as on the dashboard, in a self-contained file."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def add_option(parser: argparse.ArgumentParser) -> None:
 
 
 def check_picture(name: str | None) -> None:
-    """Refuse, before anything is computed, a file into which a picture cannot be written."""
+    """Refuse, before anything is computed, a file to which a picture cannot be written."""
     if name is None:
         return
     from granchain_core.store import check_writable
@@ -28,7 +28,7 @@ def check_picture(name: str | None) -> None:
 
 
 def check_files(arguments: argparse.Namespace) -> None:
-    """Refuse, before anything is computed, files into which the picture or the result cannot be written."""
+    """Refuse, before anything is computed, files to which the picture or the result cannot be written."""
     from granchain_core.store import check_writable
 
     check_picture(arguments.picture)
@@ -37,7 +37,7 @@ def check_files(arguments: argparse.Namespace) -> None:
 
 
 def write_picture(name: str | None, title: str, result: Any, **options: Any) -> None:
-    """Write the picture that `granchain.figure` draws of a result, if one was asked for; `options` are its own."""
+    """If a picture was asked for, write the one that `granchain.figure` draws of a result with these `options`."""
     if name is None:
         return
     from ..plots.any_result import stretched
@@ -56,7 +56,7 @@ def write_files(arguments: argparse.Namespace, title: str, result: Any, **option
 
 
 def write_figure(name: str, title: str, figure: Any) -> None:
-    """Write a figure of `app/plots`."""
+    """Write a figure of `app/plots` to an HTML file."""
     from ..plots.file import html_of
 
     Path(name).write_text(html_of(figure, title), encoding="utf-8")

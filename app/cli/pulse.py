@@ -59,7 +59,7 @@ def _json(result: Pulse) -> dict[str, Any]:
 
 
 def _show(result: Pulse) -> None:
-    """One line for each contact; beside the speed stands that of a solitary wave with the same force."""
+    """Print one line for each contact; next to its speed is that of a solitary wave with the same force."""
     from granchain_core.analysis.pulse import CONTINUUM, solitary_speed
 
     chosen = result.run.scene

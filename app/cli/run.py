@@ -1,4 +1,4 @@
-"""`granchain run`: one run of a scene, with forces, regime, error reached, energy residual and cost."""
+"""`granchain run`: one run of a scene, with its forces, regime, error, energy residual and cost."""
 
 from __future__ import annotations
 
@@ -31,15 +31,15 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `run`."""
     add_result(parser)
     parser.add_argument("--periods", type=whole, default=PERIODIC["periods"], metavar="P",
-                        help="periods run and discarded")
+                        help="periods computed and discarded")
     parser.add_argument("--record", type=whole, default=PERIODIC["record"], metavar="R", help="periods recorded")
-    parser.add_argument("--samples", type=whole, default=PERIODIC["samples"], metavar="S", help="samples a period")
-    parser.add_argument("--method", metavar="M", help="integration method instead of the one accuracy chooses")
+    parser.add_argument("--samples", type=whole, default=PERIODIC["samples"], metavar="S", help="samples per period")
+    parser.add_argument("--method", metavar="M", help="integration method, instead of the one that accuracy selects")
     parser.add_argument("--budget", type=number, default=BUDGET, metavar="SECONDS",
-                        help="refuse what would take longer")
+                        help="refuse a computation that would take longer")
     parser.add_argument("--explain", action="store_true", help="say which effects and method are used, and why")
     parser.add_argument("--drive", metavar="SIGNAL",
-                        help="another motion of the driver from the start to its end: "
+                        help="another motion of the driver, from its start to its end: "
                              f"{', '.join(f'{name}={formula.form}' for name, formula in FORMULAS.items())} with A0, or "
                              "a FILE of its velocity or displacement over time; measured forces in the file are "
                              "compared with the computed ones")
@@ -48,7 +48,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--start", default="rest", metavar="rest|settled|FILE",
                         help="where a motion under --drive begins: at rest; for --drive FILE also on the settled "
                              "motion at the phase of the file's first sample, or where the recorded run FILE ends")
-    add_bandwidth(parser, ", which the computed forces pass before they are compared with those of --drive FILE")
+    add_bandwidth(parser, ", which is applied to the computed forces before they are compared with those of --drive "
+                          "FILE")
     add_tip_mass(parser, ", whose inertia is added to the computed input force before it is compared with that of "
                          "--drive FILE")
     add_answers(parser)
@@ -83,7 +84,7 @@ def do(arguments: argparse.Namespace) -> None:
 
 
 def _result(chosen: Scene, arguments: argparse.Namespace) -> Run:
-    """The run and its file; an interrupted run continues after the discarded periods that it has finished."""
+    """Compute the run and write its file; an interrupted run continues after the discarded periods already finished."""
     from granchain_core.runs.run_checkpoints import RunCheckpoints
     from granchain_core.runs.to_accuracy import run as run_scene
 
@@ -116,7 +117,7 @@ def _result(chosen: Scene, arguments: argparse.Namespace) -> Run:
 
 
 def _is_asked_for(run: Run, chosen: Scene, arguments: argparse.Namespace) -> bool:
-    """Whether the run in a file has the options of the command line."""
+    """Return whether the run in a file has the options of the command line."""
     method = arguments.method or method_for(chosen.accuracy, chosen.cuts_tension).method
     sizes = {"periods": arguments.periods, "record": arguments.record, "samples": arguments.samples}
     return (run.scene.digest, run.start, _sizes(run), run.cost.method) == (
@@ -124,7 +125,7 @@ def _is_asked_for(run: Run, chosen: Scene, arguments: argparse.Namespace) -> boo
 
 
 def _sizes(run: Run) -> dict[str, int]:
-    """What a run in a file or just computed was asked for, by the names of the options."""
+    """Return the sizes that a run, from a file or just computed, was asked for, by the names of the options."""
     return {"periods": round(float(run.time[0]) / run.scene.period), "record": (len(run.time) - 1) // run.samples,
             "samples": run.samples}
 
@@ -136,7 +137,7 @@ def _explain(chosen: Scene, arguments: argparse.Namespace, stream: Any) -> None:
 
 
 def _run_json(result: Run) -> dict[str, Any]:
-    """A run as one JSON object, with what it takes to cite it."""
+    """Return a run as one JSON object, including everything needed to cite it."""
     return {**scene_json(result.scene), "granchain_version": __version__, "scene_digest": result.scene.digest,
             **_sizes(result), "status": result.status, "regime": result.regime.name,
             "period": result.regime.period, "driven": result.regime.driven,
@@ -145,7 +146,7 @@ def _run_json(result: Run) -> dict[str, Any]:
 
 
 def _evidence(regime: Regime) -> dict[str, Any]:
-    """The numbers behind the regime; null where one was not computed."""
+    """Return the numbers behind the regime; null for a number that was not computed."""
     known = regime.evidence_by_key()
     return {name: known[name] for name in (
         "periods_run", "decay", "distance", "multiplier", "lyapunov", "lyapunov_periods", "approaches",
@@ -153,7 +154,7 @@ def _evidence(regime: Regime) -> dict[str, Any]:
 
 
 def _show_run(result: Run) -> None:
-    """A run in a few lines."""
+    """Print a run in a few lines."""
     print(f"{result.scene.name}: {result.regime.sentence}; {status_in_words(result.status)}")
     print(forces_in_words(result))
     print(errors_in_words(result))

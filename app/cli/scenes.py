@@ -1,4 +1,4 @@
-"""`granchain scenes`: every scene and what to look at."""
+"""`granchain scenes`: every scene and what to look at in it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .options import add_json
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """The options of `granchain scenes`."""
+    """Add the options of `scenes`."""
     add_json(parser)
 
 

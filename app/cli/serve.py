@@ -25,7 +25,7 @@ log = logging.getLogger("granchain")
 LEVELS = ("debug", "info", "warning", "error")
 #: Shortest secret [bytes].
 _SHORTEST = 16
-#: Variables of the environment that Panel reads if a provider is named, by the keyword of `serve`.
+#: Environment variables that Panel reads if a provider is named, by the keyword of `serve`.
 _OAUTH = {"oauth_key": "PANEL_OAUTH_KEY", "oauth_secret": "PANEL_OAUTH_SECRET",
           "oauth_redirect_uri": "PANEL_OAUTH_REDIRECT_URI", "oauth_encryption_key": "PANEL_OAUTH_ENCRYPTION"}
 
@@ -35,19 +35,20 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--port", type=whole, default=5006)
     parser.add_argument("--address", default="127.0.0.1")
     parser.add_argument("--allow-websocket-origin", action="append", metavar="HOST",
-                        help="a host name, with its port if that is not 80 or 443, under which browsers reach the "
-                             "dashboard; again for another; *.example.org is allowed")
+                        help="a host name, with its port unless that is 80 or 443, under which browsers reach the "
+                             "dashboard; repeat it for others; *.example.org is allowed")
     parser.add_argument("--secret-file", metavar="FILE",
                         help="a file whose content signs sessions; BOKEH_SECRET_KEY in the environment does the same")
     parser.add_argument("--generate-secret", action="store_true",
-                        help="if no other secret is given, sign sessions with one of this process's own")
+                        help="if no other secret is given, sign sessions with a random secret of this process")
     parser.add_argument("--allow-embedding", action="append", metavar="ORIGIN",
-                        help="an origin, such as https://courses.example.org, whose pages may show it in a frame")
+                        help="an origin, for example https://courses.example.org, whose pages may show the dashboard "
+                             "in a frame")
     parser.add_argument(*names_of_option("--max-sessions"), type=whole, default=USUAL_SESSIONS, metavar="N",
                         help="pages that may be open at once")
     parser.add_argument("--behind-proxy", action="store_true",
-                        help="take the visitor's address from X-Real-IP or X-Forwarded-For, which a proxy sets; where "
-                             "both are there and differ, the address is unknown")
+                        help="take the visitor's address from X-Real-IP or X-Forwarded-For, which a proxy sets; if "
+                             "both are present and differ, the address is unknown")
     parser.add_argument("--proxy-header", choices=ADDRESS_HEADERS,
                         help="with --behind-proxy: take the address from this header alone")
     parser.add_argument("--basic-auth", metavar="FILE",
@@ -55,7 +56,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--oauth-provider", metavar="NAME",
                         help="sign in with a provider that Panel knows; PANEL_OAUTH_KEY and PANEL_OAUTH_SECRET "
                              "are read from the environment")
-    parser.add_argument("--log-level", choices=LEVELS, default="warning", help="of the log on standard error")
+    parser.add_argument("--log-level", choices=LEVELS, default="warning", help="level of the log on standard error")
 
 
 def do(arguments: argparse.Namespace) -> None:
@@ -72,8 +73,8 @@ def do(arguments: argparse.Namespace) -> None:
 
 
 def _serve(arguments: argparse.Namespace, on_ready_to_listen: Callable[[], None]) -> None:
-    """Import the dashboard and serve it; `on_ready_to_listen` is called just before the server takes the port."""
-    gc.disable()  # what an import makes stays: the search for garbage took a tenth of its time (`serve` enables it)
+    """Import the dashboard and serve it; call `on_ready_to_listen` just before the server binds the port."""
+    gc.disable()  # imports leave no garbage, and looking for it took a tenth of their time (`serve` enables it)
     from ..library_internals import MissingPart, missing_in_import
 
     try:
@@ -97,7 +98,7 @@ def _serve(arguments: argparse.Namespace, on_ready_to_listen: Callable[[], None]
                     tuple(arguments.allow_embedding or ()), arguments.behind_proxy, tuple(sign_in.items()),
                     arguments.proxy_header or "")
 
-    def ready() -> None:  # the log has been set up by then
+    def ready() -> None:  # by then, the log has been set up
         if arguments.secret_file is not None and Path(arguments.secret_file).stat().st_mode & stat.S_IROTH:
             log.warning("all users of this machine can read the secret in %s; chmod o= closes it",
                         arguments.secret_file)
@@ -117,12 +118,12 @@ def _serve(arguments: argparse.Namespace, on_ready_to_listen: Callable[[], None]
 
 
 def _covers_all_names(origin: str) -> bool:
-    """Whether an origin is a pattern such as *, *:5006 or *.*, which names no domain."""
+    """Return whether an origin is a pattern that names no domain, such as *, *:5006 or *.*."""
     return not origin.rpartition("://")[2].partition(":")[0].strip("*.")
 
 
 def _secret(arguments: argparse.Namespace) -> bytes | None:
-    """The secret that signs sessions, if one is given."""
+    """Return the secret that signs sessions, if one is given."""
     if arguments.secret_file is not None:
         return _long_enough(_content(arguments.secret_file).strip(), f"the file {arguments.secret_file}")
     if given := os.environ.get("BOKEH_SECRET_KEY"):
@@ -146,15 +147,15 @@ def _content(name: str) -> bytes:
 
 
 def _require_readable(name: str) -> None:
-    """Refuse a file that cannot be read in a sentence; Panel, which reads it later, would give a traceback."""
+    """Refuse an unreadable file with a sentence; Panel, which reads it later, would show a traceback."""
     _content(name)
 
 
 def _sign_in(arguments: argparse.Namespace, secret: bytes | None) -> dict[str, str]:
-    """The keyword arguments of Panel's `serve` for signing in.
+    """Return the keyword arguments of Panel's `serve` for signing in.
 
-    Panel signs its cookies with a secret of their own. By default this secret is derived from the secret of the
-    sessions, so that all processes with one secret accept each other's cookies, also after a restart.
+    Panel signs its cookies with a separate secret. By default it is derived from the secret of the sessions, so that
+    all processes with the same secret accept each other's cookies, even after a restart.
     """
     if arguments.basic_auth is None and arguments.oauth_provider is None:
         return {}

@@ -13,17 +13,17 @@ from .picture import check_files, write_files
 if TYPE_CHECKING:
     from granchain_core import Run, Scene, Spectrum, Stop, Transfer
 
-#: Lines that are printed.
+#: Number of lines that are printed.
 _SHOWN = 12
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `spectrum`."""
     add_scene(parser)
-    parser.add_argument("--force", default="output", metavar="input|output|elastic", help="whose lines are wanted")
+    parser.add_argument("--force", default="output", metavar="input|output|elastic", help="the force to analyse")
     parser.add_argument("--record", type=whole, default=64, metavar="R",
-                        help="periods recorded of a motion without a period; of an orbit it is one")
-    parser.add_argument("--samples", type=whole, default=256, metavar="S", help="samples a period, an even number")
+                        help="drive periods to record of a motion without a period; of an orbit, its period")
+    parser.add_argument("--samples", type=whole, default=256, metavar="S", help="samples per period, an even number")
     add_out(parser)
     add_json(parser)
     add_picture(parser)
@@ -49,7 +49,7 @@ def do(arguments: argparse.Namespace) -> None:
 
 
 def _motion(chosen: Scene, record: int, samples: int, stop: Stop) -> Run:
-    """The orbit to which a scene settles, or a longer record of a motion that has none."""
+    """Return one period of the orbit to which a scene settles, or a longer record of a motion without a period."""
     from granchain_core import run, settle
 
     settled = settle(chosen, samples=samples, stop=stop)
@@ -67,7 +67,7 @@ def _json(result: Spectrum, through: Transfer | None) -> dict[str, Any]:
 
 
 def _show(result: Spectrum, through: Transfer | None) -> None:
-    """The largest lines as a table."""
+    """Print the largest lines as a table."""
     gains = {} if through is None else dict(zip(through.frequency.tolist(), through.gain.tolist(), strict=True))
     kind = (f"Fourier series of a motion of period {result.period}" if result.period else
             "peaks of a windowed record (not periodic)")

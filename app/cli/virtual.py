@@ -1,4 +1,4 @@
-"""`granchain virtual`: what a rig's sensors would record of a scene, as a CSV file marked as virtual."""
+"""`granchain virtual`: the record that a rig's sensors would make of a scene, as a CSV file marked as virtual."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--kind", default="series", metavar="series|curve", help="a time series, or a resonance curve")
     parser.add_argument("--out", metavar="FILE.csv", help="write a file instead of stdout")
     parser.add_argument("--start", default="settled", metavar="settled|rest",
-                        help="where a series begins: at a random phase of the steady state, or before the shaker does, "
-                             "with a drive period at rest and two in which its amplitude rises")
+                        help="where a series begins: at a random phase of the steady state, or before the shaker "
+                             "starts, with a drive period at rest and two in which its amplitude rises")
     parser.add_argument("--periods", type=whole, default=20, metavar="P", help="drive periods of each record")
     parser.add_argument("--from", type=number, dest="low", metavar="HZ", help="first frequency of a curve")
     parser.add_argument("--to", type=number, dest="high", metavar="HZ", help="last frequency of a curve")
     parser.add_argument("--points", type=whole, default=15, help="frequencies of a curve")
     parser.add_argument("--repeats", type=whole, default=3, help="records at each frequency of a curve")
     parser.add_argument("--scatter", type=number, default=0.0, metavar="PART",
-                        help="scatter of the drive amplitude between the records of a curve, over A0")
-    parser.add_argument("--rate", type=number, default=100_000.0, metavar="HZ", help="samples a second")
+                        help="scatter of the drive amplitude between the records of a curve, as a fraction of A0")
+    parser.add_argument("--rate", type=number, default=100_000.0, metavar="HZ", help="samples per second")
     parser.add_argument("--noise", type=number, default=0.0, metavar="N", help="noise of a force sample, rms")
     parser.add_argument("--velocity-noise", type=number, default=0.0, metavar="M/S", help="noise of a velocity sample")
     add_bandwidth(parser, "")
@@ -81,10 +81,10 @@ def do(arguments: argparse.Namespace) -> None:
 
 
 def _progress(done: int, count: int) -> None:
-    """Show how many of the records there are."""
+    """Show how many of the records are finished."""
     show_percent(done / count)
 
 
 def _rows(text: str) -> int:
-    """Rows of numbers: all lines but the comments and the titles."""
+    """Count the rows of numbers: all lines except the comments and the column titles."""
     return sum(not line.startswith("#") for line in text.splitlines()) - 1

@@ -1,7 +1,7 @@
-"""Answers a browser while `granchain serve` starts: with the page's skeleton, then the page, as soon as there is one.
+"""Answers browsers while `granchain serve` starts: with a skeleton of the page, which reloads when the server is ready.
 
-The server needs some seconds for its imports. Until then a thread of the standard library alone answers every request
-with status 503, so that a health check waits. It listens on this machine only.
+The server needs a few seconds for its imports. Until then, a thread that uses only the standard library answers every
+request with status 503, so that a health check waits. It can be reached only from this machine.
 """
 
 from __future__ import annotations
@@ -13,16 +13,16 @@ from pathlib import Path
 
 from ..plots.theme import style_sheet
 
-#: Longest wait for the head of a request [s].
+#: Longest wait for a request's head [s].
 _LONGEST_WAIT = 2.0
-#: Most that is read of such a head [bytes].
+#: Longest head that is read [bytes].
 _LONGEST_HEAD = 8192
-#: The addresses of this machine at which a visitor on it reaches the server.
+#: The addresses at which a visitor on this machine reaches the server, with their address families.
 _HERE = {"127.0.0.1": socket.AF_INET, "localhost": socket.AF_INET, "::1": socket.AF_INET6}
 
 
 def answer() -> bytes:
-    """The whole answer: the skeleton with the page's own layout and themes."""
+    """Return the complete response: the skeleton with the layout and themes of the page."""
     folder = Path(__file__).resolve().parent
     layout = folder.parent / "dashboard"
     files = [layout / name for name in ("dashboard.css", "skeleton.css")]
@@ -35,7 +35,7 @@ def answer() -> bytes:
 
 
 class Waiting:
-    """Answers at an address of this machine until it is closed; at any other address it does nothing."""
+    """A listener that answers at an address of this machine until it is closed; at other addresses it does nothing."""
 
     def __init__(self, address: str, port: int) -> None:
         self._listening: socket.socket | None = None
@@ -46,7 +46,7 @@ class Waiting:
             listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
             listening.bind((address, port))
             listening.listen()
-        except OSError:  # the server says what is wrong with the port
+        except OSError:  # the server will report what is wrong with the port
             listening.close()
             return
         self._listening, self._answer = listening, answer()
@@ -74,7 +74,7 @@ class Waiting:
         if self._listening is None:
             return
         with contextlib.suppress(OSError):
-            self._listening.shutdown(socket.SHUT_RDWR)  # what waits in accept() comes back
+            self._listening.shutdown(socket.SHUT_RDWR)  # the thread that waits in accept() returns
         self._listening.close()
         self._thread.join()
         self._listening = None

@@ -9,8 +9,8 @@ from .common import say
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `warm`."""
-    parser.add_argument("scene", nargs="*", help="scenes whose kernels are compiled; by default the paper's scenes")
-    parser.add_argument("--list", action="store_true", help="say what is compiled on this machine; compile nothing")
+    parser.add_argument("scene", nargs="*", help="scenes whose kernels to compile; by default the paper's scenes")
+    parser.add_argument("--list", action="store_true", help="list what is compiled on this machine, without compiling")
 
 
 def do(arguments: argparse.Namespace) -> None:

@@ -1,1 +1,1 @@
-"""The pages behind the tabs, a folder each with Python, JavaScript and style; no page knows another."""
+"""The pages behind the tabs: each has a folder with Python, JavaScript and style, and imports no other page."""

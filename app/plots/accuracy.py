@@ -20,7 +20,7 @@ _MARKS = ("circle", "square", "diamond", "triangle", "hex", "star", "inverted_tr
 _NAIVE_MARKS = ("x", "cross", "asterisk")
 _NAIVE_COLOUR = GREY
 _DASHES: dict[str, str | list[int]] = {"granchain": "solid", "naive": [6, 4], "scipy": [2, 4]}
-#: Largest error drawn; larger ones, which tell no more, are drawn here.
+#: Largest error drawn; larger errors, which say nothing more, are drawn at this value.
 _LARGEST_ERROR = 10.0
 _COLUMNS = ("ms", "error", "setting", "tooltip")
 
@@ -29,8 +29,9 @@ _COLUMNS = ("ms", "error", "setting", "tooltip")
 class Annotations:
     """The parts of the figure that are not measurements.
 
-    accuracy : asked for, a fraction of the largest displacement. agreement : of the two references, or None.
-    cheapest : seconds and error of the row that reaches it first; now : those of the page's own setting.
+    accuracy : the requested accuracy, a fraction of the largest displacement. agreement : of the two references, or
+    None. cheapest : time [s] and error of the row that reaches this accuracy in the least time. now : time and error of
+    the page's own setting.
     """
 
     accuracy: float
@@ -40,7 +41,7 @@ class Annotations:
 
 
 def styles() -> dict[str, dict[str, Any]]:
-    """Marker, colour, dash and fill of every way; shape and fill alone tell them apart."""
+    """Return marker, colour, dash and fill of every method; shape and fill alone are enough to tell them apart."""
     properties: dict[str, dict[str, Any]] = {}
     used = {"naive": 0, "other": 0}
     for way in compared_methods().values():
@@ -55,7 +56,7 @@ def styles() -> dict[str, dict[str, Any]]:
 
 
 def points(rows: Sequence[Row]) -> dict[str, dict[str, list[Any]]]:
-    """The columns of every method's source, by its name; a row without a finite error or a time has no point."""
+    """Return the columns of every method's source by its name; a row without a finite error or a time has no point."""
     columns: dict[str, dict[str, list[Any]]] = {
         name: {column: [] for column in _COLUMNS} for name in compared_methods()}
     for row in rows:
@@ -68,8 +69,8 @@ def points(rows: Sequence[Row]) -> dict[str, dict[str, list[Any]]]:
 
 
 def marks(annotations: Annotations, rows: Sequence[Row]) -> dict[str, dict[str, Any]]:
-    """Properties of the models that mark the accuracy asked for, the references' agreement, the cheapest and the
-    present row.
+    """Return the properties of the models that mark the requested accuracy, the agreement of the references, the
+    cheapest row and the present one.
     """
     times = [1e3 * row.wall_s for row in rows if row.wall_s > 0.0] or [1.0]
 
@@ -88,9 +89,9 @@ def marks(annotations: Annotations, rows: Sequence[Row]) -> dict[str, dict[str, 
 
 
 def accuracy(rows: Sequence[Row], annotations: Annotations, theme: Theme, compact: bool = False) -> figure:
-    """Largest error over largest displacement against the processor time of ten drive periods in ms.
+    """Draw largest error over largest displacement against the processor time of ten drive periods in ms.
 
-    The sources have the names of the methods; `points` and `marks` give what changes while a measurement goes on.
+    The sources have the names of the methods; `points` and `marks` return the data that change during a measurement.
     """
     plot = empty_figure(name="accuracy", x_axis_type="log", y_axis_type="log", min_border=4,
                         toolbar_location=None if compact else "right")
@@ -114,7 +115,7 @@ def accuracy(rows: Sequence[Row], annotations: Annotations, theme: Theme, compac
 
 
 def _lines(plot: figure, columns: Mapping[str, dict[str, list[Any]]], compact: bool) -> list[Any]:
-    """A line and marks for every way."""
+    """Draw a line and marks for every method, and return the marks."""
     shown, items = [], []
     for name, style in styles().items():
         source = ColumnDataSource(columns[name], name=name)
@@ -136,7 +137,7 @@ def _lines(plot: figure, columns: Mapping[str, dict[str, list[Any]]], compact: b
 
 
 def _rings(plot: figure, state: Mapping[str, dict[str, Any]], compact: bool) -> list[Any]:
-    """A ring around the cheapest, a cross where the page is now, and, where there is room, words at all marks."""
+    """Draw a ring around the cheapest row, a cross at the page's setting and, if there is room, words at all marks."""
     sources = {name: ColumnDataSource(state[name]["data"], name=name)
             for name in ("asked", "agreement", "cheapest", "now")}
     ring = plot.scatter("ms", "error", source=sources["cheapest"], size=18 if compact else 26, fill_color=None)

@@ -63,9 +63,9 @@ from .spectrum import spectrum
 from .theme import THEMES, Theme
 from .transfer import transfer
 
-#: Width of a figure for which none is given [px]: the width of a notebook's cell.
+#: Default width of a figure [px]: the width of a notebook's cell.
 WIDTH = 900
-#: Height of such a figure [px].
+#: Default height of a figure [px].
 HEIGHT = 420
 
 
@@ -79,8 +79,8 @@ def _pulse(pulse: Pulse, theme: Theme) -> LayoutDOM:
 
 def _curve(swept: Curve, theme: Theme, elastic: bool = False, measured: Measured | None = None) -> LayoutDOM:
     if measured is not None and not isinstance(measured, Measured):
-        raise BadInput("A measured curve is what granchain_core.experiment.read_experiment returns for a table of "
-                       f"frequency and force, not a value of type {type(measured).__name__}.")
+        raise BadInput("A measured curve must be the value that granchain_core.experiment.read_experiment returns for "
+                       f"a table of frequency and force, not a value of type {type(measured).__name__}.")
     return curve([swept], theme, elastic, measured)
 
 
@@ -90,7 +90,7 @@ def _branch(branch: Branch, theme: Theme, now: float | None = None) -> LayoutDOM
 
 def both_maps(result: ParameterMap, theme: Theme, shown: str = "both",
               curves: Sequence[BifurcationCurve] = ()) -> LayoutDOM:
-    """The map of forces above the map of regimes; `shown` is "force" or "regime" for one of them."""
+    """Draw the map of forces above the map of regimes; if `shown` is "force" or "regime", draw only that one."""
     if shown != "both":
         return parameter_map(result, theme, shown, curves=curves)
     both = (parameter_map(result, theme, quantity, curves=curves) for quantity in ("force", "regime"))
@@ -98,7 +98,7 @@ def both_maps(result: ParameterMap, theme: Theme, shown: str = "both",
 
 
 def measured_accuracy(result: WorkPrecision, theme: Theme, asked: float | None = None) -> LayoutDOM:
-    """Error against time, with the cheapest way to the accuracy that the scene or `asked` wants."""
+    """Draw error against time, with the cheapest way to the accuracy `asked`, by default the scene's."""
     wanted = result.scene.accuracy if asked is None else asked
     best = result.cheapest(wanted)
     agreement = result.agreement if math.isfinite(result.agreement) else None
@@ -122,31 +122,31 @@ DRAWERS: dict[type, Callable[..., LayoutDOM]] = {
     Transfer: transfer, LyapunovSpectrum: lyapunov, RotationNumber: rotation, BifurcationDiagram: _bifurcation_diagram,
     Basins: basins, Attractors: attractors,
 }
-#: What draws further figures of a class of results, by the class and what `kind` calls the figure.
+#: The functions that draw further figures, by the class of results and the figure's name in `kind`.
 FURTHER_DRAWERS: dict[tuple[type, str], Callable[..., LayoutDOM]] = {
     **{(Run, name): partial(_bead, name) for name in FIGURES},
     **{(Settled, name): partial(_bead, name) for name in FIGURES},
 }
 _PAPER = (EnergyMaps, Observers, Rig, RigResponse, ShakerAmplitude, Trains, Transmission)
-#: Lists of results that are drawn over each other.
+#: The functions for lists of results that are drawn over each other.
 _TOGETHER: dict[type, Callable[..., LayoutDOM]] = {Curve: curve, Branch: branches}
 
 
 def bokeh_figure_of(result: Any, theme: str = "light", width: int | None = None, height: int | None = None,
                     kind: str = "", **options: Any) -> LayoutDOM:
-    """The figure of a result with its own size; the docstring of `granchain.figure` describes it."""
+    """Draw the figure of a result with a fixed size; the docstring of `granchain.figure` describes the parameters."""
     drawn, size = _drawn(result, theme, kind, options)
     drawn.update(sizing_mode="fixed", width=width or size[0], height=height or size[1])
     return drawn
 
 
 def stretched(result: Any, theme: str = "light", kind: str = "", **options: Any) -> LayoutDOM:
-    """The figure of a result that fills its page."""
+    """Draw the figure of a result so that it fills its page."""
     return _drawn(result, theme, kind, options)[0]
 
 
 def _drawn(result: Any, theme: str, kind: str, options: Mapping[str, Any]) -> tuple[LayoutDOM, tuple[int, int]]:
-    """The figure of a result, and the size in which it reads well."""
+    """Return the figure of a result, and the size in which it is easy to read."""
     if theme not in THEMES:
         raise unknown_name("theme", theme, THEMES)
     draw, size = (_further(result, kind), (WIDTH, HEIGHT)) if kind else _drawing(result)
@@ -161,17 +161,17 @@ def _drawn(result: Any, theme: str, kind: str, options: Mapping[str, Any]) -> tu
 
 
 def _further(result: Any, kind: str) -> Callable[..., LayoutDOM]:
-    """The function that draws a further figure of a result."""
+    """Return the function that draws a further figure of a result."""
     offered = {name: draw for (drawn, name), draw in FURTHER_DRAWERS.items() if isinstance(result, drawn)}
     if not offered:
-        raise BadInput(f"There is no figure of a kind {kind!r} of a {type(result).__name__}; leave the kind out.")
+        raise BadInput(f"A result of type {type(result).__name__} has no figure of the kind {kind!r}; leave it out.")
     if kind not in offered:
         raise unknown_name("kind of figure", kind, tuple(offered))
     return offered[kind]
 
 
 def _drawing(result: Any) -> tuple[Callable[..., LayoutDOM], tuple[int, int]]:
-    """The function that draws a result, and the size in which it reads well."""
+    """Return the function that draws a result, and the size in which it is easy to read."""
     if isinstance(result, _PAPER):
         return paper_figure, size_of(result)
     for kind, draw in DRAWERS.items():
@@ -181,6 +181,6 @@ def _drawing(result: Any) -> tuple[Callable[..., LayoutDOM], tuple[int, int]]:
         for kind, draw in _TOGETHER.items():
             if all(isinstance(item, kind) for item in result):
                 return draw, (WIDTH, HEIGHT)
-    raise BadInput(f"There is no figure of a {type(result).__name__}; there are those of "
+    raise BadInput(f"A result of type {type(result).__name__} has no figure; there are figures of "
                    f"{', '.join(kind.__name__ for kind in DRAWERS)}, of lists of curves or branches, and of the "
                    "results of granchain_core.paper.compute.")

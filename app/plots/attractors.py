@@ -17,9 +17,9 @@ from .themed import apply_theme, empty_figure, themed
 
 
 def attractors(results: Sequence[Attractor], theme: Theme) -> figure:
-    """A mark for each, by its regime; the bar is the 95 % interval of its share.
+    """Draw a mark for each attractor, according to its regime, with a bar for the 95 % interval of its share.
 
-    Without random states the marks stand over their fraction of all starts.
+    Without random states, the marks are at their fraction of all starts.
     """
     drawn = any(attractor.share is not None for attractor in results)
     starts = "random states" if drawn else "starts"

@@ -12,7 +12,7 @@ from ..format import prefixed
 
 @dataclass(frozen=True)
 class Scale:
-    """An axis in SI divided by `factor`, in `unit`."""
+    """The scale of an axis: values in SI, divided by `factor`, are in `unit`."""
 
     title: str
     factor: float
@@ -25,7 +25,7 @@ class Scale:
 
 
 def knob_scale(knob: str, values: Sequence[float] = ()) -> Scale:
-    """The axis of a knob. Metres and newtons get a prefix by the largest value, hertz and combined units none."""
+    """Return the scale of a knob: metres and newtons get a prefix by the largest value, other units do not."""
     quantity = QUANTITIES[knob]
     title = f"{quantity.label} {quantity.symbol}"
     if quantity.unit in ("m", "N") and max(values, default=0.0) > 0.0:
@@ -35,6 +35,6 @@ def knob_scale(knob: str, values: Sequence[float] = ()) -> Scale:
 
 
 def force_scale(title: str, largest: float) -> Scale:
-    """The axis of a force whose largest value [N] is known."""
+    """Return the scale of a force from its largest value [N]."""
     factor, letter = prefixed(largest)
     return Scale(title, factor, f"{letter}N")

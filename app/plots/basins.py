@@ -14,13 +14,13 @@ from .axes import Scale
 from .theme import GREY, Theme
 from .themed import apply_theme, empty_figure
 
-#: Patterns beside the colours, so that the colours need not be told apart.
+#: Patterns in addition to the colours, for readers who cannot tell the colours apart.
 _HATCHES = (" ", "/", "\\", ".", "+", "x", "o", "-")
 _FAILED = "the computation failed or was stopped"
 
 
 def basins(result: Basins, theme: Theme) -> figure:
-    """The plane of starts; grey where the computation failed or was stopped."""
+    """Draw the plane of starts; it is grey where the computation failed or was stopped."""
     x, y, colours = _axis(*result.x), _axis(*result.y), Colorblind[8]
     columns, rows = np.meshgrid(result.x[1] / x.factor, result.y[1] / y.factor)
     number = result.number.ravel()
@@ -45,12 +45,12 @@ def basins(result: Basins, theme: Theme) -> figure:
 
 
 def _axis(coordinate: str, values: np.ndarray) -> Scale:
-    """The axis of a coordinate at the start."""
+    """Return the scale of a coordinate at the start."""
     factor, letter = prefixed(float(np.abs(values).max(initial=0.0)) or 1.0)
     kind, unit = ("displacement", "m") if coordinate[0] == "u" else ("velocity", "m/s")
     return Scale(f"{kind} of bead {coordinate[1:]} at the start", factor, letter + unit)
 
 
 def _spacing(values: np.ndarray) -> float:
-    """The width of a cell."""
+    """Return the width of a cell."""
     return float(np.diff(values).mean()) if len(values) > 1 else 1.0

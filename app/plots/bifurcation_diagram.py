@@ -16,7 +16,7 @@ from .themed import apply_theme, empty_figure
 
 
 def bifurcation_diagram(diagram: BifurcationDiagram, bead: int, theme: Theme) -> figure:
-    """Displacements of bead 1..N at drive phase 0, coloured by the regime of the motion."""
+    """Draw the displacements of a bead (1 to N) at drive phase 0, coloured by the regime of the motion."""
     values, states = diagram.cloud(bead)
     axis = knob_scale(diagram.knob, values.tolist())
     factor, letter = prefixed(float(np.abs(states).max(initial=0.0)) or 1.0)

@@ -1,4 +1,4 @@
-"""Branches of periodic orbits: largest force over the knob, stable solid, unstable dashed, special points by marks."""
+"""Branches of periodic orbits: largest force over the knob, stable solid, unstable dashed, with special points."""
 
 from __future__ import annotations
 
@@ -30,29 +30,29 @@ SPECIAL_STYLES: dict[str, dict[str, Any]] = {
     "multiplier_one": {"marker": "square", "size": 12, "colour": AMBER, "filled": False},
     "grazing": {"marker": "cross", "size": 9, "colour": GREY, "filled": True},
 }
-#: The motions that begin at a sub- or supercritical bifurcation.
+#: The new motions that start at a sub- or supercritical bifurcation.
 _BORN = {"period_doubling": "an orbit of twice the period", "neimark_sacker": "a closed curve of the map"}
-#: Width and dash.
+#: Width and dash of the lines.
 LINES = {"stable": (2.6, "solid"), "unstable": (1.8, [6, 4])}
 _ORBIT = ("x", "y", "tooltip", "elastic", "output", "input", "period", "motion", "residual", "stable", "target", "arm",
           "place")
 _MARK = ("x", "y", "tooltip", "criticality", "place")
 #: Source of the points of the resonance curve behind the branches.
 _CURVE = "curve"
-#: Source of the lines between two neighbouring points of it that both repeat.
+#: Source of the lines between neighbouring points of that curve that are both periodic.
 _CURVE_LINE = "curve line"
 _TITLE = "largest elastic output force"
-#: Diameter of an orbit's target for the pointer [px]; orbits beside a special point have a smaller one.
+#: Diameter of an orbit's target for the pointer [px]; it is smaller for the orbits next to a special point.
 _TARGET = 13
 
 Columns = dict[str, dict[str, list[Any]]]
 
 
 class BranchRows:
-    """Branches as they grow: `add` gives what one more piece of a half-branch adds to the figure's sources.
+    """Branches as they grow: `add` returns the data that a new piece of a half-branch adds to the figure's sources.
 
-    The unit of force is that of the first orbit, or of `largest` [N] where that is known. `orbits` holds all drawn
-    orbits of every half-branch, `special` all special points, in their order; the sources refer to them by number.
+    The unit of force is chosen for `largest` [N] or, if that is not known, for the first orbit. `orbits` has all drawn
+    orbits of every half-branch and `special` all special points, in order; the sources refer to them by number.
     """
 
     def __init__(self, largest: float | None = None) -> None:
@@ -66,7 +66,7 @@ class BranchRows:
         self.special: list[SpecialPoint] = []
 
     def add(self, half: int, branch: Branch, points: list[BranchPoint], special: list[SpecialPoint]) -> dict[str, Any]:
-        """New rows by source, line pieces to append as (source, number, x, y), changed properties of other models."""
+        """Return new rows by source, line pieces to append as (source, number, x, y), and changed model properties."""
         new = drawn_orbits(points, special)
         self._choose_scales(branch.axis.knob, branch.axis.high, new[0].max_output_force_elastic)
         before = self.orbits.setdefault(half, [])
@@ -86,7 +86,7 @@ class BranchRows:
                 "models": self._fresh({f"legend of {s.kind}": {"visible": True} for s in special})}
 
     def curve(self, points: Sequence[CurvePoint]) -> dict[str, Any] | None:
-        """The new points of the resonance curve, in order of frequency; None if there are none."""
+        """Return the data of the resonance curve's points, in order of frequency; None if there is nothing new."""
         points = [point for point in points if np.isfinite(point.max_output_force_elastic)]
         if self._curve_shown or not points:
             return None
@@ -100,12 +100,12 @@ class BranchRows:
                 "models": self._fresh({f"legend of {_CURVE}": {"visible": True}})}
 
     def _choose_scales(self, knob: str, high: float, force: float) -> None:
-        """Units of both axes, unless something is drawn already."""
+        """Choose the units of both axes, unless something has already been drawn."""
         self._force = self._force or force_scale(_TITLE, force)
         self._knob = self._knob or knob_scale(knob, (high,))
 
     def _fresh(self, models: dict[str, dict[str, Any]]) -> dict[str, dict[str, Any]]:
-        """The properties, with the labels of the axes, that have not been sent yet."""
+        """Return the properties, including the axis labels, that have not been sent yet."""
         assert self._knob is not None and self._force is not None
         models = {**models, "knob": {"axis_label": self._knob.label}, "force": {"axis_label": self._force.label}}
         fresh = {name: properties for name, properties in models.items() if name not in self._models}
@@ -120,7 +120,7 @@ class BranchRows:
         return knob / self._knob.factor, force / self._force.factor
 
     def _lines(self, half: int, last: list[BranchPoint], new: list[BranchPoint]) -> list[list[Any]]:
-        """Pieces on which all orbits are stable, or none is; one begins where the last of its half-branch ended."""
+        """Return pieces on which either all orbits are stable or none is; each starts where its half-branch ended."""
         pieces: list[list[Any]] = []
         for point in new:
             source = "stable" if point.stable else "unstable"
@@ -138,10 +138,11 @@ class BranchRows:
 
 
 def branches(drawn: Sequence[Branch], theme: Theme, now: float | None = None, compact: bool = False) -> figure:
-    """The largest elastic output force of periodic orbits over the knob of their branches.
+    """Draw the largest elastic output force of periodic orbits over the knob of their branches.
 
-    `now` is a value of the knob [SI] with a line. Sources have names: "stable" and "unstable" hold lines, "orbits"
-    one row for each orbit, the kinds of special points one for each point; `BranchRows` says what one more orbit adds.
+    `now` is a value of the knob [SI] marked by a line. Sources have names: "stable" and "unstable" contain lines,
+    "orbits" a row for each orbit, and those of the kinds of special points a row for each point. `BranchRows` has the
+    data that a new orbit adds.
     """
     rows = BranchRows(max((p.max_output_force_elastic for branch in drawn for p in branch.points), default=1e-3))
     data: Columns = {**{name: {"x": [], "y": []} for name in (_CURVE, _CURVE_LINE, *LINES)},
@@ -165,7 +166,7 @@ def branches(drawn: Sequence[Branch], theme: Theme, now: float | None = None, co
 
 
 def _put(data: Columns, added: dict[str, Any]) -> None:
-    """Append the points of a piece to the columns."""
+    """Append the rows and line pieces of `added` to the columns."""
     for name, columns in added["rows"].items():
         for column, values in columns.items():
             data[name][column].extend(values)
@@ -209,7 +210,7 @@ def _drawn(data: Columns, theme: Theme, compact: bool) -> figure:
 
 
 def _marks(plot: figure, sources: dict[str, ColumnDataSource], compact: bool) -> dict[str, Any]:
-    """Special points; grazings are too many for a small figure."""
+    """Draw the special points, without grazings in a small figure, for which they are too many."""
     made = {}
     for kind, style in SPECIAL_STYLES.items():
         mark = plot.scatter("x", "y", source=sources[kind], marker=style["marker"], line_color=style["colour"],
@@ -222,7 +223,7 @@ def _marks(plot: figure, sources: dict[str, ColumnDataSource], compact: bool) ->
 
 
 def _tools(plot: figure, targets: Any, items: list[LegendItem]) -> None:
-    """Hover and tap for orbits and special points, and a legend; a click on an entry hides its marks."""
+    """Add hover and tap for orbits and special points, and a legend, where a click on an entry hides its marks."""
     marks = {kind: mark for item in items for mark in item.renderers for kind, words in SPECIAL.items()
              if item.label.value == words}
     born, others = ([mark for kind, mark in marks.items() if (kind in _BORN) is wanted] for wanted in (True, False))
@@ -239,15 +240,15 @@ def _tools(plot: figure, targets: Any, items: list[LegendItem]) -> None:
 
 
 def drawn_orbits(points: list[BranchPoint], special: list[SpecialPoint]) -> list[BranchPoint]:
-    """The orbits that are drawn of a piece of a branch, in order.
+    """Return the orbits to draw of a piece of a branch, in order.
 
-    The two orbits around each special point belong to it: so the line changes its dash where stability changes.
+    They include the two orbits around each special point, so that the line changes its dash where stability changes.
     """
     return sorted([*points, *(p for s in special for p in (s.before, s.after))], key=lambda point: point.arclength)
 
 
 def special_words(special: SpecialPoint, branch: Branch) -> str:
-    """The kind of a special point, its place, and how certain both are."""
+    """Return the kind of a special point, its knob value with the uncertainty, and the evidence for the kind."""
     scale = knob_scale(branch.axis.knob, (branch.axis.high,))
     low, high = special.interval
     words = (f"{SPECIAL[special.kind].removesuffix(' (torus)')} at {special.knob / scale.factor:.4f} ± "
@@ -263,9 +264,9 @@ def special_words(special: SpecialPoint, branch: Branch) -> str:
 
 
 def criticality_words(special: SpecialPoint) -> str:
-    """Whether a period doubling or Neimark–Sacker point is supercritical, and what follows where one side is stable.
+    """Say whether a period doubling or Neimark–Sacker point is supercritical and, if stability changes, what follows.
 
-    Empty for other kinds.
+    Return "" for other kinds.
     """
     new, form = _BORN.get(special.kind), special.normal_form
     if new is None or form is None:
@@ -274,12 +275,12 @@ def criticality_words(special: SpecialPoint) -> str:
     if form.reason or special.before.stable == special.after.stable:
         return words
     if form.criticality == SUPERCRITICAL:
-        return f"{words}: beside it, on the unstable side, {new} attracts"
-    return f"{words}: beside it, on the stable side, {new} repels"
+        return f"{words}: near it, on the unstable side, {new} attracts"
+    return f"{words}: near it, on the stable side, {new} repels"
 
 
 def _orbit_words(point: BranchPoint, branch: Branch) -> tuple[Any, ...]:
-    """The columns of an orbit from `tooltip` to `stable`."""
+    """Return the columns of an orbit from `tooltip` to `stable`."""
     scale = knob_scale(branch.axis.knob, (branch.axis.high,))
     forces = (point.max_output_force_elastic, point.max_output_force, point.max_input_force)
     return (f"{point.knob / scale.factor:.7g} {scale.unit}, period {branch.period}",

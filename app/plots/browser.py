@@ -1,8 +1,8 @@
 """A figure as PNG or SVG, drawn by BokehJS in headless Chromium.
 
-Bokeh's `export_png` and `export_svg` need Selenium and a driver beside the browser. Chromium alone is enough: it takes
-a picture of a page (`--screenshot`), and prints the final DOM of a page (`--dump-dom`), into which a script puts the
-result of BokehJS's `export("svg")`.
+Bokeh's `export_png` and `export_svg` need Selenium and a driver in addition to the browser. Chromium alone is enough:
+it takes a picture of a page (`--screenshot`) and prints the final DOM of a page (`--dump-dom`), into which a script
+puts the result of BokehJS's `export("svg")`.
 """
 
 from __future__ import annotations
@@ -23,15 +23,15 @@ from .chromium import installed_browser
 from .file import CAPTION_LINE, CAPTION_ROOM, CAPTION_SIZE, FONT, caption_height, caption_lines, captioned_html, html_of
 from .theme import Theme
 
-#: Chromium's sandbox does not start for root, the user of many containers; any other user keeps the sandbox.
+#: Chromium's sandbox does not start for root, the user in many containers; for any other user the sandbox is kept.
 _FOR_ROOT = ["--no-sandbox"] if os.geteuid() == 0 else []
 _OPTIONS = ["--headless", *_FOR_ROOT, "--disable-gpu", "--hide-scrollbars", "--no-first-run", "--disable-sync",
             "--disable-background-networking", "--virtual-time-budget=20000"]
-#: Room around the page in the window [px]. The frame of the window takes a part of it; the rest is cut off.
+#: Room around the page in the window [px]. The window's frame takes part of it; the rest is cut off.
 _FRAME_ROOM = 200
 #: Longest time for one figure [s].
 _LONGEST_TIME = 120
-#: Put into the page: once everything is drawn, its SVG stands in an element of its own.
+#: Script added to the page: once everything is drawn, it puts the SVG into an element of its own.
 _EXPORT = """<script>
 const wait = setInterval(() => {
   const drawn = window.Bokeh?.documents?.[0];
@@ -47,22 +47,22 @@ const wait = setInterval(() => {
 
 
 def browser() -> str:
-    """The path of the browser that draws. Raises `BadInput` if none is installed."""
+    """Return the path of the browser that draws. Raise `BadInput` if none is installed."""
     path = installed_browser()
     if path is None:
-        raise BadInput("A PNG or SVG is drawn by Chromium or Chrome and none is on the PATH; install one (on Debian: "
-                       "apt install chromium), or write an HTML file, whose own menu saves a picture.")
+        raise BadInput("A PNG or SVG is drawn by Chromium or Chrome, and neither is on the PATH; install one (on "
+                       "Debian: apt install chromium), or write an HTML file, whose own menu saves a picture.")
     return path
 
 
 def png_of(figure: LayoutDOM, title: str, caption: str, theme: Theme, size: tuple[int, int],
            scale: float = 1.5) -> bytes:
-    """The figure in `size` [px] with its caption as PNG, with `scale` image pixels for each of these pixels."""
+    """Return the figure of `size` [px] with its caption as PNG, with `scale` image pixels per pixel."""
     _without_tools(figure)
     width, height = size[0], size[1] + caption_height(title, caption, size[0])
     with tempfile.TemporaryDirectory(prefix="granchain-") as folder:
         image = Path(folder) / "picture.png"
-        # The page's body is as large as the image, whatever the window's own frame takes.
+        # The page's body is as large as the image, however much of the window its frame takes.
         page = captioned_html(figure, title, caption, theme, body_size=(width, height))
         _run(folder, page, f"--screenshot={image}", f"--force-device-scale-factor={scale}",
              f"--window-size={width + _FRAME_ROOM},{height + _FRAME_ROOM}")
@@ -75,7 +75,7 @@ def png_of(figure: LayoutDOM, title: str, caption: str, theme: Theme, size: tupl
 
 
 def svg_of(figure: LayoutDOM, title: str, caption: str, theme: Theme, size: tuple[int, int]) -> str:
-    """A figure with its title and caption as the text of an SVG image of `size` [px]."""
+    """Return a figure of `size` [px] with its title and caption as the text of an SVG image."""
     _without_tools(figure)
     for plot in _plots(figure):
         plot.output_backend = "svg"
@@ -101,7 +101,7 @@ def _without_tools(figure: LayoutDOM) -> None:
 
 
 def _with_caption(drawn: str, title: str, caption: str, theme: Theme) -> str:
-    """The drawn SVG inside another SVG, with the lines of the caption below."""
+    """Return the drawn SVG inside another SVG, with the lines of the caption below."""
     sizes = re.search(r'<svg[^>]* width="([\d.]+)" height="([\d.]+)"', drawn)
     if sizes is None:
         raise BadInput("The browser's SVG has no size; write an HTML file instead.")
@@ -117,7 +117,7 @@ def _with_caption(drawn: str, title: str, caption: str, theme: Theme) -> str:
 
 
 def _run(folder: str, page: str, *options: str) -> str:
-    """Open a page in the browser; return its output."""
+    """Open a page in the browser and return the browser's output."""
     file = Path(folder) / "page.html"
     file.write_text(page, encoding="utf-8")
     try:

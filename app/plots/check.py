@@ -15,11 +15,11 @@ from .theme import Theme
 from .themed import apply_theme, empty_figure, themed
 
 _LOGARITHM = ", log10"
-#: Figures with at most this many points have a dot at each.
+#: Figures with at most this many points have a dot at each point.
 _MOST_DOTS = 70
 #: Height of the drawing [px].
 _HEIGHT = 250
-#: Height of a line of the legend [px].
+#: Height of a line in the legend [px].
 _LEGEND_LINE = 24
 _STYLES: dict[str, list[dict[str, Any]]] = {
     "ours": [{"colour": "ink", "width": 2.6, "dash": []}, {"colour": "ink", "width": 2.6, "dash": [14, 5]}],
@@ -29,9 +29,9 @@ _TRUTH = {"colour": "steel", "width": 5.0, "dash": []}
 
 
 def check(data: Picture, theme: Theme) -> figure:
-    """The traces of a hard case: granchain's in ink, naive ones dashed and in colour, the true one broad and grey.
+    """Draw the traces of a hard case: granchain's in ink, naive ones dashed and in colour, the true one broad and grey.
 
-    Nothing is drawn where a trace is NaN; a trace that ends before the figure does has a cross at its end.
+    Nothing is drawn where a trace is NaN. A trace that ends before the figure does has a cross at its end.
     """
     labels = [trace.label for trace in data.traces]
     x_label, x_log, x = _axis(data.x_label, data.x)
@@ -59,14 +59,14 @@ def check(data: Picture, theme: Theme) -> figure:
 
 
 def _axis(label: str, values: np.ndarray) -> tuple[str, bool, np.ndarray]:
-    """Label, whether the axis is logarithmic, and the numbers themselves where logarithms are given."""
+    """Return the label, whether the axis is logarithmic, and the numbers, also if their logarithms are given."""
     if label.endswith(_LOGARITHM):
         return label.removesuffix(_LOGARITHM), True, 10.0 ** values
     return label, False, np.asarray(values, dtype=np.float32)
 
 
 def _styles(labels: Sequence[str]) -> list[dict[str, Any]]:
-    """The style of each line. If no label names granchain, all lines are granchain's."""
+    """Return the style of each line. If no label names granchain, all lines are granchain's."""
     named = any(label.startswith("granchain") for label in labels)
     used = {"ours": 0, "naive": 0}
     styles = []
@@ -81,7 +81,7 @@ def _styles(labels: Sequence[str]) -> list[dict[str, Any]]:
 
 
 def _points(plot: figure, source: ColumnDataSource, number: int, style: dict[str, Any]) -> None:
-    """Dots where there are few points, and the cross at the last point of a trace that breaks off."""
+    """Draw dots if there are few points, and a cross at the last point of a trace that breaks off."""
     x, y = (np.asarray(source.data[name]) for name in ("x", str(number)))
     if len(x) <= _MOST_DOTS:
         themed(plot.scatter("x", str(number), source=source, size=5, line_color=None), fill_color=style["colour"])

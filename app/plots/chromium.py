@@ -1,7 +1,7 @@
 """The browser that draws files and runs the tests: the names of its program.
 
-This module imports the standard library alone: `.ci/run` and the command of README.md call it (`python -m
-app.plots.chromium`) before anything is installed. It prints the path, and fails where there is none.
+This module imports only the standard library, because `.ci/run` and the test command of README.md call it (`python -m
+app.plots.chromium`) before anything is installed. It prints the path, and fails if there is none.
 """
 
 from __future__ import annotations
@@ -9,13 +9,13 @@ from __future__ import annotations
 import shutil
 import sys
 
-#: The program without windows draws a page in a quarter less processor time.
+#: The program without windows needs a quarter less processor time to draw a page.
 _WITHOUT_WINDOWS = ("chromium-headless-shell",)
 _WITH_WINDOWS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
 
 
 def installed_browser(with_window: bool = False) -> str | None:
-    """The path of Chromium or Chrome, one that can show a window if that is asked; None if none is on the PATH."""
+    """Return the path of Chromium or Chrome, None if none is on the PATH; `with_window` requires one with windows."""
     names = (*(() if with_window else _WITHOUT_WINDOWS), *_WITH_WINDOWS)
     return next((path for name in names if (path := shutil.which(name))), None)
 

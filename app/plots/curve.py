@@ -25,26 +25,26 @@ from .themed import apply_theme, empty_figure, themed
 
 @dataclass(frozen=True)
 class SweepStyle:
-    """How a curve is drawn by its start: no dashes, which on branches mean unstable.
+    """How a curve is drawn, depending on its start; there are no dashes, which mean unstable on branches.
 
     Attributes
     ----------
     words : str
         The start in words.
     label : str
-        The same for a choice beside the curve, with a piece of the line.
+        The same for the selector next to the curve, with a piece of the line.
     role : str
-        The role in a theme of the line's colour, which is the same in every theme.
+        The theme role of the line's colour, which is the same in every theme.
     colour_word : str
         That colour in a word.
     width, alpha : float
         Width [px] and opacity of the line.
     level : str
-        Bokeh's level of the line: the broad line lies below the others, so that all are seen where they coincide.
+        Bokeh's level of the line: the broad line is below the others, so that all are visible where they coincide.
     filled : bool
         Whether the marks are filled.
     larger : int
-        By how much the marks are larger [px]: hollow ones surround the filled ones of another curve.
+        By how much the marks are larger [px]: hollow marks surround the filled ones of another curve.
     meaning : str
         How the points were computed.
     """
@@ -67,7 +67,7 @@ class SweepStyle:
 
     @property
     def line_words(self) -> str:
-        """The line and the marks in words."""
+        """The description of the line and the marks."""
         width = "broad " if self.width > SWEEPS["rest"].width else "thin " if self.width < SWEEPS["rest"].width else ""
         return f"{width}{self.colour_word} line{'' if self.filled else ' with hollow marks'}"
 
@@ -83,15 +83,14 @@ SWEEPS = {
 }
 #: The meaning of the lines in a sentence.
 KEY = "; ".join(f"{style.line_words}: {style.words}" for style in SWEEPS.values()).capitalize() + "."
-#: A tooltip's lines for the columns of `forces_in_words`.
+#: The lines of a tooltip for the columns of `forces_in_words`.
 FORCES = [("largest output force", "@total"), ("its elastic part", "@elastic"), ("largest input force", "@input")]
 
 
 def curve(sweeps: Sequence[Curve], theme: Theme, elastic: bool = False, measured: Measured | None = None) -> figure:
-    """Curves over one frequency axis, one for each way of sweeping; a computation that failed has no point.
+    """Draw curves over one frequency axis, one for each way of sweeping; a failed computation has no point.
 
-    `elastic` draws the elastic part of the output force, as the paper does; a curve that was `measured` is drawn over
-    it.
+    With `elastic`, draw the elastic part of the output force, as the paper does. A `measured` curve is drawn over it.
     """
     drawn = "max_output_force_elastic" if elastic else "max_output_force"
     largest = max((getattr(p, drawn) for sweep in sweeps for p in sweep.points if math.isfinite(p.max_output_force)),
@@ -128,21 +127,21 @@ def curve(sweeps: Sequence[Curve], theme: Theme, elastic: bool = False, measured
 
 
 def curve_line(start: str) -> dict[str, Any]:
-    """The properties of the line through a curve, here and on the page."""
+    """Return the properties of the line through a curve, here and on the page."""
     style = SWEEPS[start]
     return {"x": "frequency", "y": "force", "line_width": style.width, "line_alpha": style.alpha}
 
 
 def curve_marks(start: str) -> dict[str, Any]:
-    """The properties of a curve's marks, here and on the page."""
+    """Return the properties of a curve's marks, here and on the page."""
     return {"x": "frequency", "y": "force", "marker": "marker", "size": "size", "line_color": "colour",
             "line_width": 1.5, "fill_color": "colour" if SWEEPS[start].filled else None}
 
 
 def line_pieces(points: Sequence[CurvePoint]) -> list[list[int]]:
-    """Runs of neighbouring points, by their places, through which one line goes.
+    """Return runs of neighbouring points, by their indices, that one line connects.
 
-    A line does not connect a periodic point with one that is not periodic: their maxima are not comparable.
+    A line does not connect a periodic point with a point that is not periodic, because their maxima are not comparable.
     """
     pieces: list[list[int]] = []
     for index, point in enumerate(points):
@@ -155,10 +154,10 @@ def line_pieces(points: Sequence[CurvePoint]) -> list[list[int]]:
 
 def curve_columns(points: Sequence[CurvePoint], factor: float, larger: int = 0,
                   drawn: str = "max_output_force") -> dict[str, list[Any]]:
-    """Columns for a line, its marks and their tooltips.
+    """Return the columns for a line, its marks and their tooltips.
 
-    The force `drawn` is drawn over `factor` [N], marks `larger` px larger. Between two `line_pieces` a row without a
-    force breaks the line.
+    The force `drawn` is divided by `factor` [N], and marks are `larger` px larger. Between two `line_pieces`, a row
+    without a force breaks the line.
     """
     shown: list[CurvePoint] = []
     forces: list[float] = []
@@ -178,12 +177,12 @@ def curve_columns(points: Sequence[CurvePoint], factor: float, larger: int = 0,
 
 
 def curve_tooltips(start: str) -> list[tuple[str, str]]:
-    """The lines of a tooltip over `curve_columns`."""
+    """Return the lines of a tooltip for `curve_columns`."""
     return [("drive frequency", "@frequency{0.0} Hz"), *FORCES, ("motion", "@sentence"), ("start", SWEEPS[start].words)]
 
 
 def forces_in_words(points: Sequence[CurvePoint]) -> dict[str, list[str]]:
-    """The largest forces of every point with their relative errors."""
+    """Return the largest forces of every point in words, with their relative errors."""
     return {"total": [_force(p.max_output_force, p.force_errors.output) for p in points],
             "elastic": [_force(p.max_output_force_elastic, p.force_errors.elastic) for p in points],
             "input": [_force(p.max_input_force, p.force_errors.input) for p in points]}
@@ -191,7 +190,7 @@ def forces_in_words(points: Sequence[CurvePoint]) -> dict[str, list[str]]:
 
 @functools.lru_cache(maxsize=4096)
 def _force(newtons: float, relative: float | None) -> str:
-    """Remembered: a growing curve is drawn again and again, for every session of a class."""
+    """Return a force in words; cached, because a growing curve is drawn repeatedly, in every session of a class."""
     error = ", no error stated" if relative is None else f", relative error {short_error(relative)}"
     return in_words(newtons, "N", figures_of(relative, 5)) + error
 

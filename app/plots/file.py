@@ -15,11 +15,11 @@ from .theme import Theme
 
 #: Fonts of a caption.
 FONT = "system-ui, DejaVu Sans, sans-serif"
-#: Size of the text of a caption, and the height of a line [px].
+#: Size of a caption's text, and the height of a line [px].
 CAPTION_SIZE, CAPTION_LINE = 15, 20
 #: Room around a caption [px].
 CAPTION_ROOM = 22
-#: Width of a character of a caption, on average [px].
+#: Average width of a character in a caption [px].
 _CHARACTER_WIDTH = 7.6
 _PAGE = """{%% block contents %%}
 <style>
@@ -34,13 +34,13 @@ _PAGE = """{%% block contents %%}
 
 
 def html_of(figure: LayoutDOM, title: str) -> str:
-    """A whole page with a figure that fills the window; BokehJS is part of the page."""
+    """Return a complete page with a figure that fills the window; BokehJS is part of the page."""
     return _page(figure, title)
 
 
 def captioned_html(figure: LayoutDOM, title: str, caption: str, theme: Theme,
                    body_size: tuple[int, int] | None = None) -> str:
-    """A whole page with a figure, its title in bold and its caption, as large as `body_size` [px] or the window."""
+    """Return a page with a figure, its title in bold and its caption; it is `body_size` [px] or the window's size."""
     body = "" if body_size is None else f"width: {body_size[0]}px; height: {body_size[1]}px;"
     words = f"<b>{html.escape(title)}.</b> {html.escape(caption)}".replace("{", "&#123;")
     template = _PAGE % {"card": theme.card, "ink": theme.ink, "body": body, "size": CAPTION_SIZE,
@@ -49,15 +49,15 @@ def captioned_html(figure: LayoutDOM, title: str, caption: str, theme: Theme,
 
 
 def _page(figure: LayoutDOM, title: str, **options: Any) -> str:
-    """Bokeh's page."""
+    """Return Bokeh's page."""
     return with_own_document(lambda: str(file_html(figure, INLINE, title, **options)))
 
 
 def caption_height(title: str, caption: str, width: int) -> int:
-    """Height of a caption in a window of this width [px]."""
+    """Return the height of a caption in a window of this width [px]."""
     return CAPTION_ROOM + CAPTION_LINE * len(caption_lines(title, caption, width))
 
 
 def caption_lines(title: str, caption: str, width: float) -> list[str]:
-    """Title and caption, divided into lines of this width [px]."""
+    """Return title and caption, divided into lines of this width [px]."""
     return wrap(f"{title}. {caption}", int(width / _CHARACTER_WIDTH))

@@ -1,4 +1,4 @@
-"""A fit: the data over the model, residuals below, and for every parameter the misfit's landscape with its profile."""
+"""A fit: the data over the model, residuals below, and each parameter's misfit landscape with its profile."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ from .themed import apply_theme, empty_figure, themed
 
 #: Most parameters whose landscape is drawn.
 _MOST_LANDSCAPES = 4
-#: Most drive periods of a series that are drawn.
+#: Most drive periods drawn of a series.
 _MOST_PERIODS = 3
 #: Height of the residuals divided by the height of the data.
 _RESIDUALS_HEIGHT = 0.42
-#: Least rise above the minimum that is drawn on the logarithmic axis.
+#: Smallest rise above the minimum that is drawn on the logarithmic axis.
 _SMALLEST_RISE = 1e-2
 
 
 def fit(result: Fit, theme: Theme) -> LayoutDOM:
-    """The data and the model on the left, the landscapes on the right."""
+    """Draw the data and the model on the left, the landscapes on the right."""
     target = result.target
     if isinstance(target, CurveTarget):
         left = _curve(result, target, theme)
@@ -47,7 +47,7 @@ def fit(result: Fit, theme: Theme) -> LayoutDOM:
 
 
 def _line(plot: figure, curve: Curve, name: str, factor: float) -> None:
-    """The model's curve with its regimes."""
+    """Draw the model's curve with its regimes."""
     points = [p for p in curve.points if math.isfinite(p.max_output_force)]
     source = ColumnDataSource(name="model", data=curve_columns(points, factor, 2, name))
     themed(plot.line("frequency", "force", source=source), line_color="output", line_width=1.8)
@@ -86,14 +86,14 @@ def _features(result: Fit, target: FeatureTarget, theme: Theme) -> LayoutDOM:
         if math.isfinite(model):
             plot.add_layout(themed(Span(location=float(model), dimension="height"), line_color=role, line_width=0.8))
     plot.yaxis.axis_label, plot.xaxis.axis_label = scale.label, knob_scale("f").label
-    plot.title.text = "Dotted: stated; thin: the model's nearest of its kind (peak red, valley grey)"
+    plot.title.text = "Dotted: stated; thin: the model's nearest of the same kind (peak red, valley grey)"
     below = residuals_over(target.frequencies, result.evaluation.residuals, "residual / σ")
     below.x_range = plot.x_range
     return _stacked(apply_theme(plot, theme), apply_theme(below, theme))
 
 
 def _records(result: Fit, target: RecordsTarget, theme: Theme) -> LayoutDOM:
-    """Each record over the model, below the one before."""
+    """Draw each record over the model, below the previous record."""
     figures: list[LayoutDOM] = []
     for record, samples, _ in target.parts(result.evaluation):
         assert record.frequency is not None
@@ -103,7 +103,7 @@ def _records(result: Fit, target: RecordsTarget, theme: Theme) -> LayoutDOM:
 
 
 def _series(target: SeriesTarget, models: np.ndarray, period: float, title: str, theme: Theme) -> figure:
-    """The first periods [s] of the measured forces over the model's, those of all channels in a row."""
+    """Draw the first periods of the measured forces over the model's; `models` has those of all channels in a row."""
     channels, time = target.channels, target.time
     count = min(len(time), int(np.searchsorted(time, _MOST_PERIODS * period)) + 1)
     scale = force_scale("force", max(float(np.abs(values).max()) for values in channels.values()))
@@ -128,7 +128,7 @@ def _stacked(above: figure, below: figure) -> LayoutDOM:
 
 
 def _landscape(result: Fit, i: int, theme: Theme) -> figure:
-    """χ² above its least over one parameter: every set that was evaluated, the profile, and the interval."""
+    """Draw χ² above its minimum over one parameter: every set that was evaluated, the profile, and the interval."""
     parameter, (values, misfits) = result.free[i], result.landscape
     axis = _axis(parameter)
     plot = empty_figure(name=f"landscape of {parameter.name}", min_border=4, y_axis_type="log",
@@ -152,7 +152,7 @@ def _landscape(result: Fit, i: int, theme: Theme) -> figure:
 
 
 def _axis(parameter: Free) -> Scale:
-    """A parameter's axis: metres and newtons get a prefix."""
+    """Return the scale of a parameter; metres and newtons get a prefix."""
     unit = "" if parameter.unit == "1" else parameter.unit
     if unit not in ("m", "N"):
         return Scale(parameter.name, 1.0, unit)

@@ -1,7 +1,7 @@
 """The force and drive lines of a motion, the same for the page and for files: titles, colours, columns of data.
 
-On the left the input force over the lower axis and the drive over the upper one, on the right the output force and its
-elastic part.
+On the left are the input force, over the lower axis, and the drive, over the upper one. On the right are the output
+force and its elastic part.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from .theme import Theme
 
 @dataclass(frozen=True)
 class LineStyle:
-    """A line: the titles of its axis, its role in a theme, its width [px] and dashes."""
+    """The style of a line: the titles of its axis, its role in a theme, its width [px] and dashes."""
 
     title: str
     short: str
@@ -26,11 +26,11 @@ class LineStyle:
 
     @property
     def colour(self) -> str:
-        """The line's colour, which is the same in every theme (not of the role `ink`)."""
+        """The line's colour, which is the same in every theme (not for the role `ink`)."""
         return str(getattr(Theme, self.role))
 
     def label(self, unit: str, compact: bool = False) -> str:
-        """The title of the axis, shorter where there is little room."""
+        """Return the title of the axis, shorter if `compact`."""
         return f"{self.short if compact else self.title} ({unit})"
 
 
@@ -43,13 +43,13 @@ MEASURED = LineStyle("measured", "measured", "ink", 1.4)
 
 
 def columns(time: np.ndarray, **lines: tuple[np.ndarray, float]) -> dict[str, np.ndarray]:
-    """Lines with points at `time`: for each its values, and the unit in which they are drawn."""
+    """Return the columns of lines with points at `time`; each line is given by its values and their unit."""
     scaled = {"time": time, **{name: values / unit for name, (values, unit) in lines.items()}}
     return {name: np.asarray(values, dtype=np.float32) for name, values in scaled.items()}
 
 
 def force_columns(time: np.ndarray, force: np.ndarray, unit: float, jumps: np.ndarray,
                   scale: float = 1.0) -> dict[str, np.ndarray]:
-    """A force whose `jumps` (J, 2) have points of their own between the rows; `scale` takes their times to the axis."""
+    """Return a force whose `jumps` (J, 2) have points between the rows; `scale` converts their times to the axis."""
     at, values = with_jumps(time, force, jumps * np.array([scale, 1.0]))
     return columns(at, force=(values, unit))

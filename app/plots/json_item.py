@@ -1,4 +1,4 @@
-"""A figure as Bokeh's JSON, as pages send it to the browser, and what Bokeh makes without a session's document."""
+"""Figures as Bokeh's JSON, which pages send to the browser, and Bokeh's output without a session's document."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ T = TypeVar("T")
 
 
 def figure_item(figure: LayoutDOM) -> dict[str, Any]:
-    """Bokeh's JSON of a figure."""
+    """Return Bokeh's JSON of a figure."""
     return with_own_document(lambda: dict(json_item(figure)))
 
 
 def with_own_document(make: Callable[[], T]) -> T:
-    """The result of `make`, called with a new document as Bokeh's current one.
+    """Call `make` with a new document as Bokeh's current one, and return the result.
 
-    Bokeh asks for the current document and keeps only a weak reference to it. An error in the document of another
-    session may have left that one current for the whole process; once that session has ended, asking for it fails.
+    Bokeh asks for the current document and keeps only a weak reference to it. An error in another session's document
+    may have left that document current for the whole process; once that session has ended, asking for it fails.
     """
     own, failure = Document(), None
-    with patch_curdoc(own):  # it is not taken back where an error passes through it
+    with patch_curdoc(own):  # an error that passed through it would leave this document current
         try:
             return make()
         except Exception as problem:

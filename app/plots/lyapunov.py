@@ -1,4 +1,4 @@
-"""Lyapunov exponents by size with their standard errors; those that are not resolved are hollow."""
+"""Lyapunov exponents in order of size, with their standard errors; unresolved exponents are hollow."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from .themed import apply_theme, empty_figure, themed
 
 
 def lyapunov(result: LyapunovSpectrum, theme: Theme) -> figure:
-    """The exponents per drive period; above the line neighbours separate."""
-    rank = np.arange(1, len(result.exponents) + 1)  # as the command numbers them
+    """Draw the exponents per drive period; above the line of zero, neighbouring trajectories separate."""
+    rank = np.arange(1, len(result.exponents) + 1)  # numbered as by the command
     source = ColumnDataSource({"rank": rank, "exponent": result.exponents, "error": result.errors,
                                "low": result.exponents - result.errors, "high": result.exponents + result.errors,
                                "fill": np.where(rank <= result.resolved, 1.0, 0.0)}, name="exponents")

@@ -21,7 +21,7 @@ TOOLTIPS = [("", "@word"), ("frequency", "@frequency{0.0} Hz"), ("force", "@valu
 
 def measured_columns(measured: Measured, factor: float, residuals: np.ndarray | None = None,
                      sigma: np.ndarray | None = None) -> dict[str, list[Any]]:
-    """Columns for points, their bars and tooltips; bars are the stated errors, the repeats' extremes, or `sigma` [N].
+    """Return columns for points, bars and tooltips; bars are stated errors, the repeats' extremes, or `sigma` [N].
 
     `residuals` are model − measured [N], NaN where there is no model.
     """
@@ -50,7 +50,7 @@ def measured_over(plot: figure, measured: Measured, factor: float, sigma: np.nda
 
 
 def residuals_over(frequencies: np.ndarray, residuals: np.ndarray, unit: str) -> figure:
-    """Residuals over the frequency, with the line of zero."""
+    """Draw residuals over the frequency, with a line at zero."""
     plot = empty_figure(name="residuals", min_border=4)
     plot.add_layout(themed(Span(location=0, dimension="width"), line_color="soft", line_width=1.0))
     source = ColumnDataSource(name="residuals", data={"frequency": frequencies, "residual": residuals})

@@ -1,9 +1,9 @@
 """A motion over time, which runs downwards: drive and input force, kinetic energy over the beads, output force.
 
 The arrangement, titles, colours and lines are those of the page's main picture (`force_lines`, `energies`). The page
-draws its main picture in app/parts/time_figures, because that follows every knob: its figures are made once and get new
-data only, all its axes can change their range, and the chain stands above the energies. Here the axes are as long as
-the motion needs, and the energies have numbers below, a bar and a title.
+draws its main picture in app/parts/time_figures, because that follows every knob: its figures are created once and only
+get new data, all its axes can change their range, and the chain is above the energies. Here the axes are as long as the
+motion needs, and the energies have numbers below, a colour bar and a title.
 """
 
 from __future__ import annotations
@@ -35,12 +35,12 @@ from .themed import apply_theme, empty_figure, follow_theme, themed
 
 #: Most rows of the energy map, and most points of a line.
 _MOST_ROWS = 2000
-#: Width of the panels beside the energies [px].
+#: Width of the panels next to the energies [px].
 _SIDE_WIDTH = 190
 
-#: A motion with what its driver did: harmonic for a number of periods, or by a signal.
+#: A recorded motion of a chain whose driver moved harmonically, or by a signal.
 Recorded = Run | Driven
-#: A factor in SI and the unit that it makes.
+#: A factor in SI and the name of the unit that it represents.
 Scaled = tuple[float, str]
 
 
@@ -55,7 +55,7 @@ class Units:
 
     @classmethod
     def of(cls, run: Recorded) -> Units:
-        """Units in which the numbers of a run read well."""
+        """Return units in which the numbers of a run are easy to read."""
         def unit(values: np.ndarray, name: str) -> Scaled:
             factor, letter = prefixed(float(np.abs(values).max()))
             return factor, letter + name
@@ -65,12 +65,12 @@ class Units:
 
 
 def motion(run: Recorded, theme: Theme) -> LayoutDOM:
-    """A recorded motion, arranged as on the page; a long one is thinned out evenly."""
+    """Draw a recorded motion, arranged as on the page; a long motion is thinned out evenly."""
     return row(_panels(run, theme), sizing_mode="stretch_both")
 
 
 def driven(run: Driven, theme: Theme, measured: Series | None = None) -> LayoutDOM:
-    """A driven motion with the measured forces of its series over the computed ones, as thin lines."""
+    """Draw a driven motion, with the measured forces of its series as thin lines over the computed ones."""
     panels = _panels(run, theme)
     if measured is None:
         return row(panels, sizing_mode="stretch_both")
@@ -85,7 +85,7 @@ def driven(run: Driven, theme: Theme, measured: Series | None = None) -> LayoutD
 
 
 def _panels(run: Recorded, theme: Theme) -> list[figure]:
-    """The drive with the input force, the energies, and the output force."""
+    """Draw the drive with the input force, the energies, and the output force."""
     units, index = Units.of(run), np.arange(0, len(run.time), max(1, -(-len(run.time) // _MOST_ROWS)))
     seconds = run.time[index]
     time = Range1d(float(seconds[-1]) / units.time[0], float(seconds[0]) / units.time[0])
@@ -105,9 +105,9 @@ def _measured_over(plot: figure, measured: Series, force: np.ndarray, units: Uni
 
 def drive_panel(run: Recorded, index: np.ndarray, seconds: np.ndarray, time: Range1d, units: Units, theme: Theme,
                 jumps: bool = False) -> figure:
-    """The force on bead 1 over the lower axis, the driver's displacement over the upper one.
+    """Draw the force on bead 1 over the lower axis, and the driver's displacement over the upper one.
 
-    `index` are the rows that are drawn, at `seconds`. `jumps` adds the points at which the force jumps.
+    `index` selects the rows that are drawn, at `seconds`. `jumps` adds the points at which the force jumps.
     """
     (second, second_unit), (length, length_unit), (force, force_unit) = units.time, units.length, units.force
     farthest = run.scene.A0 if isinstance(run, Run) else float(np.abs(run.drive_displacement).max())
@@ -132,7 +132,7 @@ def drive_panel(run: Recorded, index: np.ndarray, seconds: np.ndarray, time: Ran
 
 
 def energy_panel(run: Recorded, index: np.ndarray, time: Range1d, units: Units, theme: Theme) -> figure:
-    """Kinetic energy over bead and time, between the ends of the range `time`, in the colours of the page."""
+    """Draw the kinetic energy over bead and time, between the ends of the range `time`, in the page's colours."""
     factor, unit = units.energy
     values = np.asarray(run.kinetic_energy[index] / factor, dtype=np.float32)
     beads = values.shape[1]
@@ -150,7 +150,7 @@ def energy_panel(run: Recorded, index: np.ndarray, time: Range1d, units: Units, 
 
 
 def _named(run: Recorded) -> str:
-    """The drive of the chain and, if there is one, the regime."""
+    """Return the drive of the chain in words, with the regime if there is one."""
     if not isinstance(run, Run):
         return run.signal.words
     if not run.scene.is_driven:
@@ -160,7 +160,7 @@ def _named(run: Recorded) -> str:
 
 
 def _output_panel(run: Recorded, index: np.ndarray, time: Range1d, units: Units, theme: Theme) -> figure:
-    """The force on the wall, and dashed its elastic part."""
+    """Draw the force on the wall, with its elastic part dashed."""
     force, unit = units.force
     low = min(0.0, float(run.output_force.min()) / force)
     high = run.max_output_force / force or 1.0
@@ -177,19 +177,19 @@ def _output_panel(run: Recorded, index: np.ndarray, time: Range1d, units: Units,
 
 
 def _line(plot: figure, style: LineStyle, source: ColumnDataSource, column: str = "force", **options: Any) -> None:
-    """A line of the motion; `column` of the source is drawn over its time."""
+    """Draw a line of the motion: `column` of the source over time."""
     line = plot.line(column, "time", source=source, line_dash=list(style.dash), **options)
     themed(line, line_color=style.role, line_width=style.width)
 
 
 def _axis(axis: Any, style: LineStyle, unit: str, theme: Theme) -> None:
-    """The axis of a line: its label has the line's colour, which says whose axis it is where there are two."""
+    """Style the axis of a line: its label has the line's colour, which shows whose axis it is if there are two."""
     axis.update(axis_label=style.label(unit), axis_label_text_color=getattr(theme, f"{style.role}_text"),
                 ticker=BasicTicker(desired_num_ticks=3))
 
 
 def _forces(run: Recorded, contact: int, index: np.ndarray, seconds: np.ndarray, units: Units) -> dict[str, np.ndarray]:
-    """A contact's force with the points at which it jumps, between the rows; the knots of a signal have none."""
+    """Return a contact's force with the points at which it jumps; a motion under a signal records no jumps."""
     jumps = np.stack(run.jumps.of(contact), axis=1) if isinstance(run, Run) else np.zeros((0, 2))
     jumps = jumps[(jumps[:, 0] >= run.time[0]) & (jumps[:, 0] <= run.time[-1])]
     second, force = units.time[0], units.force[0]

@@ -19,15 +19,15 @@ from ..format import duration
 from .theme import Theme
 from .themed import apply_theme, empty_figure, themed
 
-#: Multipliers farther out are drawn at the edge, with their modulus beside them.
+#: Multipliers farther out are drawn at the edge, with their modulus next to them.
 _LARGEST_DRAWN = 2.4
-#: Least half-width of the plane: the unit circle with some room.
+#: Smallest half-width of the plane: the unit circle with some room.
 _AROUND = 1.18
-#: A mark of a smaller modulus is small.
+#: Multipliers of a smaller modulus have a small mark.
 _SMALL_MARK = 0.02
-#: A mark of a smaller modulus has no trail.
+#: Multipliers of a smaller modulus have no trail.
 _NO_TRAIL = 0.05
-#: Marks of successive orbits that are farther apart than this are not joined.
+#: Marks of successive orbits are not joined if they are farther apart than this.
 _LONGEST_TRAIL_STEP = 0.35
 _SETS = {"within": "dies out", "outside": "grows", "observer within": "observer",
          "observer outside": "observer, grows"}
@@ -35,15 +35,15 @@ _MARK = ("x", "y", "size", "value", "modulus", "angle", "decay", "rank")
 
 
 def multipliers(orbit: Orbit, theme: Theme, rank: int | None = None) -> figure:
-    """The multipliers of an orbit, and of its observer where they were computed, about the unit circle.
+    """Draw the multipliers of an orbit and, if they were computed, of its observer, with the unit circle.
 
-    `rank` is the place of one that is ringed.
+    `rank` is the index of the multiplier that gets a ring.
     """
     return plane(plane_state(orbit, orbit.observer_multipliers is not None, rank), theme)
 
 
 def plane(state: dict[str, dict[str, Any]], theme: Theme, compact: bool = False) -> figure:
-    """The plane drawn from `state`: properties by model name, as `plane_state` returns them."""
+    """Draw the plane from `state`: properties by model name, as `plane_state` returns them."""
     sources = {name: ColumnDataSource(name=name, **properties)
                for name, properties in state.items() if "data" in properties}
     ranges = {axis: DataRange1d(range_padding=0.0) for axis in ("x_range", "y_range")}
@@ -72,7 +72,7 @@ def plane(state: dict[str, dict[str, Any]], theme: Theme, compact: bool = False)
 
 
 def _circle(plot: figure, compact: bool) -> None:
-    """The unit circle, the circle |μ| = 1/2, and both axes."""
+    """Draw the unit circle, the circle |μ| = 1/2, and both axes."""
     inside = plot.circle(0, 0, radius=1.0, fill_alpha=0.07, level="underlay")
     themed(inside, line_color="ink", line_width=2.0, fill_color="accent")
     plot.grid.visible = False
@@ -86,7 +86,7 @@ def _circle(plot: figure, compact: bool) -> None:
 
 
 def _marks(plot: figure, sources: dict[str, ColumnDataSource], compact: bool) -> list[LegendItem]:
-    """A renderer and an entry of the legend for each set."""
+    """Draw the marks of each set, and return its entry in the legend."""
     shown = {}
     for name in _SETS:
         observer, outside = name.startswith("observer"), name.endswith("outside")
@@ -111,9 +111,9 @@ def _marks(plot: figure, sources: dict[str, ColumnDataSource], compact: bool) ->
 
 def plane_state(orbit: Orbit | None, observer: bool = False, rank: int | None = None,
                 before: Sequence[np.ndarray] = ()) -> dict[str, dict[str, Any]]:
-    """Properties of the plane's sources by their names.
+    """Return the properties of the plane's sources by their names.
 
-    `observer` adds the observer's multipliers; `before` are those of earlier orbits of the same period, oldest first.
+    `observer` adds the observer's multipliers; `before` has those of earlier orbits of the same period, oldest first.
     """
     own = np.zeros(0, dtype=complex) if orbit is None else orbit.multipliers
     others = orbit.observer_multipliers if observer and orbit is not None else None
@@ -141,7 +141,7 @@ def plane_state(orbit: Orbit | None, observer: bool = False, rank: int | None = 
 
 
 def multiplier_words(mu: complex, orbit: Orbit) -> tuple[str, str, str, str]:
-    """One multiplier in words: itself, its modulus, its angle as a frequency, its decay time."""
+    """Return a multiplier in words: its value, its modulus, its angle as a frequency, its decay time."""
     size, n = abs(mu), orbit.period
     turn = abs(cmath.phase(mu)) / (2.0 * math.pi)
     decay = ""
@@ -156,7 +156,7 @@ def multiplier_words(mu: complex, orbit: Orbit) -> tuple[str, str, str, str]:
 
 
 def _shown(mu: complex, reach: float) -> tuple[float, float]:
-    """Where a multiplier is drawn."""
+    """Return the place where a multiplier is drawn."""
     shrink = 0.9 * reach / abs(mu) if abs(mu) > reach else 1.0
     return shrink * mu.real, shrink * mu.imag
 
@@ -168,7 +168,7 @@ def _size(modulus: float, kind: str) -> float:
 
 
 def _trail(sets: Sequence[np.ndarray]) -> dict[str, dict[str, Any]]:
-    """Marks of earlier orbits, fainter with age, each joined to the nearest of the next; small ones are left out."""
+    """Return marks of earlier orbits, fainter with age and joined to the nearest of the next; small ones have none."""
     dots, ways = [], []
     for i, (now, after) in enumerate(itertools.pairwise(sets)):
         alpha = 0.12 + 0.6 * (i + 1) / len(sets)

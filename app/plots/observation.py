@@ -1,4 +1,4 @@
-"""An observation: the measured input force, the computed output force, and the measured one if there is one."""
+"""An observation: the measured input force, the computed output force and, if there is one, the measured one."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .themed import apply_theme, empty_figure, themed
 
 
 def observation(result: Observation, theme: Theme) -> figure:
-    """Input force, computed output force and, where it was measured, the measured one over time."""
+    """Draw the input force, the computed output force and, if it was measured, the measured one over time."""
     measured = result.record.output
     forces = [result.input_force, result.output_force, *([] if measured is None else [measured])]
     scale = force_scale("force", max(float(np.nanmax(np.abs(force))) for force in forces))

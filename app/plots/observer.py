@@ -11,7 +11,7 @@ from bokeh.plotting import figure
 from .theme import Theme
 from .themed import apply_theme, empty_figure, themed
 
-#: Drive periods that are shown at once; panning shows the earlier ones that are kept.
+#: Drive periods shown at once; panning shows the earlier periods that are kept.
 SHOWN_PERIODS = 60
 #: The lower end of the axis of distances.
 _SMALLEST_DISTANCE = 1e-13
@@ -23,9 +23,9 @@ _LONGEST_PREDICTION = 10_000.0
 
 def observer(period: Sequence[float], distance: Sequence[float], prediction: Sequence[tuple[float, float]],
              theme: Theme, compact: bool = False) -> figure:
-    """Distance |y − x| at `period`, and a straight line through the points of `prediction`.
+    """Draw the distance |y − x| at `period`, and a straight line through the points of `prediction`.
 
-    The sources are named "distance" and "prediction": a page adds to them while the chains move.
+    The sources are named "distance" and "prediction"; a page adds points to them while the chains move.
     """
     follow = DataRange1d(follow="end", follow_interval=SHOWN_PERIODS, default_span=SHOWN_PERIODS / 3,
                          range_padding=0.0)
@@ -51,9 +51,9 @@ def observer(period: Sequence[float], distance: Sequence[float], prediction: Seq
 
 
 def prediction(period: float, distance: float, factor: float | None) -> list[tuple[float, float]]:
-    """A straight line on the logarithmic axis from a measured point on, by this factor a drive period.
+    """Return a straight line on the logarithmic axis from a measured point, with this factor per drive period.
 
-    It ends where distances are too large or too small to follow it. Empty where nothing is predicted.
+    It ends where distances are too large or too small to follow it. It is empty if there is no prediction.
     """
     if factor is None or factor <= 0.0 or distance < _SMALLEST_DISTANCE:
         return []

@@ -1,4 +1,4 @@
-"""The parameter map: a cell for each pair of values, by its largest force or by its regime."""
+"""The parameter map: a cell for each pair of values, coloured by its largest force or by its regime."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ from .themed import apply_theme, empty_figure, themed
 CATEGORIES = (*REGIME_MARKS, "failed")
 COLOURS = [REGIME_MARKS[name][1] if name in REGIME_MARKS else BROWN for name in CATEGORIES]
 _HATCHES = (" ", "/", "-", "|", "+", "\\", "x", ".", "o")
-#: Marks on a bifurcation curve: their largest number, and their width [px].
+#: Marks on a bifurcation curve: most of them on one curve, and their width [px].
 _MOST_MARKS, _MARK_SIZE = 9, 11
 #: Most cells that a browser shows smoothly.
 MOST_DRAWN_CELLS = 40_000
@@ -52,11 +52,11 @@ _CELL = ("left", "right", "bottom", "top", "x", "y", "force", "regime", "tooltip
 
 def parameter_map(result: ParameterMap, theme: Theme, shown: str = "force", now: tuple[float, float] | None = None,
                   curves: Sequence[BifurcationCurve] = ()) -> figure:
-    """All computed cells of a parameter map over its two knobs; `shown` is "force" or "regime".
+    """Draw all computed cells of a parameter map over its two knobs; `shown` is "force" or "regime".
 
-    `now` is a pair of values [SI] with a mark, `curves` are its bifurcation curves. The source "cells" has a row for
-    each cell, those of coarse nets first: they stand for the cells around them until these are there. `cell_rows`,
-    `scale_models` and `shown_models` give what changes later.
+    `now` is a pair of values [SI] that gets a mark, and `curves` are its bifurcation curves. The source "cells" has a
+    row for each cell, with those of coarse grids first: they stand for the cells around them until these are computed.
+    `cell_rows`, `scale_models` and `shown_models` return the data that change later.
     """
     grid = result.grid
     across, up = _scales(grid)
@@ -69,7 +69,7 @@ def parameter_map(result: ParameterMap, theme: Theme, shown: str = "force", now:
     edges: dict[str, Any] = {"left": "left", "right": "right", "bottom": "bottom", "top": "top", "source": source,
                              "line_color": None}
     force = plot.quad(**edges, fill_color=transform("force", mapper), name="force")
-    # Cells may come in any order: a coarse one must not hide the finer ones it stands for.
+    # Cells may arrive in any order, and a coarse cell must not hide the finer cells that it stands for.
     own = plot.quad(**{**edges, "right": "own_right", "top": "own_top"}, fill_color=transform("force", mapper),
                     name="own force")
     regime = plot.quad(**edges, fill_color=factor_cmap("regime", COLOURS, CATEGORIES), name="regime")
@@ -97,9 +97,9 @@ def parameter_map(result: ParameterMap, theme: Theme, shown: str = "force", now:
 
 
 def _hatched(plot: figure, source: ColumnDataSource) -> list[LegendItem]:
-    """Every computed cell's own place in the colour and hatch of its regime, and an entry of the legend for each.
+    """Draw every computed cell's own area in the colour and hatch of its regime, and return the legend's entries.
 
-    One renderer per regime: with a hatch per cell the browser would draw an image for each.
+    There is one renderer per regime, because with a hatch per cell the browser would draw an image for each cell.
     """
     items = []
     for name, colour, hatch in zip(CATEGORIES, COLOURS, _HATCHES, strict=True):
@@ -112,7 +112,7 @@ def _hatched(plot: figure, source: ColumnDataSource) -> list[LegendItem]:
 
 
 def shown_models(shown: str) -> dict[str, dict[str, Any]]:
-    """The visibility of the figure's models where `shown` is "force" or "regime", by the names of models."""
+    """Return the visibility of the figure's models, by their names, for `shown` "force" or "regime"."""
     force = shown == "force"
     return {**{name: {"visible": force} for name in ("force", "own force", "bar")},
             **{name: {"visible": not force}
@@ -120,9 +120,9 @@ def shown_models(shown: str) -> dict[str, dict[str, Any]]:
 
 
 def _draw_curves(plot: figure, grid: Grid, curves: Sequence[BifurcationCurve]) -> None:
-    """Bifurcation curves, black on white, so that they are seen on every colour.
+    """Draw bifurcation curves, black on white, so that they are visible on every colour.
 
-    The marks on them say of which kind they are; they are those of the special points of a branch.
+    The marks on them show their kind; they are the marks of the special points of a branch.
     """
     across, up = _scales(grid)
     kinds: dict[str, LegendItem] = {}
@@ -146,7 +146,7 @@ def _draw_curves(plot: figure, grid: Grid, curves: Sequence[BifurcationCurve]) -
 
 
 def _marks(plot: figure, mark: dict[str, Any]) -> None:
-    """The page's setting, black on white, so that it is seen on every colour; and a cell chosen by the keyboard."""
+    """Draw the page's setting, black on white to be visible on every colour, and the cell chosen by the keyboard."""
     setting = ColumnDataSource(mark, name="mark")
     for colour, width in ((MARK_EDGE, 5), (MARK_COLOUR, 2)):
         plot.scatter("x", "y", source=setting, marker="circle_cross", size=20, fill_color=None, line_color=colour,
@@ -157,7 +157,7 @@ def _marks(plot: figure, mark: dict[str, Any]) -> None:
 
 
 def cell_rows(grid: Grid, cells: np.ndarray) -> dict[str, list[Any]]:
-    """Columns of the source "cells" for some computed cells, coarse ones first."""
+    """Return the columns of the source "cells" for some computed cells, coarse cells first."""
     across, up = _scales(grid)
     x, y = (_edges(axis) / scale.factor for axis, scale in ((grid.x, across), (grid.y, up)))
     spacing = grid.spacing()
@@ -175,7 +175,7 @@ def cell_rows(grid: Grid, cells: np.ndarray) -> dict[str, list[Any]]:
 
 
 def scale_models(cells: np.ndarray) -> dict[str, dict[str, Any]]:
-    """The scale of forces and the regimes in the legend for all computed cells, by the names of models."""
+    """Return the force scale and the legend's regimes for all computed cells, by the names of models."""
     models: dict[str, dict[str, Any]] = {}
     for regime, period in np.unique(cells[["regime", "period"]]):
         models[f"legend of {_category(int(regime), int(period))}"] = {"visible": True}
@@ -189,7 +189,7 @@ def scale_models(cells: np.ndarray) -> dict[str, dict[str, Any]]:
 
 
 def _round_values(low: float, high: float) -> list[float]:
-    """Ticks of a logarithmic scale: powers of ten, with 3 or with 2 and 5 times them where there are few."""
+    """Return ticks of a logarithmic scale: powers of ten and, if these are few, also 3 times or 2 and 5 times them."""
     powers = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
     for steps in ((1,), (1, 3), (1, 2, 5)):
         ticks = [float(f"{step}e{power}") for power in powers for step in steps]
@@ -200,7 +200,7 @@ def _round_values(low: float, high: float) -> list[float]:
 
 
 def mark_row(grid: Grid, x: float | None = None, y: float | None = None) -> dict[str, list[float]]:
-    """Columns of the source "mark" for a pair of values in SI, or for none."""
+    """Return the columns of the source "mark" for a pair of values in SI, or for no mark."""
     if x is None or y is None:
         return {"x": [], "y": []}
     across, up = _scales(grid)
@@ -208,12 +208,12 @@ def mark_row(grid: Grid, x: float | None = None, y: float | None = None) -> dict
 
 
 def nothing(grid: Grid) -> ParameterMap:
-    """A parameter map of which nothing is computed."""
+    """Return a parameter map without any computed cell."""
     return ParameterMap(grid, empty_cells(grid))
 
 
 def category(cell: np.ndarray) -> str:
-    """The entry of `CATEGORIES` a cell belongs to."""
+    """Return the entry of `CATEGORIES` for a cell."""
     return _category(int(cell["regime"]), int(cell["period"]))
 
 
@@ -222,7 +222,7 @@ def _category(regime: int, period: int) -> str:
 
 
 def cell_words(grid: Grid, cell: np.ndarray) -> str:
-    """A cell in words: its place, regime and largest force, with errors."""
+    """Return a cell in words: its place, regime and largest force, with errors."""
     i, j = divmod(int(cell["number"]), grid.shape[1])
     place = ", ".join(f"{axis.values[at] / scale.factor:.4g} {scale.unit or axis.knob}"
                       for axis, at, scale in zip((grid.x, grid.y), (j, i), _scales(grid), strict=True))
@@ -243,7 +243,7 @@ def _scales(grid: Grid) -> tuple[Scale, Scale]:
 
 
 def _by_ratio(axis: Axis) -> bool:
-    """Whether the values of an axis are spaced by their ratio rather than evenly."""
+    """Return whether the values of an axis are spaced by their ratio rather than evenly."""
     if len(axis.values) < 3 or axis.values[0] <= 0.0:
         return False
     even, ratio = np.diff(axis.array), np.diff(np.log(axis.array))
@@ -251,7 +251,7 @@ def _by_ratio(axis: Axis) -> bool:
 
 
 def _edges(axis: Axis) -> np.ndarray:
-    """Where the cells of an axis begin and end, (n + 1,)."""
+    """Return the edges of the cells along an axis, (n + 1,)."""
     by_ratio = _by_ratio(axis)
     values = np.log(axis.array) if by_ratio else axis.array
     if len(values) == 1:

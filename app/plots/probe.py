@@ -1,8 +1,8 @@
-"""One bead of a motion: displacement, velocity, contact forces, phase portrait with stroboscopic points, spectrum; and
-when every contact of the chain is closed, as in figure 12 of Zhang et al. (2016).
+"""One bead of a motion: displacement, velocity, contact forces, phase portrait with stroboscopic points, and spectrum.
 
-Each figure is made from a run and a bead. `probe_state` gives the properties of its models by their names, so that
-a page can fill the same figures with the next motion.
+A further figure shows when each contact of the chain is closed, as in figure 12 of Zhang et al. (2016). Every figure is
+drawn from a run and a bead. `probe_state` returns the properties of its models by their names, so that a page can fill
+the same figures with the next motion.
 """
 
 from __future__ import annotations
@@ -23,16 +23,16 @@ from .themed import apply_theme, empty_figure, span_of, themed
 
 #: Most points of a line; a longer motion is thinned out evenly.
 _MOST_ROWS = 700
-#: The spectrum ends at this multiple of the drive frequency.
+#: Upper end of the spectrum, as a multiple of the drive frequency.
 _LAST_HARMONIC = 12.5
-#: Columns of a source to which glyphs refer.
+#: Columns of a source that glyphs refer to.
 _COLUMNS = ("x", "y", "floor", "number", "contact", "from", "to")
-#: The spectrum's smallest amplitude, over its largest.
+#: The smallest amplitude of the spectrum, divided by its largest.
 _SMALLEST_AMPLITUDE = 1e-4
 
 
 def probe(name: str, run: Run, bead: int, theme: Theme) -> figure:
-    """The figure of this name, one of `FIGURES`, of a bead that counts from 1."""
+    """Draw the figure of this name, one of `FIGURES`, for a bead (counted from 1)."""
     plot = FIGURES[name]()
     models = {model.name: model for model in plot.references() if model.name}
     for model, properties in probe_state(run, bead)[name].items():
@@ -41,7 +41,7 @@ def probe(name: str, run: Run, bead: int, theme: Theme) -> figure:
 
 
 def without_points(name: str, theme: Theme, compact: bool = False) -> figure:
-    """The figure of this name without data, for a page that fills it with `probe_state`; `compact` has no tools."""
+    """Return the figure of this name without data, which a page fills with `probe_state`; `compact` omits the tools."""
     plot = FIGURES[name]()
     if compact:
         plot.toolbar_location = None
@@ -85,7 +85,7 @@ def _phase() -> figure:
     themed(plot.line("x", "y", source=sources["way"], line_alpha=0.8), line_color="accent", line_width=1.8)
     dots = themed(plot.scatter("x", "y", size=12, source=sources["strobe"], line_width=2), fill_color="drive",
                   line_color="card")
-    plot.add_tools(HoverTool(renderers=[dots], tooltips=[("begin of drive period", "@number"), ("displacement", "@x"),
+    plot.add_tools(HoverTool(renderers=[dots], tooltips=[("start of drive period", "@number"), ("displacement", "@x"),
                                                          ("velocity", "@y")]))
     return plot
 
@@ -99,8 +99,8 @@ def _spectrum() -> figure:
     return plot
 
 
-#: The figures by name: displacement, velocity and the forces of both contacts over time; when each contact is
-#: closed, 0 the driver's, N the wall's; velocity over displacement, with a dot at every begin of a drive period;
+#: The figures by name: displacement, velocity and the forces of both contacts over time; when each contact is closed,
+#: from the driver's (0) to the wall's (N); velocity over displacement, with a dot at the start of every drive period;
 #: amplitudes over frequency.
 FIGURES: dict[str, Callable[[], figure]] = {
     "displacement": _displacement, "velocity": _velocity, "forces": _forces, "contacts": _contacts, "phase": _phase,
@@ -108,7 +108,7 @@ FIGURES: dict[str, Callable[[], figure]] = {
 
 
 def probe_state(run: Run, bead: int) -> dict[str, dict[str, dict[str, Any]]]:
-    """Properties of the models of every figure, by figure and by the model's name. Beads count from 1."""
+    """Return the properties of the models of every figure, by figure and model name. Beads are counted from 1."""
     index = bead - 1
     time, time_unit = _scaled(run.time, "s")
     u, u_unit = _scaled(run.displacement[:, index], "m")
@@ -147,7 +147,7 @@ def probe_state(run: Run, bead: int) -> dict[str, dict[str, dict[str, Any]]]:
 
 
 def closed_spells(run: Run) -> list[tuple[int, float, float]]:
-    """Contact, begin and end [s] of every spell in which it is closed; between samples an overlap is straight."""
+    """Return contact, start and end [s] of every contact phase; overlaps are linear in time between samples."""
     spells = []
     for contact, overlap in enumerate(run.overlap.T):
         shut = np.concatenate([[False], overlap > 0.0, [False]])
@@ -158,7 +158,7 @@ def closed_spells(run: Run) -> list[tuple[int, float, float]]:
 
 
 def amplitudes(run: Run, index: int) -> tuple[np.ndarray, np.ndarray]:
-    """Frequencies over the drive's, up to _LAST_HARMONIC, and amplitudes of a bead's displacement [m]."""
+    """Return frequencies over the drive's, up to _LAST_HARMONIC, and amplitudes of a bead's displacement [m]."""
     motion = run.displacement[:-1, index]
     periods = len(motion) / run.samples
     repeats = run.regime.period is not None and periods % run.regime.period == 0
@@ -169,7 +169,7 @@ def amplitudes(run: Run, index: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _crossing(time: np.ndarray, overlap: np.ndarray, after: int) -> float:
-    """When the overlap vanishes between the samples before and at `after`; an end of the record is its own."""
+    """Return when the overlap vanishes between the samples before and at `after`; at an end of the record, its time."""
     if not 0 < after < len(time):
         return float(time[min(after, len(time) - 1)])
     a, b = overlap[after - 1], overlap[after]
@@ -222,5 +222,5 @@ def _scaled(values: np.ndarray, unit: str) -> tuple[np.ndarray, str]:
 
 
 def _short(values: np.ndarray) -> list[float]:
-    """The values to five digits, more than can be seen."""
+    """Return the values to five digits, more than can be seen in a figure."""
     return [float(f"{value:.5g}") for value in values]

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from .theme import BLUE, CYAN, GREY, ORANGE, OUTPUT_COLOUR, PINK, PURPLE, RED
 
-#: Marker, colour and size of every regime: told apart with and without colour.
+#: Marker, colour and size of every regime, distinguishable with and without colour.
 REGIME_MARKS = {
     "period 1": ("circle", OUTPUT_COLOUR, 7), "period 2": ("diamond", PURPLE, 11),
     "period 3": ("triangle", ORANGE, 10), "period 4": ("square", CYAN, 8),
@@ -23,7 +23,7 @@ SYMBOLS = {"circle": "●", "diamond": "◆", "triangle": "▲", "square": "■"
 
 
 def regime_key(name: str, period: int | None) -> str:
-    """The entry of `REGIME_MARKS` of a motion, by the name of its regime and its period where it has one."""
+    """Return a motion's key in `REGIME_MARKS`, from the name of its regime and its period if it has one."""
     if name == "periodic" and period:
         return f"period {period}" if f"period {period}" in REGIME_MARKS else "period 5+"
     return name if name in REGIME_MARKS else "unsettled"

@@ -1,4 +1,4 @@
-"""How the weighted average of a rotation number converges with the length of the record."""
+"""The convergence of a rotation number's weighted average with the length of the record."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .themed import apply_theme, empty_figure, themed
 
 
 def rotation(result: RotationNumber, theme: Theme) -> figure:
-    """The largest difference of three halves of the record over its length, both logarithmic."""
+    """Draw the largest difference between three halves of the record over its length, both logarithmic."""
     states, values, differences = result.convergence.T if result.value is not None else ([], [], [])
     source = ColumnDataSource({"states": states, "value": values, "difference": differences}, name="convergence")
     plot = empty_figure(name="rotation", min_border=4, x_axis_type="log", y_axis_type="log")

@@ -1,4 +1,4 @@
-"""The Poincaré section of one bead: a point per drive period, the transient grey, the orbit's own points ringed."""
+"""The Poincaré section of one bead: a point per drive period; the transient is grey, the orbit's points have rings."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from bokeh.plotting import figure
 from .theme import Theme
 from .themed import apply_theme, empty_figure, span_of, themed
 
-#: Sections with fewer points than this have their transient drawn larger.
+#: In sections with fewer points than this, the points of the transient are larger.
 _FEW_POINTS = 150
-#: Most points of the way to an orbit that are joined.
+#: Most points that are joined on the way to an orbit.
 _MOST_JOINED = 60
 
 
@@ -22,9 +22,9 @@ _MOST_JOINED = 60
 class SectionPoints:
     """The points and labels of a drawn section.
 
-    points : (T, 2) displacement and velocity in `units`, one row a drive period. own : (n, 2), those of the orbit.
-    transient : how many points come before the motion has settled. period : of the settled motion, 0 where it does not
-    repeat. unstable : whether the orbit was found by search and the chain does not follow it.
+    points : (T, 2) displacement and velocity in `units`, one row per drive period. own : (n, 2), those of the orbit.
+    transient : number of points before the motion has settled. period : of the settled motion, 0 if it is not periodic.
+    unstable : whether the orbit was found by search and the chain does not follow it.
     """
 
     points: np.ndarray
@@ -37,7 +37,7 @@ class SectionPoints:
 
 
 def section(shown: SectionPoints, theme: Theme) -> figure:
-    """Velocity over displacement of one bead at one phase of the drive; `section_state` gives what changes later."""
+    """Draw velocity over displacement of one bead at one drive phase; `section_state` returns the data that change."""
     state = section_state(shown)
     plot = empty_figure(name="section", min_border=4, x_range=Range1d(name="displacements"),
                         y_range=Range1d(name="velocities"))
@@ -64,9 +64,9 @@ def section(shown: SectionPoints, theme: Theme) -> figure:
 
 
 def section_state(shown: SectionPoints) -> dict[str, dict[str, Any]]:
-    """Properties of the figure's models by their names: sources, ranges, titles of the axes.
+    """Return the properties of the figure's models by their names: sources, ranges, axis titles.
 
-    A motion that is not periodic sets the ranges by its settled part, an orbit with its approach.
+    The ranges fit the settled part of a motion that is not periodic, and an orbit together with its approach.
     """
     points, own, before = shown.points, shown.own, min(shown.transient, len(shown.points))
     shows_all = bool(shown.period) or shown.transient >= len(points)
@@ -87,7 +87,7 @@ def section_state(shown: SectionPoints) -> dict[str, dict[str, Any]]:
 
 
 def close_up(shown: SectionPoints) -> dict[str, dict[str, Any]]:
-    """The ranges that hold the second half of the points and the orbit."""
+    """Return the ranges that contain the second half of the points and the orbit."""
     return _ranges(np.concatenate([shown.points[len(shown.points) // 2:], shown.own]))
 
 
@@ -97,7 +97,7 @@ def _dots(points: np.ndarray, number: np.ndarray, size: float) -> dict[str, Any]
 
 
 def _short(values: np.ndarray) -> list[float]:
-    """The values to seven digits: a section is sent again with every step of the slider of the phase."""
+    """Return the values to seven digits: a section is sent again at every step of the phase slider."""
     return [float(f"{value:.7g}") for value in values]
 
 

@@ -1,4 +1,4 @@
-"""A force's spectrum: lines of a Fourier series as stems, a windowed record as a curve, over a logarithmic axis."""
+"""A force's spectrum on a logarithmic axis: the lines of a Fourier series as stems, a windowed record as a curve."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from .axes import force_scale
 from .theme import Theme
 from .themed import apply_theme, empty_figure, themed
 
-#: Decades below the largest line that are drawn.
+#: Decades drawn below the largest line.
 _DECADES = 6.0
 
 
 def spectrum(result: Spectrum, theme: Theme) -> figure:
-    """Amplitudes over frequency; below the line of what may be folded back nothing is known.
+    """Draw amplitudes over frequency, with the aliasing bound, below which lines are not known.
 
-    Raises `BadInput` for a force that is 0 throughout, which has no lines.
+    Raise `BadInput` for a force that is 0 throughout, which has no lines.
     """
     if not result.amplitude.any():
         raise BadInput(f"The {result.force} force is 0 throughout and has no lines.")

@@ -20,20 +20,20 @@ BLUE = "#3b82f6"
 DRIVE_COLOUR = "#e5484d"
 INPUT_COLOUR = BLUE
 OUTPUT_COLOUR = "#2f9e6a"
-#: Colours of regimes (regimes.py), besides those above.
+#: Colours of regimes (regimes.py), in addition to those above.
 PURPLE = "#a855f7"
 ORANGE = "#f59e0b"
 CYAN = "#06b6d4"
 PINK = "#ec4899"
 RED = "#ef4444"
-#: Colours of lines of one kind, such as the methods of a comparison, in this order.
+#: Colours of lines of one kind, for example the methods of a comparison, in this order.
 LINE_COLOURS = (AMBER, VIOLET, TEAL, "#d6489a", "#a97142", "#86a316", "#6d7fd8", "#c26a52")
-#: A mark that is seen on every colour of a palette, and its edge.
+#: Colours of a mark, and of its edge, that is visible on every colour of a palette.
 MARK_COLOUR = "#000000"
 MARK_EDGE = "#ffffff"
 
-#: Text of the page grows with the width of the window: by this share of the width, and so that it has its smallest size
-#: on 1280 pixels. Small text grows less, because it stands where there is least room.
+#: The page's text grows with the width of the window, by this share of the width, from its smallest size at 1280
+#: pixels. Small text grows less, because it is used where there is least room.
 _GROWTH, _SMALL_GROWTH = 0.0055, 0.0045
 _GROWS_FROM = 1280
 #: Small text on a phone [px], in every theme.
@@ -44,8 +44,8 @@ _PHONE_TEXT_SIZE = 13
 class Theme:
     """Colours by role, a factor of all line widths, and text sizes [px].
 
-    The roles `drive`, `input` and `output` have one colour in all themes. `style_sheet` gives the same roles to the
-    page. Links and the browser's storage call the theme `look`, a name that is kept for links that were sent.
+    The roles `drive`, `input` and `output` have the same colour in all themes. `style_sheet` gives the page the same
+    roles. Share links and the browser's storage call the theme `look`, a name kept so that existing links still work.
     """
 
     #: Motion of the driver.
@@ -55,21 +55,21 @@ class Theme:
     #: Output force.
     output: ClassVar[str] = OUTPUT_COLOUR
 
-    #: "light" or "dark": the colour scheme of what the browser draws itself, such as scroll bars.
+    #: "light" or "dark": the colour scheme of elements that the browser draws itself, such as scroll bars.
     scheme: str
     #: Background of the page.
     paper: str
     #: Background of its cards and of figures.
     card: str
-    #: Text, and lines that matter most.
+    #: Text, and the most important lines.
     ink: str
-    #: Secondary text, and titles of axes.
+    #: Secondary text, and axis titles.
     soft: str
     #: Grid lines and borders.
     faint: str
-    #: Links, the focus, whatever is chosen; the first line of a figure where no quantity has a colour.
+    #: Links, the focus and the current choice; a figure's first line if its quantity has no colour of its own.
     accent: str
-    #: A bead at rest, and whatever is made of metal.
+    #: A bead at rest, and other metal parts.
     steel: str
     #: The reflection on a bead.
     steel_shine: str
@@ -83,20 +83,20 @@ class Theme:
     warn_paper: str
     #: A factor of all line widths.
     line_scale: float = 1.0
-    #: Text of the page, in windows of up to 1280 pixels and at most [px].
+    #: The page's text: size in windows of up to 1280 pixels, and largest size [px].
     text_size: int = 15
     largest_text_size: int = 24
-    #: Small text of the page likewise; text of figures has the smaller size [px].
+    #: The same for the page's small text; text in figures has the smaller size [px].
     small_text_size: int = 14
     largest_small_text_size: int = 20
-    #: A line of wrong numbers beside the right ones.
+    #: A line of wrong numbers next to the right ones.
     naive: str = "#d97706"
-    #: Text in the colour of the drive, of the input and of the output force: darker or lighter than their lines, so
+    #: Text in the colours of the drive, the input force and the output force: darker or lighter than their lines, so
     #: that its contrast with `paper` and `card` is at least 4.5.
     drive_text: str = "#b3261e"
     input_text: str = "#1d4ed8"
     output_text: str = "#1b6e47"
-    #: The second line of a figure, such as the observer beside its chain.
+    #: The second line of a figure, for example the observer's next to the chain's.
     second: str = VIOLET
 
     @property
@@ -106,12 +106,12 @@ class Theme:
 
     @property
     def small_figure_text(self) -> str:
-        """Size of text beside the marks of a figure."""
+        """Size of text next to the marks of a figure."""
         return f"{self.small_text_size - 1}px"
 
     @property
     def smallest_figure_text(self) -> str:
-        """Size of text where it stands close: in legends inside of a figure, at many marks."""
+        """Size of text where there is little room: in legends inside a figure, at many marks."""
         return f"{self.small_text_size - 2}px"
 
 
@@ -135,24 +135,25 @@ THEMES = {
 
 
 def _text_sizes(theme: Theme) -> dict[str, str]:
-    """The text sizes of a page in this theme, which grow with the window, and what depends on them."""
+    """Return the page's text sizes in this theme, which grow with the window, and what depends on them."""
     sizes = {}
     for name, smallest, largest, growth in (
             ("--text-size", theme.text_size, theme.largest_text_size, _GROWTH),
             ("--small-text-size", theme.small_text_size, theme.largest_small_text_size, _SMALL_GROWTH)):
         at_none = smallest - growth * _GROWS_FROM
         sizes[name] = f"clamp({smallest}px, {at_none:.3g}px + {100 * growth:.3g}vw, {largest}px)"
-    # Where text is large, the page leaves out what needs much room (`.roomy`).
+    # If text is large, the page omits elements that need much room (`.roomy`).
     return {**sizes, **({"--roomy": "none"} if theme.text_size > Theme.text_size else {})}
 
 
 def style_sheet() -> str:
-    """The themes as CSS: a custom property for every role. The rule of a theme has what differs from the first theme.
+    """Return the themes as CSS, with a custom property for every role.
 
-    No property may be called `--font-size`, which Bokeh's style sheet sets in every figure.
+    The rule of a theme contains only the properties that differ from the first theme. No property may be called
+    `--font-size`, which Bokeh's style sheet sets in every figure.
     """
     first: dict[str, str] = {}
-    # Registered, the sizes are known to canvases in pixels.
+    # Registered properties let canvases read the sizes in pixels.
     rules = [f'@property {name} {{ syntax: "<length>"; inherits: true; initial-value: {size}px; }}\n'
              for name, size in (("--text-size", Theme.text_size), ("--small-text-size", Theme.small_text_size))]
     for name, theme in THEMES.items():

@@ -1,4 +1,4 @@
-"""Figures in a theme: an empty figure, marks of the glyphs that follow the theme, and the change of theme."""
+"""Figures in a theme: empty figures, tags for the models that follow the theme, and the change of theme."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from bokeh.plotting import figure
 
 from .theme import THEMES, Theme
 
-#: The theme of each figure that is made once and then changes its theme.
+#: The current theme of each figure.
 _THEMES: weakref.WeakKeyDictionary[Plot, Theme] = weakref.WeakKeyDictionary()
 
 TOOLS = "pan,wheel_zoom,box_zoom,reset,save"
 
 
 def empty_figure(tools: str = TOOLS, **options: Any) -> figure:
-    """An empty figure with the tools that every figure has; `apply_theme` gives it its colours."""
+    """Return an empty figure with the tools that every figure has; `apply_theme` gives it its colours."""
     plot = figure(tools=tools, output_backend="canvas", outline_line_color=None,
                   **{"sizing_mode": "stretch_both", "toolbar_location": "right", **options})
     plot.toolbar.logo = None
@@ -34,10 +34,10 @@ def empty_figure(tools: str = TOOLS, **options: Any) -> figure:
 
 
 def themed(model: Any, plot: Plot | None = None, **roles: str | float) -> Any:
-    """Mark what follows the theme: a string is a role, a number is a line width in pixels. Returns `model`.
+    """Tag the properties of `model` that follow the theme, and return `model`.
 
-    A role is an attribute of `Theme`: a colour or a text size. `plot` is a figure that is made once and changes its
-    theme; with it the model gets the present theme at once.
+    A string is a role, that is, an attribute of `Theme`: a colour or a text size. A number is a line width in pixels.
+    If `plot` is given, a figure that is created once and changes its theme, the model gets its current theme at once.
     """
     model.tags = [*model.tags, {"theme": roles}]
     if plot is not None:
@@ -46,7 +46,7 @@ def themed(model: Any, plot: Plot | None = None, **roles: str | float) -> Any:
 
 
 def follow_theme(plot: Plot, theme: Theme) -> None:
-    """Give all in a figure that `themed` has named the colours and widths of a theme, now and when it is added."""
+    """Give all models in a figure that `themed` has tagged, present and future, a theme's colours and widths."""
     _THEMES[plot] = theme
     for model in (*plot.renderers, *plot.center):
         for tag in model.tags:
@@ -61,7 +61,7 @@ def _dress(model: Any, roles: Mapping[str, str | float], theme: Theme) -> None:
 
 
 def apply_theme(plot: figure, theme: Theme) -> figure:
-    """Give a figure, and all in it that `themed` has named, the colours and widths of a theme. Returns `plot`."""
+    """Give a figure, and all models in it that `themed` has tagged, a theme's colours and widths; return `plot`."""
     plot.background_fill_color = plot.border_fill_color = theme.card
     plot.grid.grid_line_color = theme.faint
     size = theme.figure_text
@@ -77,7 +77,7 @@ def apply_theme(plot: figure, theme: Theme) -> figure:
 
 
 def span_of(low: float, high: float, room: float = 0.07) -> Range1d:
-    """A range with some room on both sides; one that is empty is widened."""
+    """Return a range with some room on both sides; an empty range is widened."""
     if not high > low:
         wide = 0.1 * abs(high) or 1.0
         low, high = low - wide, high + wide

@@ -16,9 +16,9 @@ from .themed import apply_theme, empty_figure, themed
 
 
 def transfer(result: Transfer, theme: Theme) -> LayoutDOM:
-    """Gain above phase, a point for each line at which the input force is not negligible.
+    """Draw gain above phase, with a point for each line at which the input force is not negligible.
 
-    Raises `BadInput` where the input force has none.
+    Raise `BadInput` if the input force has no such line.
     """
     if not len(result.frequency):
         raise BadInput("The input force has no lines, so there is no transfer.")

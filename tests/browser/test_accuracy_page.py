@@ -142,9 +142,9 @@ def naive_force_lies_over_the_accurate_one(page: Page, sheet: Locator) -> None:
     drawn = naive_line(page)
     assert drawn["accurate"] == drawn["naive"] > 50 and drawn["dash"] not in ("", "solid")
     said = sheet.locator(".naive p")
-    expect(said).to_contain_text("With 200 steps a period the force is off by")
+    expect(said).to_contain_text("With 200 steps per period, the force is off by")
     first = said.inner_text()
-    sheet.get_by_label("its steps in a drive period").select_option("2000")
+    sheet.get_by_label("its steps per drive period").select_option("2000")
     expect(said).to_contain_text("With 2000 steps")
     assert said.inner_text() != first
 

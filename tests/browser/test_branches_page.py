@@ -101,7 +101,7 @@ def test_a_link_to_the_page_begins_by_itself_over_the_resonance_curve(visit: Vis
 def test_a_motion_that_does_not_repeat_is_said_to_lie_on_no_branch(at: Visit) -> None:
     page = at("?v=1&scene=sec2&f=1750&page=branches")
     sheet = page.locator('[data-overlay="branches"]')
-    expect(sheet).to_contain_text("lies on no branch", timeout=COMPILED)
+    expect(sheet).to_contain_text("is on no branch", timeout=COMPILED)
     expect(sheet.get_by_role("button", name="follow from here")).to_be_visible()
     until(page, lambda: len(source(page, "branches", "curve").get("x", [])) > 50)
 

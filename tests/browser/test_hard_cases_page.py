@@ -54,7 +54,7 @@ def test_a_case_runs_when_asked_and_shows_rows_and_picture(visit: Visit) -> None
     for verdict, figure, bar in zip(one.locator(".verdict").all_inner_texts(),
                                     one.locator("td.number:nth-child(3)").all_inner_texts(),
                                     one.locator("td.number:nth-child(4)").all_inner_texts(), strict=True):
-        assert verdict == ("✓ holds" if float(figure) <= float(bar.removeprefix("≤ ")) else "✕ FAILED")
+        assert verdict == ("✓ passed" if float(figure) <= float(bar.removeprefix("≤ ")) else "✕ FAILED")
     page.wait_for_function(f"({DRAWN})()", timeout=COMPILED)
     picture = page.evaluate(DRAWN)
     assert len(picture["dashes"]) == 4 and len(set(picture["dashes"])) == 4  # distinguishable without colour

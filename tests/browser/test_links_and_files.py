@@ -82,7 +82,7 @@ def test_what_a_file_does_not_say_is_chosen_and_the_misfit_is_said(visit: Visit,
     expect(page.locator("#tabs")).to_contain_text("What 'A' and 'B' and 'remark' hold is not clear")
     expect(page.locator("#tabs table")).to_contain_text("0,620")
     for number, quantity, unit in ((1, "frequency", "kHz"), (2, "force", "mN")):
-        page.get_by_label(f"what column {number} holds").select_option(quantity)
+        page.get_by_label(f"what column {number} contains").select_option(quantity)
         page.get_by_label(f"unit of column {number}").select_option(unit)
     page.get_by_role("button", name="Read with these settings").click()
     expect(page.locator("#tabs")).to_contain_text("3 points, 340 to 1130 Hz, force 0.6 to 1.15 N")

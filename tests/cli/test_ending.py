@@ -148,7 +148,7 @@ def test_a_second_signal_ends_at_once_what_does_not_listen(started: Callable[...
     assert command.process.poll() is None  # it has some time to end
     command.send(signal.SIGINT)
     assert command.end() == 143  # that of the first
-    assert command.err == "Terminated: what was finished is kept in out.h5.blocks; go on with --resume.\n"
+    assert command.err == "Terminated: finished work is kept in out.h5.blocks; continue with --resume.\n"
 
 
 def test_a_signal_after_the_result_is_written_says_where_it_is(started: Callable[..., Command], tmp_path: Path) -> None:

@@ -85,7 +85,7 @@ def test_without_a_browser_one_sentence_says_so(tmp_path: Path, monkeypatch: pyt
     monkeypatch.setattr(shutil, "which", lambda _: None)
     assert main(["figure", "1", "--out", str(tmp_path / "a.png")]) == 2
     told = capsys.readouterr().err
-    assert "drawn by Chromium or Chrome and none is on the PATH" in told and told.count("\n") == 1
+    assert "drawn by Chromium or Chrome, and neither is on the PATH" in told and told.count("\n") == 1
 
 
 def test_measured_points_are_in_the_table_and_how_they_were_read_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -51,7 +51,7 @@ def interrupted(name: str, number: signal.Signals, out: Path, *more: str) -> set
     assert there > before
     if command.process.returncode != 0 and number is not signal.SIGKILL:
         said = command.err.splitlines()[-1]
-        assert said.endswith(("; go on with --resume.", f"the result is in {out}.")) and "Traceback" not in command.err
+        assert said.endswith(("; continue with --resume.", f"the result is in {out}.")) and "Traceback" not in command.err
     return there
 
 
@@ -118,7 +118,7 @@ def test_a_finished_result_is_looked_at_before_its_blocks(finished: tuple[str, P
     assert main([*SHORT[name], "--out", str(out), "--resume", "--json"]) == 0
     told, err = capsys.readouterr()
     assert json.loads(told) and computed == [] and not folder_of(out).exists()
-    assert "finished already; nothing was computed" in err or name == "branch"
+    assert "already finished; nothing was computed" in err or name == "branch"
     if name != "branch":  # its file is the place where it goes on, so that it is written once more
         assert out.read_bytes() == before
 

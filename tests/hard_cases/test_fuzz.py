@@ -100,7 +100,7 @@ def test_a_stated_error_that_is_too_small_is_noticed() -> None:
 
 
 def test_done_without_being_it_is_noticed() -> None:
-    assert faults(lambda result: replace(result, displacement_error=0.5)) == {"done, and stated above what was asked"}
+    assert faults(lambda result: replace(result, displacement_error=0.5)) == {"done, with a stated error above the accuracy asked for"}
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf])
@@ -144,7 +144,7 @@ def test_a_hang_is_ended_and_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_spoiled_knob_that_is_taken_is_noticed() -> None:
-    assert ("a spoiled knob was taken", 1.0) in check(replace(EASY, spoiled=True)).faults
+    assert ("a spoiled knob was accepted", 1.0) in check(replace(EASY, spoiled=True)).faults
 
 
 def test_an_asymmetry_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -238,9 +238,9 @@ def test_a_reason_that_does_not_fit_is_refused(doubling: Branch, tmp_path: Path)
 
 def test_the_criticality_is_given_in_words_and_numbers(doubling: Branch, torus: Branch) -> None:
     subcritical, supercritical = (special_point(doubling, "period_doubling", number) for number in (0, 1))
-    assert criticality_words(subcritical) == "subcritical: beside it, on the stable side, an orbit of twice the period repels"
+    assert criticality_words(subcritical) == "subcritical: near it, on the stable side, an orbit of twice the period repels"
     assert criticality_words(supercritical) == (
-        "supercritical: beside it, on the unstable side, an orbit of twice the period attracts")
+        "supercritical: near it, on the unstable side, an orbit of twice the period attracts")
     assert criticality_words(special_point(torus, "neimark_sacker")).endswith("a closed curve of the map attracts")
     assert criticality_words(special_point(doubling, "grazing")) == ""
     assert supercritical.normal_form is not None

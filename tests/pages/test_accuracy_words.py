@@ -89,7 +89,7 @@ def test_failed_rows_keep_their_sentence_and_are_json() -> None:
 
 def test_the_reference_is_told_with_its_agreement() -> None:
     found = WorkPrecision(scene("sec2"), "one", "two")
-    assert described_reference(found)["agreement_words"] == "The second reference comes last."
+    assert described_reference(found)["agreement_words"] == "The second reference is computed last."
     found.agreement = 7.1e-12
     assert described_reference(found)["agreement_words"] == "Two independent references agree to 7e-12."
     found.agreement = 0.68

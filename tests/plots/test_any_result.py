@@ -111,9 +111,9 @@ def test_a_motion_has_the_figures_of_the_page_probe(kind: str, options: dict[str
 @pytest.mark.parametrize(("make", "words"), [
     (lambda: granchain.figure(granchain.settle(CHAIN), kind="phaze"), "Unknown kind of figure 'phaze'; the nearest is 'phase'"),
     (lambda: granchain.figure(granchain.settle(CHAIN), kind="phase", bead=3), "bead = 3 is outside 1 to 2"),
-    (lambda: granchain.figure(granchain.orbit(CHAIN), kind="phase"), "no figure of a kind 'phase' of a Orbit"),
-    (lambda: granchain.figure(3.0), "There is no figure of a float; there are those of Run, Settled, Driven, Pulse, Curve"),
-    (lambda: granchain.figure([]), "no figure of a list"),
+    (lambda: granchain.figure(granchain.orbit(CHAIN), kind="phase"), "type Orbit has no figure of the kind 'phase'"),
+    (lambda: granchain.figure(3.0), "type float has no figure; there are figures of Run, Settled, Driven, Pulse, Curve"),
+    (lambda: granchain.figure([]), "type list has no figure"),
     (lambda: granchain.figure(granchain.orbit(CHAIN), "drak"), "Unknown theme 'drak'; the nearest is 'dark'"),
     (lambda: granchain.figure(granchain.resonance_curve(CHAIN, [2000.0]), measured="mine.csv"), "not a value of type str"),
     (lambda: granchain.figure(granchain.orbit(CHAIN), bead=1), "The figure of a Orbit has no option 'bead'"),

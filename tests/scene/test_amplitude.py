@@ -87,7 +87,7 @@ def test_the_command_line_takes_it_and_goes_on_with_it(tmp_path: Path, capsys: p
     printed = json.loads(capsys.readouterr().out)
     assert printed["drive_amplitude"] == pytest.approx([6e-3 / (2 * np.pi * f) for f in printed["frequency"]])
     assert main([*words, "--amplitude", "constant-velocity=6e-3", "--resume"]) == 0
-    assert "finished already" in capsys.readouterr().err
+    assert "already finished" in capsys.readouterr().err
     assert main([*words, "--amplitude", "constant-velocity=7e-3", "--resume"]) == 2
     assert "a finished curve that was computed with other options" in capsys.readouterr().err
 

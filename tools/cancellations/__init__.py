@@ -1,1 +1,1 @@
-"""How long a computation of the dashboard goes on after it was cancelled."""
+"""How long a computation of the dashboard continues after it was cancelled."""

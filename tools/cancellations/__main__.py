@@ -1,10 +1,11 @@
-"""Cancels pictures at random instants and measures how long they go on (docs/reliability.md).
+"""Cancels pictures at random instants and measures how long they continue (docs/reliability.md).
 
     python -m tools.cancellations --count 1000 --seed 1
 
-Chains of 1 to 10,000 beads, amplitudes and frequencies over their ranges, drawn evenly in their logarithms; the scenes
-are those that a visitor insists on. The time is that from the stop flag to the end of the computation's thread; its
-processor time in it does not depend on what else the machine does.
+Chains have 1 to 10,000 beads and amplitudes and frequencies from their whole ranges, all drawn uniformly in their
+logarithms; scenes that the dashboard computes only on insistence are included. The measured time is that from the stop
+flag to the end of the computation's thread. The thread's processor time in this interval does not depend on what else
+the machine does.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ _LATEST = 1.0
 
 
 def a_scene(chance: random.Random, low: int, high: int) -> Scene:
-    """A chain with a random length, amplitude and frequency."""
+    """Draw a chain with a random length, amplitude and frequency."""
 
     def drawn(a: float, b: float) -> float:
         return float(a * (b / a) ** chance.random())
@@ -40,7 +41,7 @@ def a_scene(chance: random.Random, low: int, high: int) -> Scene:
 
 
 def cancelled_after(chain: Scene, instant: float) -> tuple[float, float] | None:
-    """Seconds from the cancellation to the end, and processor time in it; None if the picture was finished before."""
+    """Return seconds and processor time from the cancellation to the end; None if the picture was already finished."""
     stop, ended = Stop(), [0.0, 0.0]
 
     def work() -> None:
@@ -58,7 +59,7 @@ def cancelled_after(chain: Scene, instant: float) -> tuple[float, float] | None:
         return None
     try:
         used = time.clock_gettime(time.pthread_getcpuclockid(thread.ident or 0))
-    except OSError:  # it has just ended
+    except OSError:  # the thread has just ended
         return None
     asked = time.perf_counter()
     stop.set()
@@ -67,12 +68,12 @@ def cancelled_after(chain: Scene, instant: float) -> tuple[float, float] | None:
 
 
 def main() -> None:
-    """Print a row for each class of length."""
+    """Print a row for each class of chain length."""
     parser = argparse.ArgumentParser(prog="python -m tools.cancellations", description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--count", type=int, default=1000)
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
-    for piece in (FIXED_STEP_KERNELS, DOP853_KERNELS):  # the compiler cannot be cancelled; the dashboard has it in another process
+    for piece in (FIXED_STEP_KERNELS, DOP853_KERNELS):  # the compiler cannot be cancelled; the dashboard runs it in another process
         compile_piece(scene("sec2"), piece)
     cancelled_after(scene("sec2"), 0.5)
     print("beads | cancellations | p50 ms | p99 ms | longest ms | processor p99 ms | longest ms | load")

@@ -1,1 +1,1 @@
-"""Damage: result files harmed at random, and what their readers make of them."""
+"""Damage: result files harmed at random, and how their readers respond."""

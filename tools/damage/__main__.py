@@ -1,8 +1,8 @@
-"""Program: harm files of every kind, read them, and print what came of it.
+"""Program: harm files of every kind, read them, and print the outcomes.
 
     python -m tools.damage --count 1000 --seed 1 [--kind run] [--old]
 
-Without --old the files have their seal, and forgeries are sealed again; with it they are as earlier versions wrote
+Without --old, the files have their seal, and forgeries are sealed again. With it, they are as earlier versions wrote
 them.
 """
 
@@ -18,7 +18,7 @@ from .kinds import KINDS
 
 
 def table(found: list[Verdict], by: str) -> str:
-    """Outcomes by "kind" or "harm", as Markdown."""
+    """Return the outcomes by "kind" or "harm" as a Markdown table."""
     counts = Counter((getattr(v, by), v.outcome) for v in found)
     rows = [name for name in (KINDS if by == "kind" else HARMS) if any(getattr(v, by) == name for v in found)]
     lines = [f"| {by} | files | " + " | ".join(OUTCOMES) + " |", "|---" * (len(OUTCOMES) + 2) + "|"]
@@ -28,11 +28,11 @@ def table(found: list[Verdict], by: str) -> str:
 
 
 def main() -> None:
-    """Print two tables and every file that was not refused or read as it should be."""
+    """Print two tables, and every file that was neither refused nor read correctly."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--count", type=int, default=1000, help="files of each kind")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--kind", choices=KINDS, help="this kind alone")
+    parser.add_argument("--kind", choices=KINDS, help="only this kind")
     parser.add_argument("--old", action="store_true", help="files without a seal")
     args = parser.parse_args()
     found: list[Verdict] = []

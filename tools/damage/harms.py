@@ -1,4 +1,4 @@
-"""What is done to a file: damage, which changes its bytes, and forgeries, which are made with h5py and sealed again."""
+"""The harms done to a file: damage, which changes its bytes, and forgeries, made with h5py and sealed again."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from granchain_core.hdf5 import seal
 
 from .kinds import names_of
 
-#: A number that stands in no result, for the files to which a forged file leads.
+#: A number that occurs in no result, for the files that a forged file leads to.
 ELSEWHERE = 7.25e77
 _BLOCK = 4096
 
@@ -123,7 +123,7 @@ def _attribute(file: h5py.File, name: str, folder: Path, rng: np.random.Generato
 
 
 def _inner(file: h5py.File, name: str, folder: Path, rng: np.random.Generator) -> None:
-    """One value within the JSON of an attribute."""
+    """Replace one value inside the JSON of an attribute."""
     texts = [a for a, value in file.attrs.items() if isinstance(value, str) and value[:1] in "[{"]
     attribute = str(rng.choice(texts))
     text = file.attrs[attribute]
@@ -136,7 +136,7 @@ def _inner(file: h5py.File, name: str, folder: Path, rng: np.random.Generator) -
 
 
 def _swap(file: h5py.File, name: str, folder: Path, rng: np.random.Generator) -> None:
-    """Two datasets exchange their names, of the same shape if there are such."""
+    """Exchange the names of two datasets, of the same shape if possible."""
     alike = [other for other in _names(file) if other != name and file[other].shape == file[name].shape]
     other = str(rng.choice(alike or _names(file)))
     if other != name:
@@ -153,15 +153,15 @@ FORGERIES: dict[str, Callable[[h5py.File, str, Path, np.random.Generator], None]
     "external link": _external_link, "soft link": _soft_link, "external storage": _external_storage, "virtual dataset": _virtual,
     "huge shape": _huge, "another kind or shape": _another_kind, "circle of groups": _circle, "attribute": _attribute,
     "value within JSON": _inner}
-#: Forgeries whose numbers would come from elsewhere; the others only say something else, which no reader can know.
+#: Forgeries whose numbers would come from elsewhere; the others only state other values, which no reader can detect.
 LEADING = ("external link", "soft link", "external storage", "virtual dataset", "huge shape", "circle of groups")
-#: Damage first, datasets that h5py exchanged without sealing the file again, and forgeries.
+#: Datasets that h5py exchanged, without the file being sealed again.
 SWAPPED = "two datasets exchanged"
 HARMS = (*DAMAGE, SWAPPED, *FORGERIES)
 
 
 def harm(source: Path, target: Path, name: str, sealed: bool, rng: np.random.Generator) -> None:
-    """A harmed copy of a file. A forgery of a sealed one is sealed again, so that it comes past the seal."""
+    """Write a harmed copy of a file. A forgery of a sealed file is sealed again, so that it passes the seal."""
     content = bytearray(source.read_bytes())
     if name in DAMAGE:
         DAMAGE[name](content, rng)

@@ -1,4 +1,4 @@
-"""The verdict on one harmed file, by a reader in a process of its own that is ended when it hangs."""
+"""The verdict on one harmed file, by a reader in a separate process that is killed if it hangs."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ OUTCOMES = (REFUSED, SAME, WRONG, OTHER, TRACEBACK, HANG)
 
 @dataclass(frozen=True)
 class Verdict:
-    """What came of one harmed file."""
+    """The outcome for one harmed file."""
 
     kind: str
     sealed: bool
@@ -36,14 +36,14 @@ class Verdict:
 
 
 def read(kind: str, path: Path, name: str, true: Any) -> tuple[str, str]:
-    """The outcome of reading a file to which harm `name` was done, and what was said."""
+    """Read a file that suffered harm `name`; return the outcome and the reader's sentence."""
     try:
         found = told(KINDS[kind].read(path))
     except BadInput as refusal:
         sentence = str(refusal)
         single = sentence.endswith(".") and len(sentence) < 800
         return (REFUSED if single else TRACEBACK), sentence
-    except BaseException as problem:  # whatever a reader lets through is what is looked for
+    except BaseException as problem:  # any other exception is what this tool looks for
         return TRACEBACK, repr(problem)
     if found == true:
         return SAME, ""
@@ -51,20 +51,20 @@ def read(kind: str, path: Path, name: str, true: Any) -> tuple[str, str]:
 
 
 def _work(pipe: Connection) -> None:
-    """In a process of its own: read files as long as they come."""
+    """Read files in a separate process as long as they arrive."""
     while True:
         kind, path, name, true = pipe.recv()
         pipe.send(read(kind, Path(path), name, true))
 
 
 class Reader:
-    """A process that reads; it is ended and begun again when a file keeps it too long or ends it."""
+    """A process that reads files; it is restarted when a file keeps it too long or makes it end."""
 
     def __init__(self) -> None:
         self._process: Any = None
 
     def read(self, *question: Any) -> tuple[str, str]:
-        """As `read`."""
+        """Do the same as the function `read`, in the process."""
         if self._process is None:
             context = multiprocessing.get_context("spawn")
             self._pipe, theirs = context.Pipe()
@@ -90,7 +90,7 @@ class Reader:
 
 
 def verdicts(kind: str, sealed: bool, count: int, seed: int) -> Any:
-    """The verdicts on harms 0 to `count` − 1 of a kind of file, with and without its seal."""
+    """Yield the verdicts on harms 0 to `count` − 1 of a kind of file, with or without its seal."""
     with tempfile.TemporaryDirectory() as folder:
         source = made(KINDS[kind], Path(folder))[0 if sealed else 1]
         true, reader = told(KINDS[kind].read(source)), Reader()

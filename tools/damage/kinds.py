@@ -1,5 +1,4 @@
-"""The kinds of files that granchain reads: how one is made, how it is read, and everything that was read as one value.
-"""
+"""The kinds of files that granchain reads: how to make one, how to read it, and the content read as one plain value."""
 
 from __future__ import annotations
 
@@ -25,7 +24,7 @@ BEADS = 3
 
 @dataclasses.dataclass(frozen=True)
 class Kind:
-    """A kind of file: `make` writes one to a path, `read` gives all that its readers give."""
+    """A kind of file: `make` writes one to a path, and `read` returns everything that its readers return."""
 
     name: str
     make: Callable[[Path], Path]
@@ -70,7 +69,7 @@ KINDS = {kind.name: kind for kind in (
 
 
 def unsealed(path: Path, out: Path) -> Path:
-    """The same file as versions before the seal wrote it."""
+    """Write the same file as versions before the seal wrote it."""
     with h5py.File(path) as new, h5py.File(out, "w") as old:
         for name in new:
             new.copy(name, old)
@@ -79,7 +78,7 @@ def unsealed(path: Path, out: Path) -> Path:
 
 
 def told(value: Any) -> Any:
-    """All that was read as plain data that can be compared, numbers bit by bit."""
+    """Return everything that was read as plain data that can be compared, with numbers bit by bit."""
     if isinstance(value, np.ndarray):
         return value.dtype.str, value.shape, value.tobytes()
     if isinstance(value, (float, np.floating)):
@@ -93,7 +92,7 @@ def told(value: Any) -> Any:
 
 
 def made(kind: Kind, folder: Path) -> tuple[Path, Path]:
-    """A whole file of a kind, and the same without its seal."""
+    """Return an undamaged file of a kind, and the same file without its seal."""
     path = folder / f"{kind.name}.h5"
     if not path.exists():
         kind.make(path)
@@ -101,7 +100,7 @@ def made(kind: Kind, folder: Path) -> tuple[Path, Path]:
 
 
 def names_of(path: Path) -> list[str]:
-    """The datasets of a file."""
+    """Return the names of the datasets of a file."""
     found: list[str] = []
     with h5py.File(path) as file:
         file.visititems(lambda name, item: found.append(name) if isinstance(item, h5py.Dataset) else None)

@@ -1,1 +1,1 @@
-"""How often the 95 % intervals of a fit hold the truth: virtual experiments with known parameters, drawn at random."""
+"""How often the 95 % intervals of a fit contain the truth, in virtual experiments with random known parameters."""

@@ -1,7 +1,7 @@
-"""`python -m tools.fit_coverage --draws 100 --seed 1 --kind curve|series`: how many intervals hold the truth.
+"""`python -m tools.fit_coverage --draws 100 --seed 1 --kind curve|series`: how many intervals contain the truth.
 
-Every draw has its own truth, chosen from the middle of the bounds, and its own noise: 3 % of every force of a curve,
-2 % of the largest force for a series. Three beads of `sec2` on springs; A0, D and k are fitted.
+Every draw has its own true parameters, from the middle of the bounds, and its own noise: 3 % of every force of a curve,
+2 % of the largest force of a series. The chain is three beads of `sec2` on springs; A0, D and k are fitted.
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ from granchain_core import fit, scene
 from granchain_core.fitting import CurveTarget, Free, SeriesTarget, virtual_curve, virtual_series
 
 FREE = (Free("A0", 2.5e-7, 1e-6), Free("D", 50.0, 200.0), Free("k", 1e5, 1.6e6))
-#: The truth lies between these places of the bounds.
+#: The truth is drawn between these fractions of the way from the lower to the upper bound.
 _LOW, _HIGH = 0.25, 0.75
 FREQUENCIES = np.linspace(500.0, 1800.0, 14)
 #: Drive frequency of the series [Hz].
 _F = 1100.0
-#: Its drive periods.
+#: Drive periods of the series.
 _PERIODS = 6
-#: Its samples a drive period.
+#: Samples per drive period of the series.
 _SAMPLES = 64
 #: Standard deviation of a curve's noise, relative to each force.
 CURVE_NOISE = 0.03
@@ -31,7 +31,7 @@ SERIES_NOISE = 0.02
 
 
 def drawn(kind: str, seed: int) -> tuple[np.ndarray, CurveTarget | SeriesTarget]:
-    """A truth and a virtual measurement of it."""
+    """Draw true parameters and a virtual measurement with them."""
     random = np.random.default_rng(seed)
     truth = np.array([one.value(random.uniform(_LOW, _HIGH)) for one in FREE])
     chain = scene("sec2").evolve(N=3, f=_F, **{one.name: value for one, value in zip(FREE, truth, strict=True)})
@@ -44,7 +44,7 @@ def drawn(kind: str, seed: int) -> tuple[np.ndarray, CurveTarget | SeriesTarget]
 
 
 def held(kind: str, seed: int) -> tuple[list[bool], str]:
-    """Which intervals hold the truth, and a line about it."""
+    """Return which intervals contain the truth, and a line about it."""
     truth, target = drawn(kind, seed)
     found = fit(scene("sec2").evolve(N=3, f=_F, k=4e5), target, FREE)
     inside = [p.low <= value <= p.high for p, value in zip(found.profiles, truth, strict=True)]
@@ -54,7 +54,7 @@ def held(kind: str, seed: int) -> tuple[list[bool], str]:
 
 
 def main() -> None:
-    """Count the intervals that hold the truth."""
+    """Count the intervals that contain the truth."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--draws", type=int, default=100)
     parser.add_argument("--seed", type=int, default=1)
@@ -67,7 +67,7 @@ def main() -> None:
         print(f"{i + 1:4d}  {line}", flush=True)
     print(f"{arguments.kind}: of {arguments.draws} intervals "
           + ", ".join(f"{n} of {one.name}" for n, one in zip(count, FREE, strict=True))
-          + f" hold the truth; {time.perf_counter() - began:.0f} s")
+          + f" contain the truth; {time.perf_counter() - began:.0f} s")
 
 
 if __name__ == "__main__":

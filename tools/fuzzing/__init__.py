@@ -1,1 +1,1 @@
-"""Fuzzing: whole scenes drawn at random, and everything that must hold for each of them."""
+"""Fuzzing: complete scenes drawn at random, and checks of everything that must be true of each."""

@@ -1,4 +1,4 @@
-"""The verdict on one drawn scene: a motion or an outcome with a sentence, and everything that did not hold."""
+"""The verdict on one drawn scene: a motion or an outcome with a sentence, and every check that failed."""
 
 from __future__ import annotations
 
@@ -24,29 +24,28 @@ from .scenes import Draw
 PERIODS = 2
 #: Time that a run may take [s].
 BUDGET = 5.0
-#: After twice the budget plus this [s] a run counts as hung, and its stop flag is raised.
+#: After twice the budget plus this time [s], a run counts as hung, and its stop flag is raised.
 FLOOR = 5.0
-#: Relative error of a displacement that matters.
+#: Relative error of a displacement from which it matters.
 SILENT = 1e-3
 #: Relative change that rounding alone may make.
 _ROUNDING = 1e-10
-#: How far rounding may be magnified beyond what a change of tolerance shows.
+#: How much more rounding may be magnified than a change of tolerance shows.
 _MAGNIFIED = 1e3
-#: An energy account is a quadrature along the motion: it was seen to close to 17 times the error of the displacements.
+#: Largest energy residual over the error of the displacements; being a quadrature along the motion, it reached 17.
 _ENERGY = 50.0
-#: Seconds SciPy takes, in both its runs, for one step of dop853: a scene that would take too long is not
-#: begun.
+#: Time that SciPy takes, in both its runs, per step of dop853 [s]; a scene that would take too long is not started.
 _SCIPY_STEP = 2.5e-4
-#: A motion that is known less well than this is chaotic: only outcome, time and symmetries are judged.
+#: A motion known less accurately than this is chaotic, and only its outcome, time and symmetries are judged.
 _CHAOS = 1e-4
 
 
 @dataclass
 class Verdict:
-    """The result of a draw. Errors are relative to the largest displacement; `known` is the error of the truth itself,
-    `steps` how many dop853 took.
+    """The result of a draw. Errors are relative to the largest displacement.
 
-    `faults` are (name, figure) of what did not hold. `others` are outcomes and errors of the naive solvers.
+    `known` is the error of the truth itself, and `steps` the number of steps of dop853. `faults` are (name, figure) of
+    the checks that failed, and `others` are outcomes and errors of the naive solvers.
     """
 
     draw: Draw
@@ -63,29 +62,30 @@ class Verdict:
 
     @property
     def judged(self) -> bool:
-        """Whether the truth is known better than what is stated about it."""
+        """Whether the truth is known clearly better than the stated error."""
         return bool(self.known < 0.3 * self.stated)
 
 
 def check(draw: Draw, compute: Callable[..., Run] = run, scipy: float = 0.0, others: float = 0.0,
           budget: float = BUDGET, patience: float = 1.0) -> Verdict:
-    """The verdict on one draw; `compute` takes the place of `run`.
+    """Return the verdict on one draw; `compute` is used instead of `run`.
 
-    The independent solver of oracle.py is a second judge if it takes at most `scipy` seconds; where tension is cut,
-    `run` uses dop853 itself, and that solver is the only independent one. Naive RK4 and LSODA are judged
-    too, for at most `others` seconds each. What takes longer than its time is ended after `patience` times as long, so
-    that a busy machine decides nothing: what is begun at all depends on estimates and counted steps.
+    The independent solver of oracle.py is a second judge if it takes at most `scipy` seconds. If tension is cut, `run`
+    uses dop853 itself, and that solver is the only independent one. Naive RK4 and LSODA are judged too, for at most
+    `others` seconds each. A computation that exceeds its time is ended only after `patience` times as long, so that the
+    verdict does not depend on how busy the machine is: which computations start at all depends on estimates and counted
+    steps.
     """
     try:
         chosen = draw.scene()
     except BadInput as refusal:
         fault = [] if draw.spoiled and str(refusal).endswith(".") else [("refused without need or sentence", 1.0)]
         return Verdict(draw, "refused: BadInput", str(refusal), faults=fault)
-    except Exception as problem:  # any other failure has no type, and is what the fuzzer looks for
+    except Exception as problem:  # any other failure is untyped, which is what the fuzzer looks for
         return Verdict(draw, "untyped", repr(problem), faults=[("untyped failure", 1.0)])
     verdict, found = _outcome(draw, chosen, compute, budget, patience)
     if draw.spoiled:
-        verdict.faults.append(("a spoiled knob was taken", 1.0))
+        verdict.faults.append(("a spoiled knob was accepted", 1.0))
     if found is None:
         return verdict
     _finite(verdict, found)
@@ -93,7 +93,7 @@ def check(draw: Draw, compute: Callable[..., Run] = run, scipy: float = 0.0, oth
         with limit(2.0 * budget * patience) as stop:
             truth = _judge(verdict, found, stop)
             _properties(verdict, chosen, stop)
-    except Cancelled:  # dop853 at its finest takes longer than the run: counted as not judged
+    except Cancelled:  # dop853 at its finest takes longer than the run; counted as not judged
         return verdict
     except ComputationError as problem:
         verdict.sentence = f"the judge failed: {problem}"
@@ -107,7 +107,7 @@ def check(draw: Draw, compute: Callable[..., Run] = run, scipy: float = 0.0, oth
 
 @contextlib.contextmanager
 def limit(seconds: float) -> Iterator[np.ndarray]:
-    """A stop flag that is raised after `seconds`."""
+    """Yield a stop flag that is raised after `seconds`."""
     stop = Stop()
 
     def over() -> None:
@@ -156,7 +156,7 @@ def _finite(verdict: Verdict, found: Run) -> None:
 
 
 def _judge(verdict: Verdict, found: Run, stop: Stop) -> np.ndarray:
-    """Compare the run with dop853 at its finest, check its energy; returns the true displacements [m]."""
+    """Compare the run with dop853 at its finest and check its energy; return the true displacements [m]."""
     chosen, kept = found.scene, []
     for tolerance in (3e-14, 3e-15):
         engine = Engine(chosen, MethodSetting("dop853", tolerance=tolerance), SAMPLES, account=True, stop=stop)
@@ -169,7 +169,7 @@ def _judge(verdict: Verdict, found: Run, stop: Stop) -> np.ndarray:
     verdict.error = distance(found.displacement, true)
     _bounded(verdict, "", verdict.error, verdict.known)
     if found.status == "done" and not verdict.stated <= chosen.accuracy:
-        verdict.faults.append(("done, and stated above what was asked", verdict.stated / chosen.accuracy))
+        verdict.faults.append(("done, with a stated error above the accuracy asked for", verdict.stated / chosen.accuracy))
     if verdict.known < _CHAOS:
         limits = 1e-9 + 100.0 * verdict.known, 1e-9 + _ENERGY * max(verdict.stated, chosen.accuracy)
         figures = properties.energy(engine.scaled, kept[1]), found.energy_residual
@@ -180,7 +180,7 @@ def _judge(verdict: Verdict, found: Run, stop: Stop) -> np.ndarray:
 
 
 def _bounded(verdict: Verdict, by: str, error: float, known: float) -> None:
-    """Note a fault if the stated error is below the true one, a silent one if the error matters."""
+    """Add a fault if the stated error is below the true error, and a silent error if that error matters."""
     sure = error - 3.0 * known
     if not sure <= verdict.stated:
         verdict.faults.append((f"bound{by}", error / (verdict.stated + 3.0 * known)))
@@ -201,7 +201,7 @@ def _properties(verdict: Verdict, chosen: Scene, stop: Stop) -> None:
 
 
 def _second_judge(verdict: Verdict, found: Run, seconds: float) -> None:
-    """Compare the run with SciPy's DOP853 in (u, v), restarted at every event, within the error of that."""
+    """Compare the run with SciPy's DOP853 in (u, v), restarted at every event, within the error of that solver."""
     try:
         nearly, true = (oracle.located(found.scene, PERIODS, SAMPLES, rtol, seconds) for rtol in (1e-9, 1e-11))
     except (oracle.TooLong, ComputationError):
@@ -213,7 +213,7 @@ def _second_judge(verdict: Verdict, found: Run, seconds: float) -> None:
 
 
 def _others(verdict: Verdict, chosen: Scene, true: np.ndarray, seconds: float) -> None:
-    """The answers of naive RK4, at the steps of our own fixed-step method, and of LSODA as a user would call it."""
+    """Record the answers of naive RK4, with the steps of our own fixed-step method, and of LSODA as a user calls it."""
     refine = 2.0 * method_for(max(chosen.accuracy, 1e-9)).refine
 
     def naive() -> np.ndarray:

@@ -14,13 +14,13 @@ from .scenes import Draw, draw
 SCIPY = 1.0
 #: Time that each of the other solvers may take for one scene [s].
 OTHERS = 4.0
-#: SciPy is asked for each third scene, the others for each sixteenth: they are slower.
+#: SciPy judges every third scene; the other solvers, which are slower, compute every sixteenth.
 _EVERY_SCIPY = 3
 _EVERY_OTHERS = 16
 
 
 def warm(structures: list[tuple[str, str, bool, bool]]) -> None:
-    """Compile everything a check needs, so that no run is timed with a compiler at work."""
+    """Compile everything that a check needs, so that no run is timed while the compiler works."""
     for law, tension, founded, pressed in structures:
         knobs = {"N": 2, "f": 3000.0, "accuracy": 1e-4, "dissipation": law, "tension": tension,
                  **({"kappa": 0.001} if founded else {}), **({"F0": 1.0} if pressed else {})}
@@ -28,14 +28,14 @@ def warm(structures: list[tuple[str, str, bool, bool]]) -> None:
 
 
 def verdict_on(seed: int, index: int, structures: list[tuple[str, str, bool, bool]]) -> Verdict:
-    """The verdict on draw `index`, whose number decides which judges are asked."""
+    """Return the verdict on draw `index`, whose number decides which judges are used."""
     return check(draw(seed, index, structures), scipy=0.0 if index % _EVERY_SCIPY else SCIPY,
                  others=0.0 if index % _EVERY_OTHERS else OTHERS)
 
 
 def verdicts(count: int, seed: int, structures: list[tuple[str, str, bool, bool]], workers: int,
              minutes: float) -> Iterator[Verdict]:
-    """Verdicts on draws 0, 1, … as they are finished; none is begun after `minutes`."""
+    """Yield verdicts on draws 0, 1, … as they are finished; none is started after `minutes`."""
     until, index = time.perf_counter() + 60.0 * minutes, 0
     with ProcessPoolExecutor(workers, get_context("spawn"), warm, (structures,)) as pool:
         running: set[Future[Verdict]] = set()

@@ -1,7 +1,7 @@
-"""Two ways to the same motion that share nothing with the kernels: the paper's equations in (u, v) and SciPy.
+"""Two ways to compute the same motion that share nothing with the kernels: the paper's equations in (u, v), and SciPy.
 
-`located` is the careful one: SciPy's DOP853, started anew wherever a contact opens or closes. `as_a_user` is the
-obvious first attempt: SI units, LSODA, a contact closed if `overlap > 0`, the default absolute tolerance.
+`located` is the careful way: SciPy's DOP853, restarted whenever a contact opens or closes. `as_a_user` is the obvious
+first attempt: SI units, LSODA, a contact closed if `overlap > 0`, the default absolute tolerance.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ from granchain_core.scene.state import rest
 
 from .laws import EXPONENT
 
-#: Places inside a step where contacts are looked at, so that a brief touch is seen.
+#: Fractions of a step at which contacts are checked, so that a brief touch is seen.
 _LOOKS = np.linspace(0.0, 1.0, 9)[1:]
 
 
 class TooLong(Exception):
-    """The time allowed for a reference is over."""
+    """The time allowed for a reference has been exceeded."""
 
 
 @numba.njit
@@ -68,7 +68,7 @@ class Chain:
 
     @classmethod
     def of(cls, scene: Scene, scaled: bool) -> Chain:
-        """The chain of a scene: in units of A0, bead 1 and its K, or in SI."""
+        """Return the chain of a scene, in units of A0, the mass of bead 1 and its K, or in SI."""
         mass, stiffness, length = (scene.bead(1).mass, scene.K, scene.A0) if scaled else (1.0, 1.0, 1.0)
         rate = np.sqrt(stiffness * np.sqrt(length) / mass)
         power = EXPONENT[scene.dissipation] if scene.has_dissipation else 0.0
@@ -80,16 +80,16 @@ class Chain:
         return cls(constants, start, rate / scene.f, length)
 
     def gaps(self, t: float, state: np.ndarray) -> np.ndarray:
-        """Overlap of every contact."""
+        """Return the overlap of every contact."""
         return _gaps(t, state[: len(state) // 2], *self.constants[6:8], self.constants[2])
 
     def slope(self, t: float, state: np.ndarray, closed: np.ndarray) -> np.ndarray:
-        """(u̇, v̇) while exactly the contacts in `closed` act."""
+        """Return (u̇, v̇) while exactly the contacts in `closed` act."""
         return _slope(t, state, closed, *self.constants)
 
 
 def located(scene: Scene, periods: int, samples: int, rtol: float, seconds: float) -> np.ndarray:
-    """Displacements (periods·samples + 1, N) [m]. Raises `TooLong`, and `ComputationError` where SciPy gives up."""
+    """Return displacements (periods·samples + 1, N) [m]. Raise `TooLong`, or `ComputationError` if SciPy gives up."""
     chain, deadline = Chain.of(scene, True), time.perf_counter() + seconds
     times = chain.period * np.arange(periods * samples + 1) / samples
     out = np.zeros((len(times), scene.N))
@@ -120,7 +120,7 @@ def located(scene: Scene, periods: int, samples: int, rtol: float, seconds: floa
 
 
 def _first(chain: Chain, dense: Any, start: float, end: float, closed: np.ndarray) -> tuple[float, int]:
-    """When the first contact opens or closes in a step, and which; the step's end and −1 where none does."""
+    """Return when and which contact first opens or closes in a step; the step's end and −1 if none does."""
     before = start
     sign = np.where(closed, -1.0, 1.0)
     for now in start + _LOOKS * (end - start):
@@ -139,9 +139,9 @@ def _root(chain: Chain, dense: Any, low: float, high: float, contact: int, sign:
 
 
 def as_a_user(scene: Scene, periods: int, samples: int, seconds: float) -> np.ndarray:
-    """Displacements [m] from `solve_ivp(..., "LSODA", rtol=accuracy)`, NaN and all, as long as it says success.
+    """Return displacements [m] from `solve_ivp(..., "LSODA", rtol=accuracy)`, even NaN, as long as it reports success.
 
-    Raises `ComputationError` where SciPy says that it failed, and `TooLong`.
+    Raise `ComputationError` if SciPy reports a failure, or `TooLong`.
     """
     chain, deadline = Chain.of(scene, False), time.perf_counter() + seconds
 
@@ -152,7 +152,7 @@ def as_a_user(scene: Scene, periods: int, samples: int, seconds: float) -> np.nd
 
     times = chain.period * np.arange(periods * samples + 1) / samples
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # what matters here is what it returns
+        warnings.simplefilter("ignore")  # only the returned result matters here
         found: Any = solve_ivp(slope, (0.0, times[-1]), chain.start, method="LSODA", rtol=scene.accuracy, t_eval=times)
     if not found.success or found.y.shape[1] != len(times):
         raise ComputationError(f"SciPy's LSODA: {found.message}", "solver-gave-up")

@@ -1,4 +1,4 @@
-"""Invariants of every scene; each function returns the violation, relative to the largest displacement."""
+"""Invariants of every scene; each function returns its violation, relative to the largest displacement."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ from granchain_core.scene.state import State, rest
 
 SAMPLES = 16
 _FIXED = MethodSetting("rk4-split", 1.0)
-#: Scaled time of the mirrored motions: long enough for dozens of contacts, too short for chaos to magnify rounding.
+#: Scaled time of the mirrored motions, long enough for dozens of contacts and too short for chaos to magnify rounding.
 _TIME = 20.0
 
 
 def distance(one: np.ndarray, two: np.ndarray) -> float:
-    """Largest difference over the largest value of the second; NaN where either has one."""
+    """Return the largest difference over the largest value of the second array; NaN if either contains NaN."""
     largest = float(np.abs(two).max())
     return float(np.abs(one - two).max()) / largest if largest > 0.0 else float(np.abs(one).max())
 
 
 def energy(scaled: ScaledChain, kept: Samples) -> float:
-    """How far work − lost is from the stored energy, ½mv² + ⅖Kδ^{5/2} + ½ku², over the largest of the three."""
+    """Return how far work − lost is from the stored energy, ½mv² + ⅖Kδ^{5/2} + ½ku², over the largest of the three."""
     slots = scaled.slots
     masses, theta = 1.0 / slots.chain.inverse_mass[1:-1], 2.0 * np.pi * np.arange(len(kept.velocity)) / SAMPLES
     ends = np.zeros((len(theta), 1))
@@ -44,7 +44,7 @@ def energy(scaled: ScaledChain, kept: Samples) -> float:
 
 
 def scaling(scene: Scene, power: int, stop: Stop) -> float:
-    """(sA0, s^{1/4} f, s^{1/4} D), s = 16^power: the same scaled motion over a period."""
+    """Compare a period with that at (sA0, s^{1/4} f, s^{1/4} D), s = 16^power, where the scaled motion is the same."""
     root = 2.0**power
     s = root**4
     other = replace(scene, A0=s * scene.A0, f=root * scene.f, D=root * scene.D, k=root**2 * scene.k, F0=root**6 * scene.F0,
@@ -60,7 +60,7 @@ def _period(scene: Scene, start: State, stop: Stop) -> np.ndarray:
 
 
 def shifted(scene: Scene, stop: Stop) -> float:
-    """The second period of a run, against a run started from the state after the first."""
+    """Compare the second period of a run with a run started from the state after the first."""
     engine = Engine(scene, _FIXED, SAMPLES, account=True, stop=stop)
     engine.start(rest(scene))
     engine.record(SAMPLES)
@@ -69,8 +69,11 @@ def shifted(scene: Scene, stop: Stop) -> float:
 
 
 def mirrored(scene: Scene, rng: np.random.Generator, stop: Stop) -> tuple[float, float, float]:
-    """The scene made its own mirror image, its driver at rest: how far a symmetric start leads from symmetry, how far
-    a start and its mirror image do from one another, and what the method's own error makes of the latter motion."""
+    """Make the scene its own mirror image, with its driver at rest, and return three differences.
+
+    They are how far a symmetric start departs from symmetry, how far a start and its mirror image differ, and how much
+    the method's own error changes the latter motion.
+    """
     symmetric = _symmetric(scene)
     thrown = rng.uniform(-1.0, 1.0, scene.N)
     even = _thrown(symmetric, thrown - thrown[::-1], 1e-15, stop)

@@ -1,4 +1,4 @@
-"""Whole scenes drawn log-uniformly over stated ranges; seed and index say which."""
+"""Complete scenes drawn log-uniformly over stated ranges; seed and index determine each."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ STRUCTURES = with_every_law([
     ("linear", "allowed", False, False), ("tsuji", "allowed", False, False), ("linear", "cut", False, False),
     ("kuwabara-kono", "allowed", False, False), ("linear", "allowed", True, True), ("none", "allowed", True, False),
     ("tsuji", "cut", True, True)])
-#: Part of the draws in which one knob gets a value that no scene can have.
+#: Fraction of the draws in which one knob gets a value that no scene can have.
 _SPOILED = 0.03
 _BAD: tuple[Any, ...] = (float("nan"), float("inf"), -1.0, 1e300, "word", None)
 
 
 @dataclass(frozen=True, eq=False)
 class Draw:
-    """What was drawn: knobs for `evolve`, then beads and velocities, and whether a knob was spoiled on purpose."""
+    """A draw: knobs for `evolve`, then beads and velocities, and whether a knob was spoiled on purpose."""
 
     seed: int
     index: int
@@ -36,12 +36,12 @@ class Draw:
     spoiled: bool
 
     def scene(self) -> Scene:
-        """The scene; `BadInput` where a knob is spoiled."""
+        """Return the scene; raise `BadInput` if a knob is spoiled."""
         return replace(scene("sec2").evolve(**self.knobs), **self.special)
 
 
 def draw(seed: int, index: int, structures: list[Structure]) -> Draw:
-    """Draw number `index`: the same for the same seed and structures, whatever was drawn before."""
+    """Return draw number `index`, which depends only on the seed and the structures."""
     rng = np.random.default_rng([seed, index])
 
     def decade(name: str) -> float:
@@ -66,7 +66,7 @@ def draw(seed: int, index: int, structures: list[Structure]) -> Draw:
 
 
 def _special(rng: np.random.Generator, base: Scene, decade: Any) -> dict[str, Any]:
-    """A dimer, an impurity, thrown beads: each in some scenes, as fields of a scene."""
+    """Draw a dimer, an impurity and thrown beads, each for some scenes, as fields of a scene."""
     found: dict[str, Any] = {}
     bead = base.bead(1)
 

@@ -1,8 +1,8 @@
-"""Hostile command lines: valid ones of all commands, in which some words are replaced, dropped, doubled or added.
+"""Hostile command lines: valid ones of all commands in which some words are replaced, dropped, doubled or added.
 
-Every command line must end with the contract's status: 0, 2 with one printable sentence on stderr and nothing on
-stdout, or 3. They run one after the other in a child, which saves the second that Python and its libraries take to
-start; a child that does not answer in time is killed and its command line is listed.
+Every command line must end with one of the contract's statuses: 0, 2 with one printable sentence on stderr and nothing
+on stdout, or 3. They run one after another in a child process, which saves the second that Python and its libraries
+take to start. A child that does not answer in time is killed, and its command line is listed.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ from app.cli.commands import COMMANDS
 from .values import text
 
 _SMALL = "--set N=2 --set f=3000 --set accuracy=1e-3"
-#: Each ends within seconds as it stands, and with a word less: the longest, `check`, `accuracy` and `serve`, have a
-#: word that is refused after the parser. None can harm a file outside its folder.
+#: Each ends within seconds as written, and also with a word missing: the longest, `check`, `accuracy` and `serve`, have
+#: a word that is refused after parsing. None can harm a file outside its folder.
 _WRITTEN = tuple(line.split() for line in (
     f"run sec2 {_SMALL} --periods 0 --record 1 --samples 4 --json",
     f"run sec2 {_SMALL} --periods 2 --record 1 --samples 8 --out run.h5 --explain",
@@ -51,7 +51,7 @@ _WRITTEN = tuple(line.split() for line in (
     "check --quack --quock", "accuracy sec2 --set N=zwei --set f=lots", "lyapunov sec2 --set N=0 --set D=-1",
     "basins sec2 --set N=0 --set D=-1", "serve --port 0x10 --address 256.1.1.1 --most-visitors 0",
     "--help", "run --help", "nonsense", ""))
-#: These, and the example of each command that has none among them: one at least that the parser takes for each command.
+#: These, and the examples of the commands not among them, so that each command has a line that the parser accepts.
 BASES = (*_WRITTEN, *([name, *row.example.split()] for name, row in COMMANDS.items()
                       if name not in {base[0] for base in _WRITTEN if base}))
 _OPTIONS = sorted({word for base in BASES for word in base if word.startswith("--")} | {
@@ -63,7 +63,7 @@ _FILES = {
 
 
 def drawn(rng: random.Random) -> list[str]:
-    """One hostile command line."""
+    """Draw a hostile command line."""
     words = list(rng.choice(BASES))
     for _ in range(rng.randrange(1, 4)):
         place = rng.randrange(len(words) + 1)
@@ -83,7 +83,7 @@ def drawn(rng: random.Random) -> list[str]:
 
 
 def faults(words: list[str], status: object, out: str, err: str) -> list[str]:
-    """What is wrong with the end of a command line."""
+    """Return what is wrong with the way in which a command line ended."""
     found = []
     if status not in (0, 2, 3):
         found.append(f"status {status}")
@@ -127,7 +127,7 @@ def _serve(pipe: Connection, folder: str) -> None:
 
 
 class Child:
-    """A process in which command lines run, renewed when one of them does not end."""
+    """A process in which command lines run; it is replaced when one of them does not end."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
@@ -143,7 +143,7 @@ class Child:
         theirs.close()
 
     def run(self, words: list[str], seconds: float) -> tuple[object, str, str] | None:
-        """Status, stdout and stderr; None if it did not end, "died" if the process did."""
+        """Run a command line; return status ("died" if it did), stdout and stderr; None if it did not end."""
         self._pipe.send(words)
         try:
             if self._pipe.poll(seconds):
@@ -157,13 +157,13 @@ class Child:
         return ended
 
     def close(self) -> None:
-        """End it."""
+        """Kill the process."""
         self._process.kill()
         self._process.join()
 
 
 def run(count: int, seed: int, seconds: float) -> int:
-    """Run `count` command lines, print those that ended wrongly and the table; the number of wrong ends."""
+    """Run `count` command lines, print those that ended wrongly and a summary; return the number of faults."""
     rng, ends, wrong = random.Random(seed), Counter[str](), Counter[str]()
     with tempfile.TemporaryDirectory() as folder:
         child = Child(Path(folder))

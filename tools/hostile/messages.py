@@ -1,8 +1,8 @@
-"""Hostile messages: a page is opened over a raw websocket and sends what no browser sends.
+"""Hostile messages: a page is opened over a raw websocket and sends messages that no browser sends.
 
-Messages of our own parts with values that no part sends, changes of properties of all kinds of models, events and
-message types that do not exist, frames that are not messages. Beside it a second visitor moves a knob all the time:
-each of its moves must be answered. A connection that the server closes is opened anew.
+They are messages of our own parts with values that no part sends, changes of properties of all kinds of models, events
+and message types that do not exist, and frames that are not messages. At the same time, a second visitor keeps moving a
+knob, and each of its moves must be answered. A connection that the server closes is opened again.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class Attacker(Visitor):
 
     @property
     def connected(self) -> bool:
-        """Whether the server still listens."""
+        """Whether the connection is still open."""
         return self._reader is not None and not self._reader.done()
 
     async def _take(self, kind: str, content: str) -> None:
@@ -45,7 +45,7 @@ class Attacker(Visitor):
         await super()._take(kind, content)
 
     async def attack(self) -> str:
-        """Send something; returns what kind of thing."""
+        """Send a hostile message and return its kind."""
         name, send = self._rng.choice((("message of a part", self._part), ("message of a part", self._part),
                                        ("property", self._property), ("large property", self._large_property),
                                        ("document event", self._document_event),
@@ -90,7 +90,7 @@ class Attacker(Visitor):
 
 
 async def run(server: Started, count: int, seed: int) -> int:
-    """Send `count` hostile messages beside a visitor who goes on moving; the number of moves without an answer."""
+    """Send `count` hostile messages while a visitor keeps moving; return how many of the moves had no answer."""
     rng, sent = random.Random(seed), Counter[str]()
     actions = actions_of_the_page()
     neighbour = Visitor(server.address)
@@ -109,9 +109,9 @@ async def run(server: Started, count: int, seed: int) -> int:
                 unanswered += 1
         try:
             sent[await attacker.attack()] += 1
-        except Exception as closed:  # by the server, between the look and the message
+        except Exception as closed:  # by the server, between the check and the message
             sent[f"closed: {type(closed).__name__}"] += 1
-        await asyncio.sleep(0.01)  # below the limit of messages a second, whose own test is tests/serve/http/test_security.py
+        await asyncio.sleep(0.01)  # below the limit of messages per second, which tests/serve/http/test_security.py tests
     await attacker.leave()
     last = Visitor(server.address)
     await last.open()
@@ -123,7 +123,7 @@ async def run(server: Started, count: int, seed: int) -> int:
     if server.process:
         print(f"memory of the server: {before:.0f} MB with the first visitor, {figures(server.number)[0]:.0f} MB at the end")
     late = sum(one is None for one in times) + (answered is None) + unanswered
-    print(f"moves of the visitor beside it and first pictures: {len(times) + connections}, without an answer {late}, "
+    print(f"moves of the other visitor and first pictures: {len(times) + connections}, without an answer {late}, "
           f"slowest {1e3 * max((one for one in times if one is not None), default=0.0):.0f} ms")
     return late
 
@@ -138,7 +138,7 @@ async def _move(visitor: Visitor, rng: random.Random) -> None:
 
 
 def actions_of_the_page() -> tuple[str, ...]:
-    """The names of all messages that the page's parts send."""
+    """Return the names of all messages that the page's parts send."""
     from bokeh.document import Document
 
     from app.session.session import Session

@@ -1,4 +1,4 @@
-"""Values that no user means: as text for command lines, and as JSON for messages."""
+"""Values that no user means to enter: as text for command lines, and as JSON for messages."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ TEXTS = (
 
 
 def text(rng: random.Random) -> str:
-    """One of the list, or random characters of all planes of Unicode."""
+    """Return a text from the list, or random characters from all planes of Unicode."""
     if rng.random() < 0.8:
         return rng.choice(TEXTS)
     return "".join(chr(rng.choice((rng.randrange(1, 128), rng.randrange(128, 0xD800), rng.randrange(0xE000, 0x110000))))
@@ -25,7 +25,7 @@ def text(rng: random.Random) -> str:
 
 
 def value(rng: random.Random, depth: int = 3) -> Any:
-    """Anything that JSON and Bokeh's own notation of numbers and objects can say."""
+    """Return any value that JSON and Bokeh's own notation of numbers and objects can express."""
     kind = rng.randrange(11 if depth else 8)
     if kind < 3:
         return rng.choice((0, -1, 1, 1e15, -1e15, 1e308, 5e-324, 10**400, 0.5, 2**53, 2**63, True, False, None))

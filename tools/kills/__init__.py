@@ -1,1 +1,1 @@
-"""Commands killed at random instants: tracebacks, hangs, children left, finished points lost."""
+"""Commands killed at random instants: tracebacks, hangs, leftover children, lost points."""

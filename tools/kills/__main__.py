@@ -1,9 +1,9 @@
-"""Program: kill commands at random instants, let them go on with --resume, and count what goes wrong.
+"""Program: kill commands at random instants, let them continue with --resume, and count what goes wrong.
 
     python -m tools.kills [--count 100] [--seed 1] [--minutes 10] [run] [curve] [branch] [map]
 
-Each command is started, ended after a random time by SIGINT, SIGTERM or SIGKILL, looked at, and started again with
---resume until it is done; its result is then compared with that of a command that nobody disturbed.
+Each command is started, ended after a random time by SIGINT, SIGTERM or SIGKILL, inspected, and started again with
+--resume until it is done. Its result is then compared with that of an undisturbed command.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from .trial import COMMANDS, Counts, trial
 
 
 def main() -> None:
-    """Print a row for each command, and every fault on the way."""
+    """Print a row for each command, and every fault as it happens."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("commands", nargs="*", default=list(COMMANDS), metavar="COMMAND")
     parser.add_argument("--count", type=int, default=100, help="kills of each command")

@@ -1,4 +1,4 @@
-"""What a killed command has finished, read from its files without the code that wrote them going on."""
+"""The pieces that a killed command has finished, read from its files without continuing the computation."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-#: Everything in the root of a result that two computations of the same have in common.
+#: Attributes in the root of a result that differ between two computations of the same result.
 _TIMES = {"created", "wall_s", "cost"}
 
 
 def finished_in(name: str, out: Path) -> set[Hashable]:
-    """Names of the finished pieces: those of the result if it is there, else those in its blocks."""
+    """Return the names of the finished pieces, those in the blocks and those of the result if it exists."""
     pieces = {piece for content in _blocks(Path(f"{out}.blocks")) for piece in _PIECES[name](content)}
     if out.exists():
         with h5py.File(out, "r") as file:
@@ -51,7 +51,7 @@ def _orbits_in_file(file: h5py.File) -> Iterator[Hashable]:
 
 def _all_periods(file: h5py.File) -> Iterator[Hashable]:
     periods = round(float(file["run/time"][0]) * float(file.attrs["knob_f"]))
-    for computation in range(1, 10):  # a run has fewer; a finished one has them all
+    for computation in range(1, 10):  # more than a run has; a finished run has them all
         yield from ((f"{computation} done", done) for done in range(periods))
 
 
@@ -70,7 +70,7 @@ _IN_FILE: dict[str, Callable[[h5py.File], Iterator[Hashable]]] = {
 
 
 def differing(whole: Path, out: Path) -> str:
-    """How a result differs, bit by bit, from that of the command that nobody disturbed; empty where it does not."""
+    """Say where a result differs, bit by bit, from that of the undisturbed command; return "" if it does not."""
     with h5py.File(whole, "r") as one, h5py.File(out, "r") as other:
         found = [key for key in one.attrs if key not in _TIMES and repr(one.attrs[key]) != repr(other.attrs.get(key))]
 

@@ -1,4 +1,4 @@
-"""A command in a process of its own whose descendants can be found, wherever they have moved to. Linux only."""
+"""A command in a process of its own whose descendants can be found even in other process groups. Linux only."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 #: Every process that a command starts inherits this variable.
 _MARK = "GRANCHAIN_STARTED_BY"
-#: A command that has not ended after this time hangs [s].
+#: Time after which a command that has not ended counts as hung [s].
 HANGS = 20.0
 
 
@@ -39,7 +39,7 @@ class Command:
             self.process.send_signal(number)
 
     def listening(self) -> bool:
-        """Whether its entry has taken signals over: Python itself does not catch SIGTERM."""
+        """Return whether its entry has taken over the signals; Python itself does not catch SIGTERM."""
         try:
             status = Path(f"/proc/{self.process.pid}/status").read_text()
         except OSError:
@@ -47,7 +47,7 @@ class Command:
         return bool(int(status.split("SigCgt:")[1].split()[0], 16) >> signal.SIGTERM - 1 & 1)
 
     def end(self, timeout: float = HANGS) -> int | None:
-        """The exit status, None if the process has not ended by then; it is killed."""
+        """Wait for the exit status; if the process has not ended by then, kill it and return None."""
         try:
             self.out, self.err = self.process.communicate(timeout=timeout)
         except subprocess.TimeoutExpired:
@@ -56,14 +56,14 @@ class Command:
         return self.process.returncode
 
     def left(self, within: float = 3.0) -> list[int]:
-        """Processes it started that are still there, after at most `within` seconds."""
+        """Return the processes it started that still exist after `within` seconds; wait no longer than needed."""
         until = time.monotonic() + within
         while (found := self.descendants()) and time.monotonic() < until:
             time.sleep(0.02)
         return found
 
     def descendants(self) -> list[int]:
-        """All processes with its mark but itself."""
+        """Return all processes with its mark except itself."""
         mark = f"{_MARK}={self.mark}".encode()
         found = []
         for folder in Path("/proc").iterdir():
@@ -71,12 +71,12 @@ class Command:
                 try:
                     if mark in (folder / "environ").read_bytes().split(b"\0"):
                         found.append(int(folder.name))
-                except OSError:  # it has just ended, or is another user's
+                except OSError:  # the process has just ended, or is another user's
                     continue
         return found
 
     def processor_time(self) -> float:
-        """What it and its descendants have used so far [s], without those that have ended and not been waited for."""
+        """Return the processor time of it and its descendants so far [s], without ended ones not waited for."""
         used = 0
         for pid in [self.process.pid, *self.descendants()]:
             with suppress(OSError):  # it has just ended
@@ -94,5 +94,5 @@ class Command:
 
 
 def _hear_interrupts() -> None:
-    """A shell's background jobs ignore interrupts, and their children inherit that."""
+    """Restore the handling of interrupts, which a shell's background jobs and therefore their children ignore."""
     signal.signal(signal.SIGINT, signal.default_int_handler)

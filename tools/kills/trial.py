@@ -1,4 +1,4 @@
-"""Killing one command again and again."""
+"""Kill one command repeatedly."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from pathlib import Path
 from .finished import differing, finished_in
 from .processes import HANGS, Command
 
-#: Each takes some seconds with compiled kernels.
+#: The commands; each takes a few seconds with compiled kernels.
 COMMANDS = {
     "run": ("run", "sec2", "--periods", "3000", "--record", "5", "--samples", "16"),
     "curve": ("curve", "sec2", "--from", "300", "--to", "1500", "--points", "50", "--start", "up"),
@@ -23,13 +23,13 @@ COMMANDS = {
     "map": ("map", "sec2", "--x", "f=300:1500:12", "--y", "A0=2e-7:4e-6:12:log"),
 }
 _STATUS = {signal.SIGINT: 130, signal.SIGTERM: 143, signal.SIGKILL: -signal.SIGKILL}
-#: What a signal may take [s].
+#: Time in which a signalled command has to end [s].
 _PROMISED = 3.0
 
 
 @dataclass
 class Counts:
-    """What happened."""
+    """Counts of kills, faults, kept points and completed results."""
 
     kills: Counter[signal.Signals] = field(default_factory=Counter)
     faults: Counter[str] = field(default_factory=Counter)
@@ -41,27 +41,27 @@ class Counts:
 
     @classmethod
     def header(cls) -> str:
-        """The head of the table."""
+        """Return the head of the table."""
         names = ("command", "SIGINT", "SIGTERM", "SIGKILL", "results completed", "points kept", "slowest end", *cls._FAULTS)
         return f"| {' | '.join(names)} |\n|{'---|' * len(names)}"
 
     def row(self, name: str) -> str:
-        """A row of the table."""
+        """Return a row of the table."""
         kills = [self.kills[number] for number in _STATUS]
         cells = (name, *kills, self.completed, self.kept, f"{self.slowest:.2f} s", *(self.faults[f] for f in self._FAULTS))
         return f"| {' | '.join(map(str, cells))} |"
 
     def fault(self, kind: str, about: str) -> None:
-        """Count a fault and show it."""
+        """Count a fault and print it."""
         self.faults[kind] += 1
         print(f"{kind}: {about}", flush=True)
 
 
 def trial(name: str, count: int, rng: random.Random, folder: Path, minutes: float) -> Counts:
-    """Kill a command `count` times, or for so many minutes; all it writes is in `folder`."""
+    """Kill a command `count` times, or for at most `minutes`; everything it writes is in `folder`."""
     counts, until = Counts(), time.monotonic() + 60.0 * minutes
     whole, takes = folder / "whole.h5", 0.0
-    for _ in range(2):  # the first one may compile
+    for _ in range(2):  # the first may compile
         began = time.monotonic()
         undisturbed = Command(*COMMANDS[name], "--out", str(whole))
         if undisturbed.end(timeout=600.0) != 0:
@@ -90,7 +90,7 @@ def trial(name: str, count: int, rng: random.Random, folder: Path, minutes: floa
 
 
 def _kill(command: Command, number: signal.Signals, rng: random.Random, counts: Counts) -> None:
-    """Send the signal, and see how the process ends; one that has ended already is not counted as killed."""
+    """Send the signal and check how the process ends; a process that has already ended does not count as killed."""
     began = time.monotonic()
     alive = command.process.poll() is None
     if alive:

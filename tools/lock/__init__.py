@@ -1,1 +1,1 @@
-"""The lock file: exact versions of what granchain needs, with the hashes of their wheels."""
+"""The lock files: exact versions of the packages that granchain needs, with the hashes of their wheels."""

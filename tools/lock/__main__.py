@@ -1,10 +1,11 @@
-"""Writes the lock files: what pip chooses for pyproject.toml today, with the hash of each wheel.
+"""Writes the lock files: the versions that pip chooses for pyproject.toml today, with the hash of each wheel.
 
     python -m tools.lock
 
-requirements.lock has what granchain needs, requirements-build.lock what building it needs. The versions are those of
-the first platform; on the others the same are asked for. `pip install --require-hashes -r requirements.lock` installs
-nothing that is not in it. Linux only: the container's system, and that of continuous integration.
+requirements.lock has the packages that granchain needs, and requirements-build.lock those needed to build it. The first
+platform decides the versions, and the same versions are requested for the others. `pip install --require-hashes -r
+requirements.lock` installs nothing that is not in the file. Only Linux is covered: the container's system, and that of
+continuous integration.
 """
 
 from __future__ import annotations
@@ -17,13 +18,13 @@ import tomllib
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-#: Python and machine of each; the first decides the versions.
+#: Python version and machine of each platform; the first decides the package versions.
 PLATFORMS = (("3.13", "x86_64"), ("3.11", "x86_64"), ("3.12", "x86_64"), ("3.13", "aarch64"))
 _INDEX = "https://pypi.org/simple"
 
 
 def chosen(wanted: list[str], python: str, machine: str) -> dict[str, tuple[str, str]]:
-    """Version and SHA-256 of what pip would install, by name."""
+    """Return version and SHA-256 of the packages that pip would install, by name."""
     platforms = [f"--platform=manylinux_{glibc}_{machine}" for glibc in ("2_17", "2_27", "2_28")]
     with tempfile.TemporaryDirectory() as folder:
         report = Path(folder) / "report.json"
@@ -37,7 +38,7 @@ def chosen(wanted: list[str], python: str, machine: str) -> dict[str, tuple[str,
 
 
 def write_lock(wanted: list[str], path: Path) -> None:
-    """Ask pip for each platform and write the file."""
+    """Ask pip about each platform and write the file."""
     versions: dict[str, str] = {}
     hashes: dict[str, set[str]] = {}
     for python, machine in PLATFORMS:

@@ -1,1 +1,1 @@
-"""Mutation testing of the numerical core: laws, tangents, events and tolerances changed on purpose, one at a time."""
+"""Mutation testing of the numerical core: deliberate changes, one at a time, of laws, tangents, events, tolerances."""

@@ -1,4 +1,4 @@
-"""A temporary copy of the project in which one file at a time is changed and tests are run."""
+"""A temporary copy of the project, in which one file at a time is changed and tests are run."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from pathlib import Path
 
 from .mutant import ROOT, Mutant
 
-#: Exit status of the child where not the copy but another granchain_core was imported.
+#: Exit status of the child if it imported another granchain_core than the copy's.
 _ELSEWHERE = 99
-#: What the child runs: pytest, once it is sure of which package it tests. A core that cannot be imported is
+#: The child's program: pytest, after a check that the copy's package is tested. A core that cannot be imported is
 #: stillborn too.
 _PROGRAM = f"""
 import pathlib, sys
@@ -36,7 +36,7 @@ sys.exit(pytest.main(sys.argv[1:]))
 class Outcome:
     """How a run of tests ended: "passed", "failed", "timed out", "crashed" or "stillborn"; the first test that failed.
 
-    A stillborn mutant is one that Numba refuses to compile: no test is needed for it, and it does not count.
+    A stillborn mutant is one that Numba refuses to compile; it needs no test and does not count as dead.
     """
 
     verdict: str
@@ -46,9 +46,9 @@ class Outcome:
 
 
 class Bench:
-    """The copy, its kernel caches and the interpreter; a context manager that removes them.
+    """The copy and its kernel caches; a context manager that removes them.
 
-    Compiled kernels of the unchanged core are kept in `plain` and serve mutants that change no kernel.
+    The compiled kernels of the unchanged core are kept in `plain` and are used for mutants that change no kernel.
     """
 
     def __init__(self, folder: Path | None = None) -> None:
@@ -71,11 +71,11 @@ class Bench:
             shutil.rmtree(self.folder, ignore_errors=True)
 
     def plainly(self, words: tuple[str, ...], limit: float, optimised: bool = False) -> Outcome:
-        """The tests with the core as it is."""
+        """Run the tests with the unchanged core."""
         return self._pytest(words, self.folder / "optimised" if optimised else self.plain, limit, optimised)
 
     def mutated(self, mutant: Mutant, words: tuple[str, ...], limit: float) -> Outcome:
-        """The tests with one change in the core."""
+        """Run the tests with one change in the core."""
         path = self.tree / mutant.path
         before = path.read_bytes()
         path.write_text(mutant.applied(before.decode("utf-8")), encoding="utf-8")
@@ -88,7 +88,7 @@ class Bench:
 
     def _pytest(self, words: tuple[str, ...], cache: Path, limit: float, optimised: bool) -> Outcome:
         cache.mkdir(parents=True, exist_ok=True)
-        # compiled code need not be fast here, and no pyc may outlive the change of its source
+        # compiled code need not be fast here, and no .pyc file may outlive a change of its source
         environment = {**os.environ, "PYTHONPATH": str(self.tree), "GRANCHAIN_CACHE": str(cache),
                        "NUMBA_OPT": "3" if optimised else "1", "PYTHONDONTWRITEBYTECODE": "1"}
         command = [sys.executable, "-c", _PROGRAM, "-x", "-q", "-p", "no:cacheprovider", "--no-header", "--tb=line",

@@ -1,6 +1,6 @@
-"""Whether the table of mutants is in step with the core: the text each changes is there, and the tests it names.
+"""Checks that the table of mutants matches the project: the text that each changes exists, and so do its tests.
 
-For the latter pytest collects the tests, since a name may be that of a parameter.
+To check the tests, pytest collects them, since a name may be that of a parameter.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ from .table import BROAD, DEMANDED, MUTANTS
 
 
 def problems() -> list[str]:
-    """One sentence for each entry of the table that no longer fits the project; none where the table is in step."""
+    """Return a sentence for each entry of the table that no longer matches the project."""
     names = Counter(one.name for one in MUTANTS)
-    found = [f"{name} stands {times} times in the table" for name, times in names.items() if times > 1]
+    found = [f"{name} is {times} times in the table" for name, times in names.items() if times > 1]
     found += [f"{name} is demanded ({group}) and not in the table"
               for group, members in DEMANDED.items() for name in members if name not in names]
     for one in MUTANTS:
@@ -30,8 +30,7 @@ def problems() -> list[str]:
 
 
 def _text_problems(one: Mutant) -> Iterator[str]:
-    """Whether the mutant's text is in its file, as often as it says, and what it leaves is Python whose imports exist.
-    """
+    """Check that the mutant's text is in its file, as often as stated, and leaves valid Python whose imports exist."""
     path = ROOT / one.path
     if not path.exists():
         yield f"{one.name}: there is no file {one.path}"
@@ -47,13 +46,13 @@ def _text_problems(one: Mutant) -> Iterator[str]:
         yield f"{one.name} changes nothing"
     for name in sorted(_imports(changed, path) - _imports(text, path)):
         if not _is_there(name):
-            yield f"{one.name} imports {name}, which is not there"
+            yield f"{one.name} imports {name}, which does not exist"
     if not 1 <= one.which <= one.count:
         yield f"{one.name}: place {one.which} of {one.count}"
 
 
 def _imports(text: str, path: Path) -> set[str]:
-    """Dotted names, from the project's root, of all that a file imports from the project."""
+    """Return the dotted names, from the project's root, of everything that a file imports from the project."""
     package = path.relative_to(ROOT).parent.parts
     found = set()
     for node in ast.walk(ast.parse(text)):
@@ -67,7 +66,7 @@ def _imports(text: str, path: Path) -> set[str]:
 
 
 def _is_there(name: str) -> bool:
-    """Whether a dotted name is a module of the project, or stands at the top level of one."""
+    """Return whether a dotted name is a module of the project, or is defined at the top level of one."""
     place = ROOT.joinpath(*name.split("."))
     if place.with_suffix(".py").exists() or place.is_dir():
         return True
@@ -86,7 +85,7 @@ def _is_there(name: str) -> bool:
 
 
 def _test_problems(lists: set[tuple[str, ...]]) -> Iterator[str]:
-    """Whether the tests that pytest is given exist: files, functions, and those that `-k` chooses among them."""
+    """Check that the tests given to pytest exist: files, functions, and those that `-k` selects among them."""
     places = {word for words in lists for word in words if word.startswith("tests/")}
     files = sorted({word.partition("::")[0] for word in places})
     missing = [file for file in files if not (ROOT / file).exists()]
@@ -105,7 +104,7 @@ def _test_problems(lists: set[tuple[str, ...]]) -> Iterator[str]:
 
 
 def _collected(files: list[str]) -> tuple[list[str], str]:
-    """The tests in these files and folders, as pytest names them; or why they cannot be told."""
+    """Return the tests in these files and folders, as pytest names them; if they cannot be collected, the reason."""
     done = subprocess.run([sys.executable, "-m", "pytest", "--collect-only", "-q", "-o", "addopts=", "-p",
                            "no:cacheprovider", *files], cwd=ROOT, capture_output=True, text=True, check=False)
     if done.returncode != 0:
@@ -114,12 +113,12 @@ def _collected(files: list[str]) -> tuple[list[str], str]:
 
 
 def _is_of(place: str, test: str) -> bool:
-    """Whether a test is that place, or one of those in it."""
+    """Return whether a test is that place, or in it."""
     return test == place or (test.startswith(place) and test[len(place)] in "/:[")
 
 
 def _choice_problems(expression: str, tests: list[str]) -> Iterator[str]:
-    """Whether each word of an expression of `-k` is part of a test's name, and the whole chooses at least one."""
+    """Check that each word of a `-k` expression is part of a test's name, and that it selects at least one test."""
     words = set(re.findall(r"[^\s()]+", expression)) - {"and", "or", "not"}
     names = [one.lower() for one in tests]
     unknown = sorted(word for word in words if not any(word.lower() in name for name in names))
@@ -127,4 +126,4 @@ def _choice_problems(expression: str, tests: list[str]) -> Iterator[str]:
     chooses = re.sub(r"[^\s()]+", lambda match: match[0] if match[0] in ("and", "or", "not")
                      else f"({match[0].lower()!r} in name)", expression)
     if not unknown and not any(eval(chooses, {"name": name}) for name in names):
-        yield f"{expression!r} chooses no test"
+        yield f"{expression!r} selects no test"

@@ -1,9 +1,9 @@
-"""The tests that ought to notice, those that compile least; words for pytest."""
+"""The tests that should notice a mutant, those that compile least, as arguments for pytest."""
 
 from __future__ import annotations
 
-#: The right-hand side against the (u, v) equations of the paper, NaN, equilibrium, v to w and back; the same where
-#: beads are not alike; NaN in every member; what is not finite.
+#: The right-hand side against the (u, v) equations of the paper, NaN, equilibrium, v to w and back; the same for unlike
+#: beads; NaN in every member; values that are not finite.
 MOTION = ("tests/kernels/equations/test_motion.py",)
 UNLIKE = ("tests/kernels/effects/test_scaled_numbers.py", "tests/kernels/effects/test_given_force.py",
           "tests/kernels/error_control/test_force_kinks.py")
@@ -19,7 +19,7 @@ ENERGY_WORK = ("tests/physics/test_energy.py", "-k", "work_and_loss and linear-a
 ON_THE_WAY = ("tests/physics/test_work_on_the_way.py",)
 REFERENCE = ("tests/physics/test_reference.py::test_displacements_agree_to_1e_8_at_every_sample[sec2-340]",)
 
-#: What happens inside one fixed step, run by Python; a whole touch inside one.
+#: Events inside one fixed step, run by Python; a complete touch inside one step.
 STEP_EVENTS = ("tests/kernels/rk4/test_step_events.py",)
 CUBIC = ("tests/kernels/test_contact_cubic.py",)
 EVENT_PREDICATES = ("tests/kernels/test_event_predicates.py",)
@@ -59,7 +59,7 @@ ROOT_FORCES = ("tests/integrate/test_dop853_root.py", "-k", "motion_and_forces a
 ROOT_TOUCH = ("tests/integrate/test_dop853_root.py", "-k", "brief_touch")
 MARKS = ("tests/kernels/simd/test_marks.py",)
 
-#: Eight chains at once: their order, their forces, unlike beads, the drive's phase, what they believe.
+#: Eight chains at once: their order, their forces, unlike beads, the drive phase, their checks.
 BATCH = ("tests/kernels/batch/test_batch_steps.py", "-k", "order_three and sec2")
 BATCH_ONE = ("tests/kernels/batch/test_batch_steps.py", "-k", "order_three and one")
 BATCH_KK = ("tests/kernels/batch/test_batch_steps.py", "-k", "order_three and Kuwabara")
@@ -100,7 +100,7 @@ CHECKPOINTS = ("tests/integrate/test_checkpoints.py",)
 FAILURES_T = ("tests/integrate/test_not_finite.py", "-k", "counts_from_the_start")
 STIFFEST = ("tests/integrate/test_failures.py", "-k", "stiffest")
 
-#: What is claimed of a motion.
+#: Claims about a motion.
 HONESTY = ("tests/numerics/test_stated_errors.py", "-k", "not curve")
 SAME_STEPS = ("tests/numerics/test_stated_errors.py", "-k", "same_steps")
 REGIMES = ("tests/kernels/strobes/test_periodicity.py", "-k", "linear_map or slow_approach or roots_of_one or closed_curve")

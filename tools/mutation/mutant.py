@@ -1,4 +1,4 @@
-"""One deliberate change of the core: where, from what, to what, what it breaks, and which tests ought to notice."""
+"""A deliberate change of the core: its place, old and new text, what it breaks, and the tests that should notice."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ ROOT = Path(__file__).resolve().parents[2]
 
 @dataclass(frozen=True)
 class Mutant:
-    """The text `old` of a file of granchain_core becomes `new`.
+    """A change of the text `old` in a file of granchain_core to `new`.
 
     `old` occurs there `count` times, of which the `which`-th is changed. `breaks` says in one line what is wrong
-    physically or numerically. `killers` are words for pytest: node ids, or a file with `-k` and an expression. `blind`
-    are tests that must pass nevertheless, to show what they do not see. With `optimised` kernels are compiled as usual
-    and not quickly, for mutants of the compiler's options.
+    physically or numerically. `killers` are arguments for pytest: node ids, or a file with `-k` and an expression.
+    `blind` are tests that must pass nevertheless, to show what they do not detect. With `optimised`, kernels are
+    compiled with the usual optimisation instead of quickly, for mutants of the compiler's options.
     """
 
     name: str
@@ -31,12 +31,12 @@ class Mutant:
 
     @property
     def path(self) -> str:
-        """The file from the project's root."""
+        """Path of the file from the project's root."""
         return self.file if self.file.startswith("tests/") else f"granchain_core/{self.file}"
 
     @property
     def in_kernels(self) -> bool:
-        """Whether every kernel is compiled anew with it."""
+        """Whether every kernel has to be compiled again."""
         return self.file.startswith("kernels/")
 
     @property
@@ -47,9 +47,9 @@ class Mutant:
         return 1 + text.count("\n", 0, start) + (len(self.old) - len(self.old.lstrip("\n")))
 
     def applied(self, text: str) -> str:
-        """The file's text with the change in it; `ValueError` where `old` does not stand there as often as said."""
+        """Return the file's text with the change; raise `ValueError` if `old` does not occur there `count` times."""
         found = text.count(self.old)
         if found != self.count:
-            raise ValueError(f"{self.name}: {self.old!r} stands {found} times in {self.path}, not {self.count}")
+            raise ValueError(f"{self.name}: {self.old!r} occurs {found} times in {self.path}, not {self.count}")
         pieces = text.split(self.old)
         return self.old.join(pieces[: self.which]) + self.new + self.old.join(pieces[self.which :])

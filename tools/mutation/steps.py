@@ -1,4 +1,4 @@
-"""Mutants of how time goes on: the equations of motion, fixed steps and what they give back, error control."""
+"""Mutants of the time stepping: equations of motion, fixed steps and their corrections, error control, the clock."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _SAMPLING, _ENGINE = "kernels/rk4/run.py", "integrate/engine.py"
 MOTION = (
     Mutant("motion-without-last-contact", _MOTION, "for c in range(bodies - 1):\n        d = closed_overlap(forces.frozen, c, overlap(slots.preload, y, c))\n        e[c] =",
            "for c in range(bodies - 2):\n        d = closed_overlap(forces.frozen, c, overlap(slots.preload, y, c))\n        e[c] =",
-           "the wall's contact is not summed", k.MOTION),
+           "the wall's contact is left out of the sum", k.MOTION),
     Mutant("contact-force-elastic-only", _MOTION, "e[c] + damped)",
            "e[c])", "forces are reported without their damping", k.MOTION),
     Mutant("foundation-over-first-mass", _MOTION,
@@ -24,23 +24,23 @@ MOTION = (
     Mutant("kinetic-energy-of-equal-beads", _MOTION, "0.5 * dy[i] * dy[i] / inverse_mass[i]",
            "0.5 * dy[i] * dy[i] * inverse_mass[i]", "the kinetic energy of a heavy bead is too small", k.UNLIKE),
     Mutant("start-velocity-taken-for-w", _MOTION, "    if from_velocity:\n", "    if from_velocity and bodies < 0:\n",
-           "a state in velocities is taken for one in w", k.MOTION),
+           "a state in v is taken for one in w", k.MOTION),
 )
 
 FIXED = (
     Mutant("rk4-weights", _FIXED, "h / 6.0 * (k[0, i] + 2.0 * (k[1, i] + k[2, i]) + k[3, i])",
-           "h / 8.0 * (k[0, i] + 3.0 * (k[1, i] + k[2, i]) + k[3, i])", "order 2 in place of 4", k.RK4_ORDER),
+           "h / 8.0 * (k[0, i] + 3.0 * (k[1, i] + k[2, i]) + k[3, i])", "order 2 instead of 4", k.RK4_ORDER),
     Mutant("rk4-half-step", _FIXED, "stage[i] = y[i] + 0.5 * h * k[1, i]", "stage[i] = y[i] + 0.5 * h * k[0, i]",
            "the third stage starts from the first slope", k.RK4_ORDER),
     Mutant("scalar-split-steps-over-touch", _FIXED,
            "changed |= (before ^ after) | turns(before, rising, risen)", "changed |= before ^ after",
            "a contact that closes and opens again inside a step is not seen", k.EVENT_PREDICATES),
     Mutant("scalar-give-back-sign", _FIXED, "y[bodies + i] += inverse_mass[i] * (ends[MOMENTUM_ERROR", "y[bodies + i] -= inverse_mass[i] * (ends[MOMENTUM_ERROR",
-           "what Simpson's rule gives too much is given once more", k.SIMD_PLAIN),
+           "the excess of Simpson's rule is added again instead of subtracted", k.SIMD_PLAIN),
     Mutant("scalar-split-phase", _FIXED, "theta + dtheta * (done + 0.5 * part), theta", "theta + dtheta * (done + part), theta",
            "the driver is ahead in the middle of a split step", k.SIMD_PLAIN),
     Mutant("give-back-work-sign", _FIXED, "y[y.size - 2] -= excess", "y[y.size - 2] += excess",
-           "the driver's work keeps what was given back", k.STEP_EVENTS),
+           "the driver's work keeps the excess that was subtracted", k.STEP_EVENTS),
     Mutant("hermite-slope", _CUBIC, "a = 2.0 * (d0 - d1) + s0 + s1", "a = 2.0 * (d0 - d1) + s0 - s1",
            "events inside a fixed step are in the wrong place", k.CUBIC, which=1, count=2),
     Mutant("hermite-turn", _CUBIC, "a = 2.0 * (d0 - d1) + s0 + s1", "a = 2.0 * (d0 - d1) + s0 - s1",
@@ -52,21 +52,21 @@ FIXED = (
     Mutant("simpson-wrong-side", _EVENTS, "1.0 - done if rate > 0.0 else done", "done if rate > 0.0 else 1.0 - done",
            "the excess is taken over the open part of the step", k.STEP_EVENTS),
     Mutant("simpson-not-given-back", _EVENTS, "return (part + full_steps) / 6.0 - 1.0 / (p + 1.0) * (r + 2.0) * far", "return 0.0 * (part + full_steps * far * p)",
-           "the impulse beside an event is off by a part of h^{5/2}", k.STEP_EVENTS),
+           "the impulse next to an event is wrong by a term of order h^{5/2}", k.STEP_EVENTS),
     Mutant("simpson-one-step-too-few", _EVENTS, "* (r + 2.0) * far", "* (r + 1.0) * far",
-           "the excess is integrated one step too short", k.STEP_EVENTS),
+           "the excess is integrated over one step too few", k.STEP_EVENTS),
     Mutant("simpson-tsuji-not-given-back", _EVENTS, "+= scale * primitive_excess(law, part)",
-           "+= 0.0 * scale * primitive_excess(law, part)", "the path beside an event of Tsuji's law is off", k.STEP_EVENTS),
+           "+= 0.0 * scale * primitive_excess(law, part)", "the path next to an event of Tsuji's law is wrong", k.STEP_EVENTS),
     Mutant("simpson-kuwabara-kono-power", _EVENTS, "primitive_power(law, speed) * h * primitive_power(law, h)",
            "primitive_power(law, speed) * h * h", "the path's excess has the wrong power of the step", k.STEP_EVENTS),
     Mutant("fixed-step-over-touch", _CUBIC, "if away >= 0.0 or back <= 0.0:", "if away >= -1e300:",
-           "a touch inside a fixed step is found and then not split at", k.CUBIC),
+           "a touch inside a fixed step is found, but the step is not split there", k.CUBIC),
     Mutant("jump-read-at-the-cubics-root", _EVENTS, "        if 0.0 < nearer < most:", "        if 0.0 < nearer < -most:",
            "a jump is read where the cubic has its root, not where the overlap vanishes", k.JUMPS_LOCATED),
     Mutant("touching-beads-stay-open", _CUBIC, "if s0 > 0.0 and d1 > 0.0:", "if s0 > 1e300:",
            "beads that touch at rest are pushed together without an event", k.CUBIC),
     Mutant("later-event-first", _EVENTS, "if root < first:", "if root < 2.0:",
-           "of several events in a step a later one is taken first", k.STEP_EVENTS),
+           "of several events in a step, a later one is handled first", k.STEP_EVENTS),
 )
 
 ERROR_CONTROLLED = (
@@ -81,7 +81,7 @@ ERROR_CONTROLLED = (
            "steps end in front of the event they were aimed at", k.TOUCHES),
     Mutant("event-not-landed-on", _LOCATED,
            "h = locate_event(method, step, limit, aimed, counts)", "pass",
-           "the moment of a contact is as inexact as the dense output", k.TOUCHES),
+           "the time of a contact event is as inexact as the dense output", k.TOUCHES),
     Mutant("event-tolerance-loose", _LOCATED, "_OVERLAP_AIM = 1e-15", "_OVERLAP_AIM = 1e-12",
            "steps end a thousand times as far behind their events", k.TOUCHES),
     Mutant("driver-from-dense-output", _CONTROL, "(step.t + x * step.h)", "(step.t + step.h)",
@@ -90,20 +90,20 @@ ERROR_CONTROLLED = (
            "        aimed = -1\n        if aimed < 0 or x > 1.0 - _NEAR_END:",
            "a smooth method steps across every contact event", k.DOP853_ORDER),
     Mutant("last-event-of-a-step", _LOCATED, "if root < first and not", "if root <= 2.0 and not",
-           "of several contacts that change in a step the last is taken", k.TOUCHES),
+           "of several contacts that change in a step, the last is used", k.TOUCHES),
     Mutant("rejection-loose", _CONTROL, "        if error <= 1.0:", "        if error <= 1000.0:",
-           "steps a thousand times worse than asked for are accepted", k.DOP853_ORDER),
+           "steps with a thousand times the allowed error are accepted", k.DOP853_ORDER),
     Mutant("error-unit-loose", _DOP853, "unit = 1.0 / (tolerance * largest)", "unit = 1.0 / (1000.0 * tolerance * largest)",
-           "the tolerance is a thousandth of what it says", k.DOP853_ORDER),
+           "errors may be a thousand times the tolerance", k.DOP853_ORDER),
     Mutant("error-of-displacements-only", _DOP853, "for row in range(2):\n        largest", "for row in range(1):\n        largest",
            "errors of the velocities are not controlled", k.DOP853_ORDER),
     Mutant("step-too-small-unseen", _CONTROL, "        if is_too_small(0.1 * h, t, trajectory.drive.beta):", "        if is_too_small(2.0 + h, t, trajectory.drive.beta):",
-           "a step that shrinks to nothing goes on for ever", ("tests/hard_cases/test_outcomes.py::test_step_too_small",)),
+           "a step that shrinks to nothing continues forever", ("tests/hard_cases/test_outcomes.py::test_step_too_small",)),
     Mutant("chatter-unseen", _CONTROLLED_RUN, "if events > EVENTS_PER_CONTACT * (bodies - 1):", "if events < 0:",
-           "contacts that open and close without end are followed without a word",
+           "contacts that open and close endlessly are computed without an error",
            ("tests/hard_cases/test_outcomes.py::test_contacts_that_open_and_close_while_no_time_passes_fail_with_a_sentence",)),
     Mutant("events-of-all-times", _CONTROLLED_RUN, "if t - since > EVENT_WINDOW:", "if t < since:",
-           "the touches of a slow drive are called chatter",
+           "the touches under a slow drive are called chatter",
            ("tests/hard_cases/test_outcomes.py::test_thousands_of_touches_in_one_drive_period_are_followed",)),
     Mutant("samples-at-step-ends", _CONTROLLED_RUN, "min(1.0, (at - t) / h)", "1.0",
            "samples are taken where a step happens to end", k.DOP853_ORDER),
@@ -117,9 +117,9 @@ ERROR_CONTROLLED = (
 
 CLOCK = (
     Mutant("t-plus-dt", _ENGINE, "self.stepper.evaluate_at_phase(2 * np.pi * self.grid_index / self.grid,",
-           "self.stepper.evaluate_at_phase(2 * np.pi * self.elapsed,", "the drive's phase is summed up, not counted", k.CONTINUATION),
+           "self.stepper.evaluate_at_phase(2 * np.pi * self.elapsed,", "the drive phase is accumulated, not counted", k.CONTINUATION),
     Mutant("phase-of-start-forgotten", _ENGINE, "self.grid_index = round(at) % self.samples * (self.grid // self.samples)",
-           "self.grid_index = 0", "a start inside a period begins at phase 0", k.CONTINUATION),
+           "self.grid_index = 0", "a start inside a period is at phase 0", k.CONTINUATION),
     Mutant("sample-clock-restarts", _ENGINE, "self.grid_index = (self.grid_index + count * (self.grid // self.samples)) % self.grid",
            "self.grid_index = count * (self.grid // self.samples) % self.grid", "a second record begins at another phase", k.CONTINUATION),
     Mutant("time-column-summed", "results/run.py", "time=(index // engine.samples + inside / engine.samples) * scene.period,",
@@ -131,7 +131,7 @@ CLOCK = (
            "elastic_force(slots.chain.stiffness[0], d))", "the elastic output force is that of a bead, not of the wall",
            k.SIMD_LONG),
     Mutant("peak-between-samples", "kernels/forces/peaks.py", "x = -first / second", "x = first / second",
-           "the top of a force is looked for on the wrong side", k.UNLIKE),
+           "the maximum of a force is sought on the wrong side", k.UNLIKE),
 )
 
 STEPS = MOTION + FIXED + ERROR_CONTROLLED + CLOCK

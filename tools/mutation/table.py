@@ -1,7 +1,4 @@
-"""The table of mutants.
-
-docs/mutation.md says how they were chosen.
-"""
+"""The table of mutants; docs/mutation.md says how they were chosen."""
 
 from __future__ import annotations
 
@@ -29,7 +26,7 @@ DEMANDED: dict[str, tuple[str, ...]] = {
     "step over a touch": ("step-over-a-touch", "flow-steps-over-a-touch", "wide-steps-over-touch"),
 }
 
-#: All tests of the core, what compiles least first: a mutant that survives its own tests is given these.
+#: All tests of the core, those that compile least first; a mutant that survives its own tests is run against these.
 BROAD: tuple[str, ...] = ("tests/kernels", "tests/scene", "tests/physics", "tests/integrate", "tests/runs", "tests/numerics",
                           "tests/steady", "tests/orbits", "tests/observers", "tests/parameter_maps", "tests/hard_cases/test_outcomes.py", "tests/hard_cases/test_broken.py",
                           "tests/hard_cases/test_cases.py", "tests/hard_cases/test_fuzz.py",

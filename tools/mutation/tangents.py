@@ -10,7 +10,7 @@ _FLOW, _TANGENT, _SALTATION = "kernels/flow/run.py", "kernels/flow/tangent.py", 
 _MAP, _ORBIT = "orbits/stroboscopic_map.py", "orbits/orbit.py"
 _NORMAL_FORMS, _CRITICALITY = "orbits/branch/normal_forms.py", "orbits/branch/criticality.py"
 
-#: Tangents in w that jump where those in v would have had to: exactly what a forgotten saltation does to them.
+#: Tangents in w that jump where those in v should have: exactly the effect of a forgotten saltation on them.
 _WITHOUT_SALTATION = """from ..effects.dissipation import damping
 
 
@@ -29,7 +29,7 @@ def _(tangent, slots, c, closes):
 
 FLOW = (
     Mutant("tsuji-in-square-root-time", _TIME, "return 2 if twice == int(twice) else 4", "return 2",
-           "beside an event of Tsuji's law nothing is smooth in the flow's time", k.MONODROMY_TSUJI),
+           "next to an event of Tsuji's law, nothing is smooth in the flow's time", k.MONODROMY_TSUJI),
     Mutant("rate-of-root-time", _TIME, "return 2.0 * s if time.power == 2", "return 1.9 * s if time.power == 2",
            "dt/ds is not the derivative of t(s)", k.ROUTES),
     Mutant("flow-without-last-contact", "kernels/effects/contact.py", "if frozen.closed[c] != 0 else 0.0",
@@ -38,22 +38,22 @@ FLOW = (
     Mutant("open-contacts-close-by-themselves", "kernels/effects/contact.py", "if frozen.closed[c] != 0 else 0.0", "if frozen.closed[c] < 2 else 0.0",
            "the flow's slope has a kink inside its steps", k.MONODROMY),
     Mutant("flow-steps-over-a-touch", _STEP, "if not (crossed or may_turn(d0, s0, d1, s1, sign)):", "if not crossed:",
-           "a touch inside a step of the flow is not seen, nor is its share of the derivative", k.FLOW_TOUCH),
+           "a touch inside a step of the flow is not seen, nor is its contribution to the derivative", k.FLOW_TOUCH),
     Mutant("flow-driver-stands", _STEP, "beta * time_at(step.time, x * step.h)", "beta * time_at(step.time, step.h)",
            "the driver stands still while its contact is looked for", k.MONODROMY),
     Mutant("flow-event-tolerance-loose", _EVENTS, "_LARGEST_EVENT_OVERLAP = 1e-14", "_LARGEST_EVENT_OVERLAP = 1e-7",
            "the flow's events are located to 1e-7", k.MONODROMY),
     Mutant("closing-of-last-period-kept", _FLOW, "last_closing -= period", "last_closing -= 0.0",
-           "time behind a closing is counted from the wrong period", k.TWO_PERIODS),
+           "time after a closing is counted from the wrong period", k.TWO_PERIODS),
     Mutant("events-logged-in-their-period", _FLOW, "toggle_contact(slots, contacts, tangent, contact, p * period + t)",
-           "toggle_contact(slots, contacts, tangent, contact, t)", "the log's times begin anew each period", k.SAME_EVENTS),
+           "toggle_contact(slots, contacts, tangent, contact, t)", "the log's times restart in each period", k.SAME_EVENTS),
     Mutant("closing-not-remembered", _FLOW, "                    last_closing = t\n", "                    last_closing = -np.inf\n",
-           "a step behind a closing is taken in plain time, where nothing is smooth", k.MONODROMY),
+           "a step after a closing is taken in plain time, where nothing is smooth", k.MONODROMY),
 )
 
 TANGENTS = (
     Mutant("no-saltation", _FLOW, "apply_saltation.absent_for(Tangent)\n", _WITHOUT_SALTATION,
-           "tangents go on across an event as if the dashpot's force did not jump there", k.COLUMNS, blind=k.LIOUVILLE),
+           "tangents continue across an event as if the dashpot's force did not jump there", k.COLUMNS, blind=k.LIOUVILLE),
     Mutant("no-saltation-in-second-route", _SALTATION, "shear = tangent.jumps * damping(slots.dissipation, 1.0)",
            "shear = 0.0 * tangent.jumps", "the (u, v) form without its jumps", k.ROUTES),
     Mutant("saltation-at-closing-only", _SALTATION, "        shear = -shear\n", "        shear = 0.0\n",
@@ -63,12 +63,12 @@ TANGENTS = (
     Mutant("determinant-only-check", "tests/orbits/test_multipliers.py",
            "return float((np.abs(found - exact).max(axis=0) / np.abs(exact).max(axis=0)).max())",
            "return float(abs(np.prod(np.linalg.svd(found)[1]) / np.prod(np.linalg.svd(exact)[1]) - 1.0))",
-           "a derivative is held against the reference by its determinant, not column by column", ("tests/orbits/test_multipliers.py", "-k", "dashpot")),
+           "a derivative is compared with the reference by its determinant, not column by column", ("tests/orbits/test_multipliers.py", "-k", "dashpot")),
     Mutant("determinant-only-comparison", "tests/orbits/test_tangents.py",
            "assert np.abs(wrong - right.derivative).max() > 0.05 * np.abs(right.derivative).max()",
            "assert abs(np.linalg.det(wrong) / np.linalg.det(right.derivative) - 1.0) > 0.05",
            "a missing saltation is looked for in the determinant", k.ROUTES),
-    Mutant("tangent-stiffness", _TANGENT, "= dt_ds * elastic_slope(", "= dt_ds / 1.5 * elastic_slope(", "K √δ in place of (3/2) K √δ", k.COLUMNS),
+    Mutant("tangent-stiffness", _TANGENT, "= dt_ds * elastic_slope(", "= dt_ds / 1.5 * elastic_slope(", "K √δ instead of (3/2) K √δ", k.COLUMNS),
     Mutant("tangent-without-damping", _TANGENT, "g = dt_ds * damping(law, d + TINY)", "g = 0.0 * d",
            "neighbours are not damped", k.COLUMNS),
     Mutant("trace-of-one-bead", _TANGENT, "(inverse_mass[c] + inverse_mass[c + 1])", "inverse_mass[c]",
@@ -79,17 +79,17 @@ TANGENTS = (
     Mutant("observer-held-by-the-driver", _TANGENT, "and c >= tangent.first_contact", "and c >= 0",
            "an observer's multipliers are those of its chain", k.OBSERVER_ORBIT),
     Mutant("tangent-foundation-in-plain-time", "kernels/equations/body_forces.py", "slope, du, inverse_mass * dt_ds)", "slope, du, inverse_mass)",
-           "the foundation's share of the tangents is not taken in the step's own time", k.FOUNDED_COLUMNS),
+           "the foundation's part of the tangents is not in the step's own time", k.FOUNDED_COLUMNS),
     Mutant("tangent-stage-weight", _TANGENT, "weights[stage, earlier] = h * A[stage, earlier]",
            "weights[stage, earlier] = h * A[STAGES, earlier] if stage > 6 else h * A[stage, earlier]",
-           "tangents are taken with weights of other stages than the motion", k.COLUMNS),
+           "tangents use the weights of other stages than the motion", k.COLUMNS),
 )
 
 ORBITS = (
     Mutant("velocity-of-one-contact", _MAP, "= -inverse * (gate[:-1] + gate[1:])", "= -inverse * gate[1:]",
-           "∂v/∂u leaves out the contact on a bead's left", k.ROUTES),
+           "∂v/∂u omits the contact on a bead's left", k.ROUTES),
     Mutant("newton-ends-early", "steady/residuals.py", "RESIDUAL_GOAL = 1e-11", "RESIDUAL_GOAL = 1e-7",
-           "an orbit is called found four digits too early",
+           "an orbit counts as found four digits too early",
            k.ORBIT_CLAIMS),
     Mutant("multipliers-by-real-part", _ORBIT, "np.argsort(-np.abs(multipliers), kind", "np.argsort(-multipliers.real, kind",
            "the leading multiplier is the rightmost, not the largest", ("tests/orbits/test_tangents.py", "-k", "sorted_by_modulus")),
@@ -98,11 +98,11 @@ ORBITS = (
            ("tests/orbits/test_modes.py", "-k", "doubling_left_unstable")),
     Mutant("residual-of-displacements", "steady/returns.py", "float(np.abs(change / sizes(x, least_displacement)).max())",
            "float(np.abs(change / sizes(x))[: len(x) // 2].max())",
-           "an orbit's velocities need not come back", k.ORBIT_CLAIMS),
+           "an orbit's velocities need not return", k.ORBIT_CLAIMS),
     Mutant("liouville-of-leading", _ORBIT, "float(np.sum(np.log(np.abs(multipliers))))", "float(np.log(np.abs(multipliers[0])))",
-           "Liouville's formula is held against one multiplier", k.ORBIT_CLAIMS),
+           "Liouville's formula is compared with a single multiplier", k.ORBIT_CLAIMS),
     Mutant("map-tolerance-loose", _MAP, "TOLERANCE = 1e-13", "TOLERANCE = 1e-9",
-           "the map is ten thousand times less exact than is said", k.MONODROMY),
+           "the map is ten thousand times less exact than stated", k.MONODROMY),
 )
 
 NORMAL_FORMS = (
@@ -114,9 +114,9 @@ NORMAL_FORMS = (
     Mutant("subcritical-called-super", _NORMAL_FORMS, '(mean > 0.0) == (kind == "period_doubling")', "mean > 0.0",
            "Neimark–Sacker points have the sign of period doublings", k.NORMAL_FORMS),
     Mutant("any-two-values-agree", _NORMAL_FORMS, "_LARGEST_ERROR = 0.25", "_LARGEST_ERROR = 1e9",
-           "a sign is told that only one of two values has", k.NORMAL_FORMS),
+           "a sign is reported that only one of two values has", k.NORMAL_FORMS),
     Mutant("differences-across-a-grazing", _CRITICALITY, "if not same_sequence(kind, flow.contact_events[:, 0], between.contacts(point)):",
-           "if flow.derivative is None:", "states are used along which a contact closes once more", k.CRITICALITY),
+           "if flow.derivative is None:", "states are used on whose way a contact closes once more", k.CRITICALITY),
     Mutant("order-in-the-interval-not-compared", _CRITICALITY,
            "            and same_sequence(special.kind, between.contacts(before), between.contacts(after))):", "            ):",
            "a normal form is computed across an event that passes phase 0", k.CRITICALITY),

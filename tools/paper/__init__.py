@@ -1,1 +1,1 @@
-"""The page docs/paper.md: its pictures and its table are made from the code, by `python -m tools.paper`."""
+"""The page docs/paper.md: `python -m tools.paper` makes its pictures and its table from the code."""

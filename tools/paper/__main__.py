@@ -1,6 +1,6 @@
 """`python -m tools.paper`: draw all figures of the paper into docs/paper and write the table and gallery of its page.
 
-With names of figures, only those are drawn.
+If figures are named, only those are drawn.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The parts of docs/paper.md that are made: the table and the gallery, each between two marks."""
+"""The generated parts of docs/paper.md: the table and the gallery, each between two marks."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ _HEAD = ("| figure | the paper states | we get | do they differ? | command |", "
 
 
 def table(rows: Sequence[Statement]) -> str:
-    """The table in Markdown."""
+    """Return the table in Markdown."""
     lines = [f"| {', '.join(one.figures)} | {one.paper} | {one.ours} | {one.differs} | `{one.command}` |" for one in rows]
     return "\n".join([*_HEAD, *lines])
 
 
 def gallery() -> str:
-    """A picture for each figure; 3 shows 3a and 3b."""
+    """Return the gallery, with a picture of each figure; figure 3 shows 3a and 3b."""
     return "\n\n".join(f"### Figure {one.number}\n\n![{one.title}](paper/figure-{one.number}.png)"
                        for one in FIGURES.values() if one.number not in ("3a", "3b"))
 
 
 def with_parts(text: str, rows: Sequence[Statement]) -> str:
-    """The page with its table and its gallery as they are now."""
+    """Return the page with its table and its gallery updated."""
     for name, part in (("table", table(rows)), ("gallery", gallery())):
         text = with_part(text, name, "python -m tools.paper", part)
     return text

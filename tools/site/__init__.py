@@ -1,1 +1,1 @@
-"""The documentation as a site that is read without a network: `python -m tools.site`."""
+"""The documentation as a site that can be read without a network: `python -m tools.site`."""

@@ -1,4 +1,4 @@
-"""`python -m tools.site [FOLDER]`: build the documentation, every warning being an error."""
+"""`python -m tools.site [FOLDER]`: build the documentation, with every warning as an error."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 def build(out: Path) -> int:
-    """Build the site into a folder; 0 if there was no warning."""
+    """Build the site into a folder; return 0 if there was no warning."""
     return build_main(["-W", "--keep-going", "-q", "-c", str(ROOT / "docs" / "site"), "-d", str(out / ".doctrees"),
                        str(ROOT), str(out)])
 

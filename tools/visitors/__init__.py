@@ -1,1 +1,1 @@
-"""Many visitors at once: how fast they are answered, and whether the server gives back what they used."""
+"""Many visitors at once: how fast they are answered, and whether the server frees the resources they used."""

@@ -1,4 +1,4 @@
-"""A restart of a server with many pages: each waits for the server and opens its own link again, as a browser does."""
+"""A restart of a server with many pages, which all wait for it and open their links again, as browsers do."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from .visitor import Visitor, query_of
 
 #: Pages that are opened at once before the restart.
 _AT_ONCE = 20
-#: Between two attempts to reach the server, at first and at most [s], as in app/parts/inline_scripts/connection.js.
+#: Time between attempts to reach the server, first and longest [s], as in app/parts/inline_scripts/connection.js.
 _RETRY_FIRST, _RETRY_LONGEST, _RETRY_GROWTH = 0.4, 5.0, 1.6
-#: Time in which a browser loads the scripts of a page, before it opens the websocket: at least and at most [s].
+#: Time in which a browser loads the scripts of a page before it opens the websocket, at least and at most [s].
 _SCRIPTS_TIME = (0.5, 1.5)
 #: Time for all pages to come back [s].
 _PATIENCE = 600.0
 
 
 class Back:
-    """How the pages came back: times since the restart [s], refusals, and attempts."""
+    """The return of the pages: times since the restart [s], refusals, and attempts."""
 
     def __init__(self) -> None:
         self.times: list[float] = []
@@ -32,7 +32,7 @@ class Back:
 
 
 async def run(server: Started, count: int, seed: int) -> None:
-    """Open the pages, end the server and start it again, print a row of the table in docs/reliability.md."""
+    """Open the pages, restart the server, and print a row of the table in docs/reliability.md."""
     chance, back = random.Random(seed), Back()
     pages = [Visitor(server.address, query_of(f=300.5 + 0.25 * number), _SCRIPTS_TIME) for number in range(count)]
     for first in range(0, count, _AT_ONCE):
@@ -60,18 +60,18 @@ async def _come_back(page: Visitor, began: float, chance: random.Random, back: B
             await page.open(_PATIENCE)
             break
         except HTTPClientError as refused:
-            if refused.code == 503:  # the answer's own page tries again after this time
+            if refused.code == 503:  # the page of that answer tries again after this time
                 back.refused += 1
                 await asyncio.sleep(float((refused.response.headers if refused.response else {}).get("Retry-After", 30)))
             else:
                 back.evicted += 1
-        except OSError:  # the server does not listen yet
+        except OSError:  # the server is not listening yet
             pass
     back.times.append(time.perf_counter() - began)
 
 
 async def _until_ready(address: str, chance: random.Random, back: Back) -> None:
-    """Ask ever more rarely, at random instants, whether there is room for a page."""
+    """Ask at random instants, less and less often, whether there is room for a page."""
     pause, client = _RETRY_FIRST, AsyncHTTPClient(max_clients=1000)
     while True:
         await asyncio.sleep(pause * (0.5 + 0.5 * chance.random()))

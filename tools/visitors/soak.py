@@ -1,4 +1,4 @@
-"""Visits that open, move and leave for a long time: memory, descriptors and threads of the server afterwards."""
+"""Visits that open, move and leave over a long time, and the server's memory, descriptors and threads."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ import numpy as np
 from .started import Started
 from .visitor import Visitor
 
-#: Visitors at once.
+#: Number of simultaneous visitors.
 _AT_ONCE = 4
-#: Visits between two rows of the table. They move to forty frequencies, whose pictures are soon kept for all.
+#: Visits between two rows of the table. They use forty frequencies, whose pictures are soon all cached.
 _EVERY = 25
 
 
 async def run(server: Started, minutes: float, seed: int) -> None:
-    """Visit for so many minutes and print a row now and then; at the end the slopes over the second half."""
+    """Visit for `minutes`, print a row from time to time and, at the end, the slopes over the second half."""
     rows: list[tuple[int, float, int, int]] = []
     end, visits, chance = time.monotonic() + 60.0 * minutes, 0, random.Random(seed)
     print("visits | memory MB | descriptors | threads | load")
@@ -41,12 +41,12 @@ async def _visit(address: str, chance: random.Random) -> None:
     await visitor.open()
     for _ in range(3):
         await visitor.move("f", 300.51 + 10 * chance.randrange(40))
-    if chance.random() < 0.5:  # half of them leave while something is computed
+    if chance.random() < 0.5:  # half of them leave during a computation
         await visitor.say(do="set", name="N", value=chance.randrange(8, 12), seq=2)
     await visitor.leave()
 
 
 def figures(process: int) -> tuple[float, int, int]:
-    """Resident memory [MB], open descriptors and threads of a process."""
+    """Return resident memory [MB], open descriptors and threads of a process."""
     words = dict(line.split(":", 1) for line in Path(f"/proc/{process}/status").read_text().splitlines() if ":" in line)
     return int(words["VmRSS"].split()[0]) / 1024, len(os.listdir(f"/proc/{process}/fd")), int(words["Threads"])

@@ -1,4 +1,4 @@
-"""A dashboard started for the tool, or one that runs already."""
+"""A dashboard started for the tool, or one that is already running."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 class Started:
-    """`with Started(None, log) as server:` gives a server that is ended afterwards; `address` names another one."""
+    """A server that `with Started(None, log) as server:` starts and ends; `address` names a running one instead."""
 
     def __init__(self, address: str | None, log: Path) -> None:
         self._log = log
@@ -41,7 +41,7 @@ class Started:
                                             cwd=ROOT, stdout=output, stderr=output)
 
     def restart(self) -> None:
-        """End the process and start another one at the same address; only of a server started here."""
+        """End the process and start another at the same address; only for a server started here."""
         assert self.process is not None, "a restart needs a server that this tool starts"
         self.process.terminate()
         self.process.wait(timeout=30)
@@ -56,7 +56,7 @@ class Started:
 
     @property
     def number(self) -> int:
-        """The process, whose figures are read; only of a server started here."""
+        """Id of the process, whose figures are read; only for a server started here."""
         assert self.process is not None, "figures of a process need a server that this tool starts"
         return self.process.pid
 
@@ -68,7 +68,7 @@ class Started:
 
     @property
     def loop_time(self) -> float:
-        """Processor time of the thread with the event loop so far [s], on Linux."""
+        """Processor time used so far by the thread with the event loop [s], on Linux."""
         words = Path(f"/proc/{self.number}/task/{self.number}/schedstat").read_text().split()
         return int(words[0]) / 1e9
 

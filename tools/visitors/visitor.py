@@ -1,4 +1,4 @@
-"""A visitor without a browser, who opens the page, draws nothing, and speaks Bokeh's protocol over a raw websocket."""
+"""A visitor without a browser, who opens the page and speaks Bokeh's protocol over a raw websocket."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ _LARGEST = 200_000_000
 
 
 class Visitor:
-    """One visitor: `open`, then `move` and `answered`, then `leave`.
+    """A visitor: `open`, then `move`, then `leave`.
 
-    `arrived` is the time at which the last picture came, by `time.perf_counter`; `pictures` counts them. The scripts of
-    the page take `scripts_time` to load, at least and at most [s].
+    `arrived` is the time at which the last picture arrived, by `time.perf_counter`, and `pictures` counts the pictures.
+    The scripts of the page take `scripts_time` to load, at least and at most [s].
     """
 
     def __init__(self, address: str, query: str = "", scripts_time: tuple[float, float] = (0.0, 0.0)) -> None:
@@ -65,7 +65,7 @@ class Visitor:
         self.opened_in = time.perf_counter() - began
 
     async def move(self, name: str, value: float, patience: float = 60.0) -> float | None:
-        """Move a knob; the time until a picture for it comes [s], None if none does."""
+        """Move a knob; return the time until its picture arrives [s], or None if none does."""
         self._picture.clear()
         self.shown.clear()
         began = time.perf_counter()
@@ -98,11 +98,11 @@ class Visitor:
             self._reader.cancel()
 
     async def say(self, **message: Any) -> None:
-        """Send a message as a part of the page does."""
+        """Send a message like a part of the page."""
         await self._event("data_event", [["model", {"id": self._model}], ["data", _as_map(message)]])
 
     async def _ping(self) -> None:
-        """Ask again and again whether the server answers, as a visible page does."""
+        """Ask the server repeatedly for an answer, as a visible page does."""
         while True:
             await asyncio.sleep(_PING_EVERY)
             await self.say(do="ping")
@@ -115,13 +115,13 @@ class Visitor:
     async def _send(self, kind: str, content: dict[str, Any]) -> None:
         assert self._socket is not None
         self._last += 1
-        with suppress(WebSocketClosedError):  # parts of two messages must not mix: nothing is awaited in between
-            await asyncio.gather(*[self._socket.write_message(json.dumps(part))  # each of them may find it closed
+        with suppress(WebSocketClosedError):  # the parts of two messages must not mix, so nothing is awaited between them
+            await asyncio.gather(*[self._socket.write_message(json.dumps(part))  # each may find the socket closed
                                    for part in ({"msgid": str(self._last), "msgtype": kind}, {}, content)],
                                  return_exceptions=True)
 
     async def _read(self) -> None:
-        """Messages of header, metadata, content, and a header and a payload for each buffer."""
+        """Read messages: header, metadata, content, and a header and a payload for each buffer."""
         assert self._socket is not None
         while (header_text := await self._socket.read_message()) is not None:
             header = json.loads(header_text)
@@ -160,5 +160,5 @@ def _as_map(message: dict[str, Any]) -> dict[str, Any]:
 
 
 def query_of(**fields: object) -> str:
-    """The address of a shared scene after the slash."""
+    """Return the part of a shared scene's address after the slash."""
     return "?" + urlencode(fields)

@@ -1,11 +1,11 @@
-// The Accuracy page, an overlay: what accuracy costs for this scene, and the force that naive steps would draw.
+// The Accuracy page, an overlay: the cost of accuracy for this scene, and the force that naive steps would draw.
 
 import { button, element, meter, pageHead, paragraph, table, unbroken } from "../../parts/toolkit/dom.js";
 import { BokehFigure } from "../../parts/figures/bokeh_figure.js";
 import { fillAccuracy, showAccuracy } from "./accuracy_tab.js";
 import { NaiveForces } from "./naive_forces.js";
 
-const STALE = "The knobs have moved: this was measured for another chain. Measure again to see it for this one.";
+const STALE = "The knobs have moved: this was measured for another chain. Measure again for the present one.";
 
 function methodRow(way, failures) {
   const restrictions = element("td", { className: "soft", textContent: way.restrictions });
@@ -34,7 +34,7 @@ function methodTable(ways, failures) {
 
 const SYMBOLS =
   "u, v: displacement and velocity of each bead; w: the velocity without the impulse of the bead's dashpots, so that " +
-  "its rate of change does not jump when a contact closes. Order n: half the step, 2ⁿ times less error.";
+  "its rate of change does not jump when a contact closes. Order n: half the step gives 2ⁿ times less error.";
 
 class AccuracyPage {
   constructor(model) {

@@ -1,13 +1,13 @@
-// The Accuracy tab: a small figure of error against time, and the way to the page, whose figure the same function
-// fills.
+// The Accuracy tab: a small figure of error against time, and a button that opens the page, whose figure the same
+// function fills.
 
 import { element, openButton, paragraph } from "../../parts/toolkit/dom.js";
 import { BokehFigure, fillModels } from "../../parts/figures/bokeh_figure.js";
 
 const STALE = "The knobs have moved; open the page to measure again.";
 
-// Error against time, as far as it has been measured: points by method, the requested accuracy, the cheapest setting, and the
-// one in use.
+// Fills a figure with error against time, as far as it has been measured: points by method, the requested accuracy, the
+// cheapest setting, and the setting in use.
 export function fillAccuracy(figure, { drawn, asked }) {
   for (const [name, data] of Object.entries(drawn)) figure.set(name, { data });
   fillModels(figure, asked?.marks);

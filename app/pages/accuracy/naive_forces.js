@@ -1,4 +1,4 @@
-// The accurate output force and, over it, the force that a naive method with few steps would have drawn.
+// The accurate output force and, over it, the force that a naive method would have drawn with few steps.
 
 import { element } from "../../parts/toolkit/dom.js";
 import { BokehFigure } from "../../parts/figures/bokeh_figure.js";
@@ -9,18 +9,18 @@ const USUAL_STEPS = 200;
 const percent = (error) =>
   error >= 0.995 ? `${Math.round(100 * error)} %` : `${Number((100 * error).toPrecision(2))} %`;
 
-// A sentence on the force that the chosen steps would have drawn.
+// Returns a sentence about the force that the chosen steps would have drawn.
 function verdict(chosen) {
   if (!chosen) return "";
   return chosen.failure
-    ? `With ${chosen.steps} steps a period nothing would have been drawn: ${chosen.failure}`
-    : `With ${chosen.steps} steps a period the force is off by ${percent(chosen.error)} of the largest, and nothing in the picture says so.`;
+    ? `With ${chosen.steps} steps per period, nothing would have been drawn: ${chosen.failure}`
+    : `With ${chosen.steps} steps per period, the force is off by ${percent(chosen.error)} of its largest value, and nothing in the picture shows it.`;
 }
 
 export class NaiveForces {
   constructor() {
     this.methods = this.choice("the naive method");
-    this.steps = this.choice("its steps in a drive period");
+    this.steps = this.choice("its steps per drive period");
     this.line = element("p");
     this.host = element("div", { className: "figure" });
     this.figure = new BokehFigure(this.host, () => this.show());
@@ -42,21 +42,21 @@ export class NaiveForces {
 
   load(message) {
     const { buffer, byteOffset, length } = message.values;
-    // A plain Float32Array, whatever array class the message has.
+    // A plain Float32Array, whatever array class the message uses.
     this.data = { ...message, values: new Float32Array(buffer, byteOffset, length) };
     this.offer(message.drawn);
     this.root.hidden = false;
     this.figure.load(message.figure, "output force, accurate and naive");
   }
 
-  // Fills both lists and keeps what is chosen. The first time it chooses the usual steps, and the method with the
+  // Fills both lists and keeps the visitor's choices. The first time, it chooses the usual steps and the method with the
   // largest error.
   offer(drawn) {
     const before = [this.methods.value, this.steps.value];
     const names = [...new Set(drawn.map((drawing) => drawing.method))];
     const counts = [...new Set(drawn.map((drawing) => drawing.steps))];
     this.methods.replaceChildren(...names.map((name) => new Option(name, name)));
-    this.steps.replaceChildren(...counts.map((n) => new Option(`${n} steps a period`, n)));
+    this.steps.replaceChildren(...counts.map((n) => new Option(`${n} steps per period`, n)));
     if (this.known) [this.methods.value, this.steps.value] = before;
     else {
       const usual = drawn.filter((drawing) => drawing.steps === USUAL_STEPS && drawing.row >= 0);

@@ -26,12 +26,12 @@ WORDS = StatusWords("the kernels of all methods", ACCURACY_KERNELS, kept="the me
 
 
 def measured_for(scene: Scene) -> str:
-    """The key of a measurement: the scene without the requested accuracy, which changes no row."""
+    """Return the key of a measurement: the scene's digest without the requested accuracy, which affects no row."""
     return scene.evolve(accuracy=1e-6).digest
 
 
 class AccuracyPage(Page):
-    """Runs one measurement at a time in the background, until it is done or stopped or the session ends."""
+    """The page, which runs one measurement at a time in the background until it is done or stopped."""
 
     def __init__(self, host: PageHost, view: Accuracy) -> None:
         self._host = host
@@ -49,7 +49,7 @@ class AccuracyPage(Page):
 
     @property
     def running(self) -> bool:
-        """Whether a measurement is under way or waits for its turn."""
+        """Whether a measurement is running or waiting for its turn."""
         return self._task.running
 
     @property
@@ -59,8 +59,8 @@ class AccuracyPage(Page):
         return "accuracy of all methods", COMPUTING if self.running else READY if self.rows else OFF, words
 
     def scene_changed(self) -> None:
-        """Follow a moved knob: it has changed the requested accuracy, or the rows belong to another chain."""
-        if self.status != "none":  # until it is opened there is nothing to see
+        """Update the page after a knob has moved, which may change the requested accuracy or outdate the rows."""
+        if self.status != "none":  # nothing is shown until the page is opened
             self.describe()
 
     def picture_ready(self, settled: Settled) -> None:
@@ -132,7 +132,7 @@ class AccuracyPage(Page):
         self._view.update_state(**WORDS.of(status, sentence), done=self.done)
 
     def _used(self, now: PlacedSetting | None) -> str:
-        """The setting that the page uses, and why the status line shows another error."""
+        """Say which setting the page uses, and why the status line shows another error."""
         settled = self._host.session.settled
         if now is None:
             return ""

@@ -20,18 +20,18 @@ from ...plots.naive_forces import naive_forces
 from ...plots.theme import Theme
 from ...scripts import module
 
-#: If references differ by more than this, the motion is too sensitive to be followed for ten periods.
+#: If the references differ by more than this, the motion is too sensitive to be computed for ten periods.
 _LARGEST_DISAGREEMENT = 1e-4
 
 
 @cache
 def empty_figures(theme: Theme) -> dict[str, Any]:
-    """Error against time without points, for the page and, small, for its tab."""
+    """Return error against time without points, for the page and, small, for its tab."""
     return page_and_small(lambda compact: accuracy([], Annotations(1e-6), theme, compact))
 
 
 class Accuracy(StreamedFigure):
-    """The overlay. `state` has the text and the figures; their data come as messages."""
+    """The overlay. `state` has the text and the figures; the figures' data are sent as messages."""
 
     _esm = module("accuracy.js")
     _stylesheets = [text("controls.css"), text("accuracy.css")]  # noqa: RUF012
@@ -42,7 +42,7 @@ class Accuracy(StreamedFigure):
         self._naive: Lesson | None = None
 
     def apply_theme(self, theme: Theme) -> None:
-        """Draw the figures, including the one of the forces, in another theme."""
+        """Draw the figures, including that of the forces, in another theme."""
         super().apply_theme(theme)
         if self._naive is not None:
             self.show_naive(self._naive)
@@ -55,7 +55,7 @@ class Accuracy(StreamedFigure):
     def mark(self, rows: list[Row], annotations: Annotations, stale: bool, sentence: str, used: str) -> None:
         """Mark the requested accuracy, the cheapest setting and the present one.
 
-        `stale`: the rows belong to another chain. `sentence` tells the cheapest, `used` what is used now.
+        `stale`: the rows are of another chain. `sentence` names the cheapest setting, `used` the present one.
         """
         self.send(type="asked", marks=marks(annotations, rows), stale=stale, sentence=sentence, used=used)
 
@@ -72,20 +72,20 @@ class Accuracy(StreamedFigure):
 
 
 def described_methods() -> list[dict[str, Any]]:
-    """The table of methods."""
+    """Return the table of methods."""
     return [{"name": way.name, "title": way.title, "order": f"{way.order:g}", "restrictions": way.restrictions,
              "reference": way.reference} for way in compared_methods().values()]
 
 
 def described_rows(rows: list[Row]) -> list[dict[str, Any]]:
-    """The rows without a finite error for the table: the setting, and a sentence with the reason."""
+    """Return, for the table, the rows without a finite error: the setting, and a sentence with the reason."""
     failed = [(row, row.failure or "Its numbers are not finite.") for row in rows
               if row.failure or not math.isfinite(row.error)]
     return [{"way": row.method, "setting": row.setting, "failure": failure} for row, failure in failed]
 
 
 def described_reference(result: WorkPrecision) -> dict[str, Any]:
-    """The reference, the second reference, and their distance."""
+    """Return the reference, the second reference, and their difference in words."""
     known = math.isfinite(result.agreement)
     if result.disagreement:
         words = f"The second reference failed: {result.disagreement}"
@@ -95,12 +95,12 @@ def described_reference(result: WorkPrecision) -> dict[str, Any]:
     elif known:
         words = f"Two independent references agree to {short_error(result.agreement)}."
     else:
-        words = "The second reference comes last."
+        words = "The second reference is computed last."
     return {"reference": result.reference, "second": result.second, "agreement_words": words}
 
 
 def naive_message(shown: Lesson, theme: Theme) -> dict[str, Any]:
-    """The accurate and the naive output forces, in one array of rows; a naive one that failed has no row."""
+    """Return the accurate and the naive output forces as one array of rows; a naive force that failed has no row."""
     largest = float(np.abs(shown.force).max())
     factor, letter = prefixed(largest)
     seconds, unit = prefixed(float(shown.time[-1]))

@@ -6,7 +6,7 @@ import { ResultFigure } from "../../parts/figures/result_figure.js";
 const ABOUT =
   "Four questions about the motion of the present scene. Choose one; it is computed when you press “compute”.";
 
-// The control of one field: a list or a text field.
+// Returns the control of one field: a list or a text field.
 function control({ label, value, choices, chosen }) {
   const input = choices.length
     ? element("select", {}, ...choices.map((choice) => new Option(choice, choice)))
@@ -54,7 +54,7 @@ class AnalysisPage {
     this.send({ do: "analysis-compute", values });
   }
 
-  // Shows fields with the values offered for the present scene. A value that the visitor has changed stays if possible.
+  // Shows fields with the values offered for the present scene; a value that the visitor has changed is kept if possible.
   fill(question, fields) {
     if (fields === this.fields) return;
     const kept = question === this.question ? this.controls.filter(({ input }) => input.dataset.changed) : [];

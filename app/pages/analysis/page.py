@@ -30,11 +30,12 @@ WORDS = StatusWords("the kernels of the analysis", ORBIT_KERNELS)
 
 
 class AnalysisPage(Page):
-    """Answers one question at a time; an answer stays, with its scene in the title, until another question is asked.
+    """The page, which answers one question at a time.
 
-    The address has the question and the values with which it was last computed. A page that is opened with a question
-    in its address offers it again, and computes nothing until the visitor asks for it. A page without one answers the
-    first question, which takes no time, for every picture until the visitor asks another.
+    An answer stays, with its scene in the title, until another question is asked. The address contains the question and
+    the values with which it was last computed. If the page is opened with a question in its address, it offers that
+    question and computes nothing until the visitor presses “compute”. Without a question in its address, it answers the
+    first one, which takes no time, for every picture until the visitor asks another.
     """
 
     def __init__(self, host: PageHost, view: Analysis) -> None:
@@ -50,7 +51,7 @@ class AnalysisPage(Page):
         self.address_applied()
 
     def scene_changed(self) -> None:
-        """Drop the work under way and the values in the fields: they belong to the scene before the knobs moved."""
+        """Cancel the running work and replace the offered values, because both are of the scene before the change."""
         self._stop()
         if self._question is not None:
             self._fields = offered_fields(self._question, self._host.session.scene, self._fields)
@@ -77,7 +78,7 @@ class AnalysisPage(Page):
                 self._show_status("none", str(problem))
 
     def address_applied(self) -> None:
-        """Take question and values from the address; an answer that is on the page stays."""
+        """Take question and values from the address; an answer already on the page stays."""
         text = self._host.session.question
         if text and text != self._text:
             self._unasked = False
@@ -109,7 +110,7 @@ class AnalysisPage(Page):
         self._keep()
 
     def _compute_chosen(self, values: object) -> None:
-        """Begin to compute the question with these values of its fields."""
+        """Start to compute the question with these values of its fields."""
         assert self._question is not None
         scene = self._host.session.scene
         plan = planned(self._question, scene, values)
@@ -123,7 +124,7 @@ class AnalysisPage(Page):
             self._show_status("stopped")
 
     def _compute(self, plan: Plan, job: Job) -> None:
-        """In a thread of the pool `LONG`."""
+        """Compute the answer in a thread of the pool `LONG`."""
         for scene, pieces in plan.kernels:
             job.compile(scene, *pieces)
         job.report("computing")

@@ -25,7 +25,7 @@ from ...plots.lyapunov import lyapunov as draw_lyapunov
 from ...plots.spectrum import spectrum as draw_spectrum
 from ...plots.theme import Theme
 
-# The page's own limits; the commands take more.
+# The page's own limits; the commands accept more.
 #: Most beads of a chain.
 MOST_BEADS = 300
 #: Most values of a knob.
@@ -36,9 +36,9 @@ MOST_STARTS = 40
 MOST_PERIODS = 2000
 #: Most strobes at one value of a knob.
 MOST_STROBES = 500
-#: Drive periods recorded of a motion that does not repeat, as by `granchain spectrum`.
+#: Drive periods recorded of a motion that is not periodic, as by `granchain spectrum`.
 _RECORDED_PERIODS = 64
-#: Samples in each of them.
+#: Samples per drive period of such a record.
 _SAMPLES_PER_PERIOD = 256
 
 Progress = Callable[[float], None]
@@ -46,9 +46,9 @@ Progress = Callable[[float], None]
 
 @dataclass(frozen=True)
 class Field:
-    """One choice of a question: a list to choose from, or a text; `value` is the initial one.
+    """One choice of a question: a list to choose from, or a text; `value` is its current value.
 
-    A value that was `chosen` stays when the knobs move, if it can; an offered one follows them.
+    When the knobs move, a value that was `chosen` stays if it still can, and an offered value follows the knobs.
     """
 
     name: str
@@ -62,8 +62,9 @@ class Field:
 class Plan:
     """A question with all its choices made.
 
-    `command` recomputes it, `kernels` are the scenes and pieces that have to be compiled, `compute` takes a stop and
-    a progress and returns a result with a `summary`, and `draw` makes its figure.
+    `command` is the command line that computes it, `kernels` are the scenes and pieces that have to be compiled,
+    `compute` takes a stop flag and a progress function and returns a result with a `summary`, and `draw` makes its
+    figure.
     """
 
     title: str
@@ -85,15 +86,15 @@ class AnalysisQuestion:
 
 
 def planned(question: AnalysisQuestion, chain: Scene, values: object) -> Plan:
-    """The plan of a question with the texts that a browser sent. Raises `BadInput` for a text that is wrong."""
+    """Return the plan of a question with the texts that a browser sent. Raise `BadInput` for an invalid text."""
     check_range("the Analysis page: N =", chain.N, 1, MOST_BEADS)
     return question.plan(chain, {field.name: field.value for field in chosen_fields(question, chain, values)})
 
 
 def chosen_fields(question: AnalysisQuestion, chain: Scene, values: object) -> tuple[Field, ...]:
-    """The fields of a question with the texts that a browser or a link has for them.
+    """Return the fields of a question with the texts that a browser or a link has for them.
 
-    Raises `BadInput` for an entry that is in no list. Whether a text is a number in range is asked by `planned`.
+    Raise `BadInput` for an entry that is not in its list. `planned` checks whether a text is a number in range.
     """
     sent = values if isinstance(values, dict) else {}
     fields = []
@@ -106,7 +107,7 @@ def chosen_fields(question: AnalysisQuestion, chain: Scene, values: object) -> t
 
 
 def offered_fields(question: AnalysisQuestion, chain: Scene, kept: Sequence[Field]) -> tuple[Field, ...]:
-    """The fields of a question for a scene; earlier choices stay where the scene allows them."""
+    """Return the fields of a question for a scene; earlier choices stay if the scene allows them."""
     chosen = {field.name: field.value for field in kept if field.chosen}
     fields = question.fields(chain)
     possible = {field.name: chosen[field.name] for field in fields if field.name in chosen and (
@@ -115,13 +116,13 @@ def offered_fields(question: AnalysisQuestion, chain: Scene, kept: Sequence[Fiel
 
 
 def question_text(question: AnalysisQuestion, fields: Sequence[Field] = ()) -> str:
-    """A question and the values that were chosen, as one text for a link: "strobes?knob=A0&values=31"."""
+    """Return a question and the chosen values as one text for a link: "strobes?knob=A0&values=31"."""
     values = urlencode({field.name: field.value for field in fields if field.chosen})
     return f"{question.name}?{values}" if values else question.name
 
 
 def read_question(text: str, chain: Scene) -> tuple[AnalysisQuestion, tuple[Field, ...]]:
-    """Question and fields of the text of a link. Raises `BadInput` for anything else."""
+    """Read the question and its fields from the text of a link. Raise `BadInput` for anything else."""
     name, _, query = text.partition("?")
     question, values = question_of(name[:40]), dict(parse_qsl(query))
     known = tuple(field.name for field in question.fields(chain))
@@ -216,7 +217,7 @@ def _bifurcation_plan(chain: Scene, chosen: Mapping[str, str]) -> Plan:
     count = _whole("values", chosen["values"], 2, MOST_VALUES)
     keep = _whole("strobes at each value", chosen["keep"], 1, MOST_STROBES)
     bead = _whole("bead", chosen["bead"], 1, chain.N)
-    ends = tuple(chain.evolve(**{knob: value}) for value in (low, high))  # refused here rather than in the thread
+    ends = tuple(chain.evolve(**{knob: value}) for value in (low, high))  # refused here, not in the thread
 
     def compute(stop: Stop, progress: Progress) -> Any:
         return bifurcation_diagram(chain, knob, np.linspace(low, high, count), start, keep, stop, progress)
@@ -269,12 +270,12 @@ QUESTIONS = {question.name: question for question in (
         "the motion that each settles to.", _basin_fields, _basin_plan),
     AnalysisQuestion(
         "lyapunov", "Is it chaos?", "All Lyapunov exponents per drive period with their standard errors, and the "
-        "dimension of the attractor. A positive one is chaos.", _lyapunov_fields, _lyapunov_plan),
+        "dimension of the attractor. A positive exponent means chaos.", _lyapunov_fields, _lyapunov_plan),
 )}
 
 
 def question_of(name: object) -> AnalysisQuestion:
-    """The question of this name. Raises `BadInput` if there is none."""
+    """Return the question of this name. Raise `BadInput` if there is none."""
     if not isinstance(name, str) or name not in QUESTIONS:
         raise unknown_name("question", str(name), tuple(QUESTIONS))
     return QUESTIONS[name]

@@ -13,7 +13,7 @@ from .questions import QUESTIONS, AnalysisQuestion, Field, Plan
 
 
 class Analysis(ResultFigure):
-    """The overlay; fields and words come in `state`, the figure as a message."""
+    """The overlay; fields and words are in `state`, and the figure is sent as a message."""
 
     _esm = module("analysis.js")
     _stylesheets = [text("controls.css"), text("result_page.css"), text("analysis.css")]  # noqa: RUF012
@@ -23,7 +23,7 @@ class Analysis(ResultFigure):
             {"name": question.name, "title": question.title} for question in QUESTIONS.values()]}, **params)
 
     def ask(self, question: AnalysisQuestion, fields: Sequence[Field]) -> None:
-        """Show a question with its fields, and nothing drawn."""
+        """Show a question with its fields, without a figure."""
         self.clear()
         self.update_state(question=question.name, about=question.about)
         self.offer(fields)

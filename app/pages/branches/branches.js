@@ -6,12 +6,12 @@ import { BokehFigure, StreamedData } from "../../parts/figures/bokeh_figure.js";
 const WORDS = "largest elastic output force of periodic orbits over drive frequency";
 // px; a narrower figure has its legend in two columns.
 const NARROW = 700;
-const MARGIN = 0.05; // room beside the branch, over its length
+const MARGIN = 0.05; // room on each side of the branch, as a fraction of its length
 const ABOUT =
-  "Each point is a motion that repeats, followed in frequency: solid where a small disturbance dies out, dashed where it grows, so that no chain settles there. Grey: where the chain settles from rest. Drawn is the elastic part of the force, which changes smoothly along a branch; the main page shows the whole force.";
+  "Each point is a motion that repeats, followed in frequency: solid where a small disturbance dies out, dashed where it grows, so that no chain settles there. Grey: where the chain settles from rest. The figure shows the elastic part of the force, which changes smoothly along a branch; the main page shows the whole force.";
 const STALE =
   "The knobs have moved: these orbits belong to another chain. Follow again for the present one; a click on an orbit brings the old one back.";
-const ZOOM = "Show the branch as large as there is room; the reset beside the picture shows the whole curve again";
+const ZOOM = "Show the branch as large as possible; the reset tool next to the figure shows the whole curve again";
 const FOLLOW = "Follow the orbit on the screen up and down in frequency, through folds, stable or not";
 
 const sentence = (words) => `${words[0].toUpperCase()}${words.slice(1).replace(/\.$/, "")}.`;
@@ -26,7 +26,7 @@ function periodChoice(longest) {
   );
 }
 
-// The chosen point of the figure in words, and buttons for what can be done with it.
+// The chosen point of the figure in words, with buttons for the actions that it offers.
 class Choice {
   constructor(send) {
     this.send = send;
@@ -93,7 +93,7 @@ class BranchesPage {
     this.root = element("div", { className: "part sheet" }, head, say, this.work);
     this.data = new StreamedData();
     this.figure = new BokehFigure(this.host, (bokehFigure) => this.fill(bokehFigure));
-    this.everywhere = [this.figure]; // all figures with these data; the tab adds its own
+    this.everywhere = [this.figure]; // all figures with these data; the tab adds its figure
   }
 
   request() {
@@ -109,7 +109,7 @@ class BranchesPage {
     this.fit();
   }
 
-  // Sets the line at the present frequency, and the columns of the legend by the width of the figure.
+  // Sets the line at the present frequency, and the legend's columns to suit the width of the figure.
   fit() {
     const { now } = this.model.state;
     this.figure.set("now", { location: now ?? null, visible: now !== undefined });

@@ -1,4 +1,4 @@
-"""The Branches page of one session: continues the orbit on the screen in the frequency, and loads any orbit found."""
+"""The Branches page of one session: it continues the orbit on the screen in frequency, and loads orbits it found."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ from .view import LONGEST_BRANCH_PERIOD, Branches
 _MESSAGE_EVERY = 0.08
 
 WORDS = StatusWords("the kernels for branches", BRANCH_KERNELS, kept="the orbits found so far")
-NOT_PERIODIC = ("The motion on the screen does not repeat, so it lies on no branch. Choose a period, and an orbit of "
-                "that period near it is followed.")
+NOT_PERIODIC = ("The motion on the screen does not repeat, so it is on no branch. Choose a period to follow an orbit "
+                "of that period near it.")
 
 
 @dataclass
@@ -63,7 +63,7 @@ class BranchesPage(Page):
         }
 
     def scene_changed(self) -> None:
-        """Tell whether the branches still belong to the chain on the screen; a curve without branches goes."""
+        """Show whether the branches are still those of the present chain; remove an outdated curve without branches."""
         now = self._host.session.scene
         stale = self._scene is not None and without_frequency(self._scene) != without_frequency(now)
         if stale and not self._followed and not self._task.running:
@@ -83,11 +83,11 @@ class BranchesPage(Page):
             self._draw_curve()
 
     def stop(self) -> None:
-        """Stop; the points computed so far stay and can be continued."""
+        """Stop; the points computed so far stay, and can be continued later."""
         if self._task.cancel():
             self._show_status("stopped")
 
-    # What the visitor does
+    # The visitor's actions
 
     def _opened(self) -> None:
         """Follow the orbit on the screen when the page is opened for the first time."""
@@ -100,7 +100,7 @@ class BranchesPage(Page):
             self._begin()
 
     def _begin(self) -> None:
-        """Follow the orbit on the screen, if there is one and its branch may be computed unasked."""
+        """Follow the orbit on the screen, if there is one and its branch may be computed without a request."""
         self._begun, self._waits = True, False
         scene, settled = self._host.session.scene, self._host.session.settled
         if settled is None or not scene.is_driven or not curve_affordable(scene):
@@ -145,7 +145,7 @@ class BranchesPage(Page):
         self._host.show(drawn.branch.axis.scene_at(point.knob), drawn.branch.state(point),
                         "settled" if point.stable else "live")
 
-    # Following, in a thread of its own
+    # Following a branch, in a separate thread
 
     def _clear(self) -> None:
         self._task.cancel()
@@ -160,7 +160,7 @@ class BranchesPage(Page):
         self._task.start(lambda job: self._follow_in_thread(begin, scene, job))
 
     def _follow_in_thread(self, begin: Callable[[Stop], list[Branch]], scene: Scene, job: Job) -> None:
-        """In a worker thread: follow the branches, report every `_MESSAGE_EVERY` seconds, and let pictures go first."""
+        """In a worker thread, follow branches, report every `_MESSAGE_EVERY` seconds, and let pictures go first."""
         sent = 0.0
         job.compile(scene, FIXED_STEP_KERNELS, DOP853_KERNELS, BRANCH_KERNELS)
         job.report("settling")
@@ -183,7 +183,7 @@ class BranchesPage(Page):
         self._draw()
 
     def _draw_curve(self) -> None:
-        """Draw the resonance curve behind the branches of the same chain, or alone while there are none."""
+        """Draw the resonance curve behind the branches of the same chain, or alone while there are no branches."""
         now = self._host.session.scene
         if self._scene is not None and without_frequency(self._scene) != without_frequency(now):
             return
@@ -195,7 +195,7 @@ class BranchesPage(Page):
             self._view.send(type="add", **added)
 
     def _draw(self) -> None:
-        """Send the new points; a special point goes before the orbit that follows it on its half-branch."""
+        """Send the new points; a special point is sent before the orbit that follows it on its half-branch."""
         for number, drawn in enumerate(self._drawn):
             points = drawn.half.points[drawn.points :]
             special = drawn.half.special[drawn.special :]

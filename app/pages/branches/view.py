@@ -18,12 +18,12 @@ LONGEST_BRANCH_PERIOD = 8
 
 @cache
 def empty_figures(theme: Theme) -> dict[str, Any]:
-    """The figure without branches, for the page and, small, for its tab."""
+    """Return the figure without branches, for the page and, small, for its tab."""
     return page_and_small(lambda compact: branches([], theme, compact=compact))
 
 
 class Branches(StreamedFigure):
-    """The overlay; the growing branch comes in messages."""
+    """The overlay; the growing branch is sent in messages."""
 
     _esm = module("branches.js")
     _stylesheets = [text("controls.css"), text("branches.css")]  # noqa: RUF012

@@ -1,1 +1,1 @@
-"""The visitor's own measurement beside the model."""
+"""The visitor's own measurement, compared with the model."""

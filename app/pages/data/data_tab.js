@@ -3,13 +3,13 @@
 import { button, download, element, paragraph, table } from "../../parts/toolkit/dom.js";
 
 const FORM =
-  "A curve of frequency and largest force, or a series of time, input and output force: CSV or TSV as any spreadsheet " +
-  "writes it, WebPlotDigitizer, HDF5 or netCDF-4. " +
+  "A curve of frequency and largest force, or a series of time, input and output force: CSV or TSV from any " +
+  "spreadsheet, WebPlotDigitizer, HDF5 or netCDF-4. " +
   "You will be asked about anything the file leaves open.";
 const SENSITIVITY = "V, with its sensor's sensitivity";
-const CHUNK = 0x8000; // bytes that are turned into text at once
+const CHUNK = 0x8000; // bytes converted to text at once
 
-// The bytes unchanged: text() of a browser would decode the file as UTF-8.
+// Encodes the bytes unchanged; the browser's text() would decode the file as UTF-8.
 async function base64Of(file) {
   const bytes = new Uint8Array(await file.arrayBuffer());
   let text = "";
@@ -23,7 +23,7 @@ async function sendFile(model, [chosen]) {
   else model.send_msg({ do: "measurement", name: chosen.name, content: await base64Of(chosen) });
 }
 
-// Makes the browser save the sample file from the server.
+// Lets the browser save the sample file that the server sent.
 export function saveSample({ type, name, text }) {
   if (type !== "sample") return;
   download(name, new Blob([text], { type: "text/csv" }));
@@ -48,10 +48,10 @@ function answersTo(question) {
   return answers;
 }
 
-// The two choices over a column, quantity and unit. The units depend on the quantity; volts need a sensitivity, too.
+// Returns the choices above a column: quantity and unit. The units depend on the quantity; volts need a sensitivity.
 function columnChoice(question, index, chosen) {
   const [number, title] = question.columns[index];
-  const quantity = element("select", { ariaLabel: `what column ${number} holds` });
+  const quantity = element("select", { ariaLabel: `what column ${number} contains` });
   quantity.append(...options([["", "not used"], ...question.quantities], chosen.quantity));
   const unit = element("select", { ariaLabel: `unit of column ${number}` });
   const volts = element("input", { size: 10, value: "2.248V/kN", ariaLabel: `sensitivity of column ${number}` });
@@ -90,7 +90,7 @@ function select(ariaLabel, values, kept, name) {
   return made;
 }
 
-// The questions about a file: its first rows, quantity and unit of every column, and a button that reads it with these.
+// Returns the questions about a file: its first rows, quantity and unit of every column, and a button that reads it.
 function questionForm(model, question) {
   const kept = answersTo(question);
   const about = (what) => question.about.includes(what);
@@ -126,7 +126,7 @@ function questionForm(model, question) {
   return [paragraph(question.reason, "verdict"), row, rows];
 }
 
-// The misfit in newtons, and every difference.
+// Returns the misfit in newtons, and every difference.
 function misfitTable({ sentence, rows, left }) {
   const body = element("tbody");
   for (const row of rows) body.append(element("tr", {}, ...row.map((textContent) => element("td", { textContent }))));
@@ -135,7 +135,7 @@ function misfitTable({ sentence, rows, left }) {
   return [paragraph(sentence, "verdict"), ...(rows.length ? [table(titles, body)] : []), ...more];
 }
 
-// The bandwidth of the sensors with which a series was measured: the model's forces pass their low-pass.
+// Returns the field for the sensors' bandwidth; their low-pass is applied to the model's forces.
 function bandwidthField(model) {
   const field = element("input", {
     type: "number",
@@ -162,7 +162,7 @@ export function dataTab(model) {
     title: "A curve computed with noise, to try this with",
   });
   const virtual = button("virtual experiment", () => model.send_msg({ do: "measurement-virtual" }), {
-    title: "What sensors with noise and bandwidth would record of the present motion: computed, and marked so",
+    title: "What sensors with noise and limited bandwidth would record of the present motion; marked as computed",
   });
   const choice = element("div", { className: "row" }, file, sample, virtual, ...(understood ? [remove] : []));
   const asking = question ? questionForm(model, question) : [paragraph(understood || FORM, "soft")];

@@ -1,4 +1,4 @@
-"""The visitor's measurement: read in the background, with questions if it is unclear, and compared with the curve."""
+"""The visitor's measurement: read in the background, with questions if it is unclear, and compared with the model."""
 
 from __future__ import annotations
 
@@ -45,39 +45,39 @@ from ...session.task import Job, Task, report_nothing
 if TYPE_CHECKING:
     from granchain_core.fitting.overlay import Overlay
 
-#: The quantities that a column of a curve or of a series may hold.
+#: The quantities that a column of a curve or of a series may contain.
 CHOICES = {"frequency": "frequency", "force": "largest force", "error": "error of the force", "time": "time",
            "input_force": "input force", "output_force": "output force", "velocity": "shaker velocity"}
 #: The name of a virtual experiment's data on the page.
 VIRTUAL_FILE = "virtual.csv"
 #: The length of a virtual experiment in drive periods.
 _VIRTUAL_PERIODS = 12
-#: Its samples in a drive period.
+#: Its samples per drive period.
 _VIRTUAL_RATE = 256
-#: Its noise over the largest output force.
+#: Its noise, as a fraction of the largest output force.
 _VIRTUAL_NOISE = 0.02
-#: Most rows of the table of differences.
+#: Most rows in the table of differences.
 _MOST_ROWS = 100
 #: Sample files, computed by granchain with noise; their comments say so.
 SAMPLES = ASSETS / "samples"
 
-_TOO_LARGE = (f"The measurement is larger than {LARGEST_UPLOAD / 1e6:g} MB; a curve of frequency and force needs a few "
+_TOO_LARGE = (f"The measurement is larger than {LARGEST_UPLOAD / 1e6:g} MB; a curve of frequency and force takes a few "
               "kB.")
 
 
 class DataPage(Page):
-    """The tab shows how the file was read, the open questions, and the misfit. `Session.measured` is drawn."""
+    """The tab that shows how the file was read, the open questions, and the misfit of `Session.measured`."""
 
     def __init__(self, host: PageHost, tabs: Component) -> None:
         self._host = host
         self._tabs = tabs
         self._moving = Task(host, ANALYSES, report_nothing, "Moving the series to the picture", report_to_host=True)
         self._reading = Task(host, FILES, report_nothing, "Reading the measurement", report_to_host=True,
-                             outlives_knobs="a measurement belongs to no knobs")
+                             outlives_knobs="a measurement does not depend on the knobs")
         self._recording = Task(host, LONG, report_nothing, "The virtual experiment", report_to_host=True,
-                               outlives_knobs="it is of the knobs at its beginning")
+                               outlives_knobs="it is made at the knobs' values when it was started")
         self._name, self._answers = "", Answers()
-        #: The sensors of a series, whose low-pass the model's forces pass.
+        #: The sensors of a series, whose low-pass is applied to the model's forces.
         self._sensors = Sensors()
         #: The file, for as long as a question about it is open.
         self._content = b""
@@ -87,7 +87,7 @@ class DataPage(Page):
                                  "measurement-bandwidth": self._set_bandwidth}
 
     def picture_ready(self, settled: Settled) -> None:
-        """Draw the series over the new picture; no difference is stated for a preview."""
+        """Draw the series over the new picture; a preview has no misfit."""
         series = self._host.session.measured
         if not isinstance(series, Series):
             return
@@ -103,13 +103,13 @@ class DataPage(Page):
         self._reading.start(partial(self._read_in_thread, content, self._name, self._answers))
 
     def _replace(self, name: str) -> None:
-        """Withdraw a question about earlier data, because there are other data now."""
+        """Withdraw a question about earlier data, which new data replace."""
         self._name, self._content, self._answers = name, b"", Answers()
         if self._tabs.state.get("question"):
             self._tabs.update_state(question=None)
 
     def _answer(self, message: dict[str, Any]) -> None:
-        """The visitor's choices: columns as [quantity, number, unit], and words."""
+        """Read again with the visitor's choices: columns as [quantity, number, unit], and words."""
         columns = message.get("columns", [])
         if not isinstance(columns, list) or not all(isinstance(column, list) and len(column) == 3
                                                     for column in columns):
@@ -117,14 +117,14 @@ class DataPage(Page):
         words = [f"{str(quantity)[:20]}={str(number)[:6]}:{str(unit)[:30]}" for quantity, number, unit in columns]
         given = answers_of(words, _word(message, "decimal"), None, _word(message, "dataset"))
         if not self._tabs.state.get("question"):
-            return  # it was asked about data that have been replaced or removed meanwhile
+            return  # the question was about data that have since been replaced or removed
         before = self._answers
         self._answers = replace(before, columns=given.columns or before.columns,
                                 decimal=given.decimal or before.decimal, dataset=given.dataset or before.dataset)
         self._reading.start(partial(self._read_in_thread, self._content, self._name, self._answers))
 
     def _read_in_thread(self, content: bytes, name: str, answers: Answers, job: Job) -> None:
-        """In a worker thread: read the file. A `BadInput` names the line that cannot be read."""
+        """In a worker thread, read the file. A `BadInput` names the line that cannot be read."""
         try:
             data = _found(content, answers, name)
         except Unclear as unclear:
@@ -157,7 +157,7 @@ class DataPage(Page):
             self.picture_ready(self._host.session.settled)
 
     def _overlay_in_thread(self, series: Series, run: Run, sensors: Sensors, job: Job) -> None:
-        """In a worker thread: align the series with the run."""
+        """In a worker thread, align the series with the run."""
         from granchain_core.fitting.overlay import overlay  # imported late: only a fit needs it
 
         job.next_tick(self._show_overlay, overlay(series, run, sensors))
@@ -181,7 +181,7 @@ class DataPage(Page):
             self.picture_ready(settled)
 
     def curve_compared(self, difference: Difference | None) -> None:
-        """Show how a measured curve differs from the curve from rest; with None, a new curve was begun."""
+        """Show how a measured curve differs from the curve from rest; None means that a new curve was started."""
         if not isinstance(self._host.session.measured, Series):
             self._tabs.update_state(misfit=_misfit(difference))
 
@@ -227,7 +227,7 @@ class DataPage(Page):
 
 
 def _settled(scene: Scene, stop: Stop) -> Settled:
-    """The steady state, whose largest force a virtual experiment needs."""
+    """Return the steady state, whose largest force a virtual experiment needs."""
     began = time.thread_time()
     for settled in settling(scene, stop=stop):
         if time.thread_time() - began > WHOLE_PICTURE and not settled.final:
@@ -237,7 +237,7 @@ def _settled(scene: Scene, stop: Stop) -> Settled:
 
 
 def _content(message: dict[str, Any]) -> bytes:
-    """The bytes of the file, which the page sends in base64, so that any encoding arrives unchanged."""
+    """Return the bytes of the file, which the page sends in base64 so that any encoding arrives unchanged."""
     coded = message.get("content")
     try:
         content = base64.b64decode(coded if isinstance(coded, str) else "!", validate=True)
@@ -249,20 +249,20 @@ def _content(message: dict[str, Any]) -> bytes:
 
 
 def _found(content: bytes, answers: Answers, name: str) -> Measured | Series:
-    """The curve or the series in a file. Raises `Unclear` and `BadInput`."""
+    """Return the curve or the series in a file. Raise `Unclear` or `BadInput`."""
     data: Measured | Series | Shaker
     try:
         data = read_data(content, answers, TABLE_KINDS, name, LARGEST_UPLOAD, MOST_UPLOADED_POINTS)
     except Unclear:
         if format_of(content) is not TEXT:
             raise
-        # asked about again for a curve alone, so that the question speaks of nothing else
+        # read again as a curve only, so that the question is about nothing else
         data = read_data(content, answers, ("curve",), name, LARGEST_UPLOAD, MOST_UPLOADED_POINTS)
     if isinstance(data, Shaker):
-        raise BadInput(f"{name} is the shaker's amplitude, and the page draws curves of frequency and force, and "
+        raise BadInput(f"{name} is the shaker's amplitude, but the page draws curves of frequency and force, and "
                        "series of forces; use granchain curve --amplitude FILE.")
     if isinstance(data, Series) and data.input_force is None and data.output_force is None:
-        raise BadInput(f"{name} is a time series without a force; the page draws input and output force.")
+        raise BadInput(f"{name} is a time series without a force, but the page draws input and output force.")
     points = len(data.time if isinstance(data, Series) else data.frequency)
     if points > MOST_UPLOADED_POINTS:
         raise BadInput(f"{name} has {points} points, and the page draws up to {MOST_UPLOADED_POINTS}.")
@@ -275,7 +275,7 @@ def _word(message: dict[str, Any], name: str) -> str | None:
 
 
 def _misfit(difference: Difference | None) -> dict[str, Any] | None:
-    """The misfit for the tab: its sentence and rows of frequency, measured, model, difference."""
+    """Return the misfit for the tab: its sentence and rows of frequency, measured, model, difference."""
     if difference is None:
         return None
     measured = difference.measured

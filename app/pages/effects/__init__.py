@@ -1,1 +1,1 @@
-"""Effects switched on and off, and what each costs."""
+"""Effects that can be switched on and off, and the cost of each."""

@@ -1,18 +1,18 @@
-// The Effects tab: a switch for every effect, its slot in the compiled kernel and its cost, and the running computations.
+// The Effects tab: a switch for every effect, its slot in the compiled kernel and its cost, and running computations.
 
 import { element, paragraph } from "../../parts/toolkit/dom.js";
 
 const INVITES =
-  "Tick an effect to add its term to the equations. The numbers say how much time a time step takes for it.";
+  "Tick an effect to add its term to the equations. The numbers show how much time it adds to a time step.";
 const COST =
-  "Measured on this computer; 1 ns is a billionth of a second. What is off has no code in the kernel and costs nothing.";
+  "Measured on this computer; 1 ns is a billionth of a second. An effect that is off has no code in the kernel and costs nothing.";
 const MINUS =
-  "A minus: steps are quicker with the effect, because fewer of them are divided where contacts open or close.";
+  "A minus sign: steps are faster with the effect, because fewer of them are divided where contacts open or close.";
 
-// The columns of the table of costs: title and hint.
+// The columns of the cost table: title and hint.
 const COLUMNS = [
   ["effect", ""],
-  ["arithmetic alone", "What its code adds to a plain RK4 step, in which the arithmetic is always the same."],
+  ["arithmetic alone", "The time that its code adds to a plain RK4 step, in which the arithmetic is always the same."],
   [
     "in this motion",
     "How it changes the time of a step of the fixed-step method, which divides steps where contacts open or close.",
@@ -22,7 +22,7 @@ const COLUMNS = [
 const signed = (value) =>
   `${value < 0 ? "−" : "+"}${Math.abs(value) < 9.95 ? Math.abs(value).toFixed(1) : Math.abs(value).toFixed(0)}`;
 
-// A cost in nanoseconds with its variation between measurements, and in per cent.
+// Returns a cost in nanoseconds with its variation between measurements, and in per cent.
 const cost = (measured) => {
   if (!measured) return null;
   const { difference, percent, spread } = measured;
@@ -32,7 +32,7 @@ const cost = (measured) => {
     `${signed(difference)} ns`,
     element("small", { textContent: ` ± ${spread.toFixed(0)} · ${signed(percent)} %` }),
   );
-  cell.title = `${measured.with.toFixed(1)} ns a step with it, ${measured.without.toFixed(1)} ns without; medians of alternating runs, spread ± ${spread.toFixed(1)} ns`;
+  cell.title = `${measured.with.toFixed(1)} ns per step with it, ${measured.without.toFixed(1)} ns without; medians of alternating runs, spread ± ${spread.toFixed(1)} ns`;
   return cell;
 };
 
@@ -58,7 +58,7 @@ function effectRow(model, effect, slot) {
   return rows;
 }
 
-// A table of all effects with their costs, and in the last row the time of a whole step.
+// Returns a table of all effects with their costs; the last row has the time of a whole step.
 function costTable(model, { effects, slots, step }) {
   const slotOf = new Map(slots.map((slot) => [slot.slot, slot]));
   const ns = (value) => (value ? `${value.toFixed(0)} ns` : "–");
@@ -80,7 +80,7 @@ function costTable(model, { effects, slots, step }) {
   );
 }
 
-// Whether an effect makes steps faster, by more than the variation, although it adds arithmetic.
+// Returns whether an effect makes steps faster, by more than the variation, although it adds arithmetic.
 const saves = ({ code, motion }) => motion && motion.difference + motion.spread < Math.min(0, code.difference);
 
 function activityRow({ name, state, detail }) {

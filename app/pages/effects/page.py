@@ -1,4 +1,4 @@
-"""The Effects tab of one session: switches, what each effect costs, and the list of running computations."""
+"""The Effects tab of one session: switches, the cost of each effect, and the list of running computations."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ _QUIET = 0.7
 
 
 class EffectsPage(Page):
-    """Lists the running computations and measures the cost of one effect after another while it is visible."""
+    """The page, which lists running computations and measures one effect's cost after another while it is visible."""
 
     def __init__(self, host: PageHost, view: Component) -> None:
         self._host = host
         self._view = view
         self._task = Task(host, MEASUREMENTS, self._ended, "The cost measurement",
-                          outlives_knobs="the cost of an effect does not depend on the values of knobs")
+                          outlives_knobs="the cost of an effect does not depend on the knobs' values")
         self._visible = False
         self._round = 0
         self._quiet = Debounce(host, _QUIET)
@@ -64,7 +64,7 @@ class EffectsPage(Page):
         return f"{len(self._costs)} of {possible} effects measured"
 
     def scene_changed(self) -> None:
-        """Pause the measurements, because a knob has moved, and forget the costs of another kernel."""
+        """Pause the measurements, because a knob has moved, and forget the costs if the kernel has changed."""
         self._quiet.start(self._next)
         scene = self._host.session.scene
         key = (structure(scene), scene.knobs["N"])
@@ -94,7 +94,7 @@ class EffectsPage(Page):
             self._show()
 
     def _poll(self, number: int) -> None:
-        """Repeat while the panel is open: begin the next measurement, and show everything."""
+        """Start the next measurement and show everything, repeatedly while the panel is open."""
         if not self._visible or number != self._round:
             return
         self._next()
@@ -102,7 +102,7 @@ class EffectsPage(Page):
         self._host.call_later(_LIST_EVERY, self._poll, number)
 
     def _next(self) -> None:
-        """Begin the next thing to do: compile the kernels of one effect, or measure it."""
+        """Start the next task: compile the kernels of an effect, or measure its cost."""
         scene = self._host.session.scene
         busy = self.measuring or self._host.awaiting_picture or self._host.curve_computing
         if busy or self._quiet.pending or not self._visible:
@@ -119,7 +119,7 @@ class EffectsPage(Page):
             return
 
     def _compiled(self, name: str, pair: tuple[Variant, Variant]) -> bool:
-        """Whether both kernels are compiled; if one is not, another process begins to compile it."""
+        """Return whether both kernels are compiled; if one is not, another process starts to compile it."""
         for variant in pair:
             piece = COST_ACCOUNT_KERNELS if variant.account else COST_KERNELS
             if COMPILER.has(variant.scene, piece):
@@ -136,7 +136,7 @@ class EffectsPage(Page):
         self._task.start(partial(self._work, name, pair))
 
     def _work(self, name: str, pair: tuple[Variant, Variant], job: Job) -> None:
-        """In the measuring thread: measure both costs, waiting while a knob moves."""
+        """In the measuring thread, measure both costs, waiting while a knob moves."""
         for method in (CODE, MOTION):
             cost = effect_cost(*pair, method, job.stop, job.give_way)
             job.next_tick(self._measured, name, method, cost)
@@ -177,7 +177,7 @@ class EffectsPage(Page):
         }
 
     def _step(self, scene: Scene) -> dict[str, float]:
-        """Nanoseconds a step of the present kernel, by method, from the last effect that was measured."""
+        """Return the time of a step of the present kernel [ns], by method, from the last effect that was measured."""
         times: dict[str, float] = {}
         for name, costs in self._costs.items():
             on = present(name, scene, account=False)
@@ -186,7 +186,7 @@ class EffectsPage(Page):
 
 
 def _words(cost: EffectCost | None) -> dict[str, Any] | None:
-    """A measured cost for the page; None if there is none."""
+    """Return a measured cost for the page; None if there is none."""
     if cost is None:
         return None
     return {"with": cost.with_it, "without": cost.without, "difference": cost.difference, "percent": cost.percent,

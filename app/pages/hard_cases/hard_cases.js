@@ -1,15 +1,15 @@
-// The Hard cases page, an overlay: a card for each case, which runs when the visitor asks for it.
+// The Hard cases page, an overlay: a card for each case, which runs on request.
 
 import { button, element, meter, pageHead, table } from "../../parts/toolkit/dom.js";
 import { ResultFigure } from "../../parts/figures/result_figure.js";
 
-// Text in which powers such as "10^5" and "F^{1/6}" are raised, and what is between backticks is code.
+// Splits text into elements: powers such as "10^5" and "F^{1/6}" are raised, and text between backticks is code.
 const raised = (text) =>
   text.split(/(\^\{[^}]+\}|\^-?\d+|`[^`]+`)/).map((piece) => {
     if (piece.startsWith("^")) return element("sup", { textContent: piece.replace(/[\^{}]/g, "") });
     return piece.startsWith("`") ? element("code", { textContent: piece.slice(1, -1) }) : piece;
   });
-const EXPLAINED_AFTER = 20; // s; after that the card says why the first run on a computer takes long
+const EXPLAINED_AFTER = 20; // s; after this time, the card says why the first run on a computer takes long
 
 function rowTable(rows) {
   const body = element("tbody");
@@ -20,14 +20,14 @@ function rowTable(rows) {
       element(
         "tr",
         { className: passed ? "held" : "missed" },
-        element("td", { className: "verdict", textContent: passed ? "✓ holds" : "✕ FAILED" }),
+        element("td", { className: "verdict", textContent: passed ? "✓ passed" : "✕ FAILED" }),
         cell,
         element("td", { className: "number", textContent: value }),
         element("td", { className: "number", textContent: `≤ ${limit}` }),
       ),
     );
   }
-  return table(["", "what must hold", "value", "limit"], body);
+  return table(["", "requirement", "value", "limit"], body);
 }
 
 class Card {
@@ -94,7 +94,7 @@ class HardCases {
     this.all = button("run all (quick)", () => send({ do: "hard-cases-all" }), {
       title: `All ${cases.length} cases with fewer runs; in full: granchain check`,
     });
-    this.stop = button("stop", () => send({ do: "hard-cases-stop" }), { title: "What was found stays" });
+    this.stop = button("stop", () => send({ do: "hard-cases-stop" }), { title: "The results so far stay" });
     this.meter = meter("progress of the hard cases");
     this.line = element("p", { className: "say", ariaLive: "polite" });
     const head = pageHead("Hard cases", this.meter, this.stop, this.all);
@@ -112,7 +112,7 @@ class HardCases {
     window.granchain.publish("hard-cases", { sentence: summary });
   }
 
-  // Once a second it shows how long the present case has been running.
+  // Shows, once a second, how long the present case has been running.
   tick() {
     for (const card of this.cards.values()) if (card.began !== null) card.tick();
   }

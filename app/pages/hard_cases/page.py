@@ -24,7 +24,7 @@ WORDS = StatusWords()
 
 
 class HardCasesPage(Page):
-    """Runs the requested cases one after another; results stay until a case is run again."""
+    """The page, which runs the requested cases one after another; results stay until a case is run again."""
 
     def __init__(self, host: PageHost, view: HardCases) -> None:
         self._view = view
@@ -48,7 +48,7 @@ class HardCasesPage(Page):
         return "hard cases", READY if self.rows else OFF, f"{len(self.rows)} of {len(CASES)} run"
 
     def stop(self) -> None:
-        """Stop the case under way and forget the waiting cases; the results so far stay."""
+        """Stop the running case and forget the waiting cases; the results so far stay."""
         self._give_up()
         for name in self.waiting:
             self._put(name, **WORDS.of("stopped"))
@@ -60,7 +60,7 @@ class HardCasesPage(Page):
         self._process.close()
         self._process = CaseProcess()
 
-    # What the visitor does
+    # The visitor's actions
 
     def _run_one(self, message: dict[str, Any]) -> None:
         case = case_of(message.get("case"))
@@ -109,7 +109,7 @@ class HardCasesPage(Page):
             self._view.draw(name, data)
 
     def _end(self, status: Status, sentence: str) -> None:
-        """Begin the next case after the first waiting one has ended or failed."""
+        """Start the next case after the first in the queue has ended or failed."""
         name = self.waiting.pop(0)
         if self.waiting:
             self._begin_next()

@@ -1,4 +1,4 @@
-"""The page "Hard cases": a card for each, with values beside their limits and a figure beside a naive solver's."""
+"""The Hard cases page: a card for each case, with values, limits and a figure that includes a naive solver."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ ABOUT = ("Cases in which solvers of granular chains go wrong without warning. Ea
 
 
 class HardCases(ResultFigure):
-    """The overlay; rows come in `state`, every figure as one message when its case was run."""
+    """The overlay; rows are in `state`, and each figure is sent as a message after its case was run."""
 
     _esm = module("hard_cases.js")
     _stylesheets = [text("controls.css"), text("hard_cases.css")]  # noqa: RUF012
@@ -29,25 +29,25 @@ class HardCases(ResultFigure):
         super().__init__(received, state={"cases": described_cases(), "about": ABOUT}, **params)
 
     def draw(self, name: str, data: Picture) -> None:
-        """Replace the figure of a case by another."""
+        """Replace the figure of a case."""
         labels = "; ".join(trace.label for trace in data.traces)
         self.show_figure(partial(check, data), f"{data.y_label} over {data.x_label}: {labels}", place=name)
 
 
 def described_cases() -> list[dict[str, Any]]:
-    """The cases in words, before anything is run."""
+    """Return the cases in words, before anything is run."""
     return [{"name": case.name, "hard": case.hard, "naive": case.naive, "oracle": case.oracle}
             for case in CASES]
 
 
 def digits_of(value: float, digits: int) -> str:
-    """A number to `digits` significant digits, "7.1e-13"; exponents without leading zeros."""
+    """Return a number to `digits` significant digits, such as "7.1e-13", without leading zeros in the exponent."""
     mantissa, _, exponent = f"{value:.{digits}g}".partition("e")
     return f"{mantissa}e{int(exponent)}" if exponent else mantissa
 
 
 def value_beside(value: float, limit: float) -> str:
-    """A value to two digits, or to more if they are needed to see on which side of its limit it is."""
+    """Return a value to two digits, or to more if they are needed to show on which side of its limit it is."""
     if not math.isfinite(value):
         return "no number" if math.isnan(value) else "infinite"
     for digits in range(2, 17):
@@ -58,7 +58,7 @@ def value_beside(value: float, limit: float) -> str:
 
 
 def described_results(name: str, rows: list[Check]) -> dict[str, Any]:
-    """The rows of one case as the browser shows them, and its time.
+    """Return the rows of one case as the browser shows them, and its time.
 
     A value that could not be computed has a note that says why.
     """
@@ -68,7 +68,7 @@ def described_results(name: str, rows: list[Check]) -> dict[str, Any]:
 
 
 def summary(rows_by_case: dict[str, list[Check]]) -> str:
-    """One sentence about everything that was run; a failed row is named with its value."""
+    """Return one sentence about everything that was run; the first failed row is named with its value."""
     every = [row for case in CASES for row in rows_by_case.get(case.name, ())]
     if not every:
         return ""

@@ -1,4 +1,4 @@
-"""Running hard cases in a separate process: their oracles are plain Python, which would block the server."""
+"""Run hard cases in a separate process: their oracles are plain Python, which would block the server."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ from granchain_core.execution.child_processes import end_with_parent, starting
 from granchain_core.execution.stop import Stop
 from granchain_core.hard_cases import CASES, Case, Check, Picture, run_case
 
-#: Interval between checks of the stop flag while the process of a case works [s].
+#: Interval between checks of the stop flag while the process of a case is working [s].
 _STOP_CHECK_INTERVAL = 0.05
 
 
-#: Niceness: the page's pictures come first when cores are scarce.
+#: Niceness of the process: the page's pictures come first when cores are scarce.
 _NICENESS = 5
 
 
 class Ended(Exception):
-    """The process ended without an answer, by a fault in it or from outside."""
+    """The process ended without an answer, through a fault of its own or from outside."""
 
 
 def case_of(name: object) -> Case | None:
-    """The case of this name."""
+    """Return the case of this name; None if there is none."""
     return next((case for case in CASES if case.name == name), None)
 
 
@@ -45,14 +45,14 @@ def serve_cases(connection: Connection) -> None:
 
 
 class CaseProcess:
-    """One process, which the first case starts; `close` may be called at any time, from any thread."""
+    """A process, started for the first case; `close` may be called at any time, from any thread."""
 
     def __init__(self) -> None:
         self._process: BaseProcess | None = None
         self._connection: Connection | None = None
 
     def measure(self, case: Case, stop: Stop) -> Iterator[list[Check] | Picture | None]:
-        """The rows, then the picture or None. Raises `Cancelled` for the flag, `Ended` if the process has ended."""
+        """Yield the rows, then the picture or None. Raise `Cancelled` if stopped, `Ended` if the process has ended."""
         if stop:
             raise Cancelled
         connection = self._connection or self._begin()
@@ -82,5 +82,5 @@ class CaseProcess:
         self._process = context.Process(target=serve_cases, args=(theirs,), name="hard cases", daemon=True)
         with starting():
             self._process.start()
-        theirs.close()  # the process then has the only copy of its end, and recv() here fails when it dies
+        theirs.close()  # so that the process has the only copy of its end, and recv() here fails when it dies
         return self._connection

@@ -24,7 +24,7 @@ const attractorRow = (attractor, load) =>
     element("td", {}, button("show", load)),
   );
 
-// Makes the table or, while the search runs, shows its progress. `load` is called with an attractor's number.
+// Returns the table or, while the search runs, its progress. `load` is called with an attractor's number.
 export function attractorList(load) {
   if (MAP.search !== "done") return MAP.searched ? [paragraph(MAP.searched, "soft")] : [];
   const rows = MAP.attractors.map((attractor, number) => attractorRow(attractor, () => load(number)));

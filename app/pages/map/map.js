@@ -1,4 +1,4 @@
-// The Map tab: the parameter map, regime or largest force over two knobs, coarse first, and all attractors of the present setting.
+// The Map tab: the parameter map (regime or largest force over two knobs, coarse first) and the present attractors.
 
 import { button, element, meter, paragraph } from "../../parts/toolkit/dom.js";
 import { BokehFigure, fillModels } from "../../parts/figures/bokeh_figure.js";
@@ -28,7 +28,7 @@ class MapTab {
     this.host.addEventListener("keydown", (event) => this.key(event));
     this.host.addEventListener("blur", () => this.moveCursor(null));
     this.attractors = element("div");
-    this.following = false; // from the click until what was found is on the screen
+    this.following = false; // true from the click until the result is on the screen
     this.figure = new BokehFigure(this.host, (bokehFigure) => this.fill(bokehFigure));
     const segments = element("span", { className: "segments" }, ...this.choices);
     const find = button("all attractors at this setting", () => {
@@ -91,7 +91,7 @@ class MapTab {
     if (row >= 0) this.line.textContent = MAP.cells.rows.cells.tooltip[row];
   }
 
-  // Draws again what a message of type `what` changes; everything without a type.
+  // Redraws the parts that a message of type `what` changes; without a type, everything.
   redraw(what) {
     for (const choice of this.choices) choice.ariaPressed = String(choice.value === MAP.shown);
     this.showProgress();

@@ -1,4 +1,4 @@
-// The map as the browser knows it: figure, cells, state and attractors.
+// The browser's copy of the map: figure, cells, state and attractors.
 
 import { StreamedData } from "../../parts/figures/bokeh_figure.js";
 
@@ -21,7 +21,7 @@ export const MAP = {
   redraw: () => {},
 };
 
-// The reason why a computation failed or, if it has not, its progress.
+// Returns the reason why a computation failed or, if it has not, its progress.
 const wordsOf = ({ failure, progress }) => failure || progress;
 
 export function mapMessage(message) {
@@ -46,7 +46,7 @@ export function mapMessage(message) {
   MAP.redraw(message.type);
 }
 
-// The row of the finest cell computed so far at a place of the grid; −1 if there is none.
+// Returns the row of the finest cell computed so far at a place in the grid; −1 if there is none.
 export function cellAt(i, j) {
   const { number, spacing } = MAP.cells.rows.cells ?? { number: [] };
   for (let step = 1; step <= 64; step *= 2) {
@@ -56,13 +56,13 @@ export function cellAt(i, j) {
   return -1;
 }
 
-// The row of the finest of the cells that a tap has hit.
+// Returns the row of the finest cell among those that a tap has hit.
 export const finest = (rows) => {
   const { spacing } = MAP.cells.rows.cells;
   return rows.reduce((best, row) => (spacing[row] < spacing[best] ? row : best));
 };
 
-// The values of the two knobs at a cell, in SI.
+// Returns the values of the two knobs at a cell, in SI.
 export function valuesOf(row) {
   const { x, y } = MAP.head;
   const number = MAP.cells.rows.cells.number[row];

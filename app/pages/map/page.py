@@ -30,15 +30,15 @@ from ...session.scene_facts import slider_range
 from ...session.task import Job, Task
 from .view import cells_message, described_attractor, head_message
 
-#: Time for which the knobs must rest before a new map is begun [s].
+#: Time for which the knobs must rest before a new map is started [s].
 _QUIET = 0.7
 #: Time between two messages while a map grows [s].
 _MESSAGE_EVERY = 0.25
 
-#: Cells along f and A0: few enough to be computed in about ten seconds on one core.
+#: Cells along f and A0, few enough to be computed in about ten seconds on one core.
 COLUMNS = 60
 ROWS = 40
-#: Number of random states from which attractors are searched for.
+#: Number of random states from which attractors are sought.
 _RANDOM_STATES = 64
 #: Number of random states for a scene that cannot be computed in batches.
 _FEW_RANDOM_STATES = 12
@@ -49,14 +49,14 @@ SEARCH_WORDS = StatusWords(
 
 
 def page_grid(scene: Scene) -> Grid:
-    """The map of a scene over the ranges of its sliders; it does not depend on the present f and A0."""
+    """Return the grid of a scene's map over the ranges of its sliders; it does not depend on the present f and A0."""
     (f0, f1), (a0, a1) = slider_range(scene, "f"), slider_range(scene, "A0")
     low = scene.evolve(f=f0, A0=a0)
     return Grid(low, Axis.of("f", np.linspace(f0, f1, COLUMNS)), Axis.of("A0", np.geomspace(a0, a1, ROWS).tolist()))
 
 
 class MapPage(Page):
-    """Computes its map while the tab is on the screen."""
+    """The page, which computes its map while the tab is on the screen."""
 
     def __init__(self, host: PageHost, view: Component) -> None:
         self._host = host
@@ -71,7 +71,7 @@ class MapPage(Page):
         self._theme = THEMES["light"]
         self._scale: dict[str, Any] = {}
         self._found: list[Attractor] = []
-        #: The scene of the attractors, found or searched for, as its digest.
+        #: Digest of the scene whose attractors have been found or are being sought.
         self._searched = ""
         self.status: Status = "none"
         self.actions: Actions = {
@@ -82,7 +82,7 @@ class MapPage(Page):
         }
 
     def scene_changed(self) -> None:
-        """Follow a moved knob: any except f and A0 changes the map, and every knob changes the attractors."""
+        """React to a moved knob: all except f and A0 change the map, and every knob changes the attractors."""
         self._forget_outdated_attractors()
         if not self._visible:
             return
@@ -112,7 +112,7 @@ class MapPage(Page):
             self._show_attractors("done" if self._found else "none")
 
     def theme_changed(self, theme: Theme) -> None:
-        """Send the figure again: its colours are set here."""
+        """Send the figure again, because its colours are set by the server."""
         changed, self._theme = theme != self._theme, theme
         if changed and self._visible and self._grid is not None:
             self._send_all()
@@ -146,14 +146,14 @@ class MapPage(Page):
             self._show_status("stopped")
 
     def _work(self, grid: Grid, missing: list[int], job: Job) -> None:
-        """In a worker thread: compute the missing cells, waiting while a knob moves."""
+        """In a worker thread, compute the missing cells, waiting while a knob moves."""
         job.compile(grid.scene, *PICTURE_PIECES)
         job.report("computing")
         for rows in _batches(grid, missing, job.stop, partial(job.give_way, self._in_front)):
             job.next_tick(self._show, rows)
 
     def _in_front(self) -> bool:
-        """Whether a picture or the curve is being computed, for which the map waits."""
+        """Return whether a picture or the curve is being computed; the map waits for both."""
         return self._host.awaiting_picture or self._host.curve_computing
 
     # To the browser
@@ -188,7 +188,7 @@ class MapPage(Page):
         self._send(**message)
 
     def _choose(self, message: dict[str, Any]) -> None:
-        """Set f and A0 to the values of the place in the map that was clicked."""
+        """Set f and A0 to the values at the clicked place in the map."""
         session = self._host.session
         self._host.show(session.scene.evolve(f=message.get("x"), A0=message.get("y")), mode=session.mode)
 
@@ -220,21 +220,21 @@ class MapPage(Page):
         self._send(type="map-attractors", **SEARCH_WORDS.of(status, sentence), attractors=shown)
 
     def _forget_outdated_attractors(self) -> None:
-        """Forget attractors of another scene, and end a search for them."""
+        """Forget the attractors of another scene, and cancel a search for them."""
         if (self._found or self._search.running) and self._searched != self._host.session.scene.digest:
             self._search.cancel()
             self._found = []
             self._show_attractors("none")
 
     def _load(self, message: dict[str, Any]) -> None:
-        """Put the chain on an attractor; from then on settled pictures start from the previous state."""
+        """Put the chain on an attractor; from then on, settled pictures start from the previous state."""
         attractor = check_index("attractor", self._found, message.get("number"))
         self._host.session.set_start("previous")
         self._host.show(attractor.scene, attractor.state)
 
 
 def _batches(grid: Grid, missing: list[int], stop: Stop, pause: Callable[[], None]) -> Iterator[np.ndarray]:
-    """Cells as they are computed, in batches."""
+    """Yield cells as they are computed, in batches."""
     rows: list[np.ndarray] = []
     last = time.monotonic()
     for result in iter_parameter_map(grid, missing, stop, workers=1, pause=pause):

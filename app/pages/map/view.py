@@ -1,4 +1,4 @@
-"""Messages to the map tab: the figure of a grid, its cells as rows of the figure's sources, attractors in words."""
+"""Messages to the Map tab: the figure of a grid, its cells as rows of the figure's sources, attractors in words."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ from ...plots.theme import Theme
 
 
 def head_message(grid: Grid, theme: Theme) -> dict[str, Any]:
-    """The figure of a map whose cells are still to come, and the values of its knobs in SI."""
+    """Return the figure of a map without cells, and the values of its knobs in SI."""
     return {"type": "map-head", "figure": figure_item(parameter_map(nothing(grid), theme)), "x": list(grid.x.values),
             "y": list(grid.y.values), "shown": {name: shown_models(name) for name in ("force", "regime")}}
 
 
 def cells_message(grid: Grid, cells: np.ndarray, every: np.ndarray) -> dict[str, Any]:
-    """Some computed cells as rows, and the scale of all that are computed."""
+    """Return some computed cells as rows, and the scale for all computed cells."""
     computed = every[every["regime"] >= 0]
     return {"type": "map-cells", "done": len(computed) / len(every), "rows": {"cells": cell_rows(grid, cells)},
             "models": scale_models(computed)}
 
 
 def described_attractor(attractor: Attractor) -> dict[str, Any]:
-    """One attractor for the list: category, words, force, share, and which named starts lead to it."""
+    """Return an attractor for the list: colour, words, force, share, and the named starts that lead to it."""
     regime = attractor.regime
     period = regime.period
     error = attractor.force_errors.output

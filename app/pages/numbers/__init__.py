@@ -1,1 +1,1 @@
-"""The pictures as sentences and tables, for screen readers and for reading off values."""
+"""The pictures in sentences and tables, for screen readers and for reading off values."""

@@ -1,4 +1,4 @@
-// Up to three pinned pictures in the Numbers tab: their numbers, and how much the present picture differs from them.
+// Up to three pinned pictures in the Numbers tab: their numbers, and how the present picture differs from them.
 
 import { button, element, paragraph } from "../../parts/toolkit/dom.js";
 
@@ -6,7 +6,7 @@ const INVITES = "Pin a picture and move a knob: its lines stay, dashed and grey,
 
 let comparison = { pins: [], rows: [], full: false };
 
-// Takes the server's message. With pins, the key over the force trains explains the grey lines.
+// Receives the server's message. If there are pins, the key above the force trains explains the grey lines.
 export function compareMessage(message) {
   if (message.type !== "compare") return;
   comparison = message;
@@ -32,21 +32,21 @@ function head(model, { name, sign, words, known }, number) {
   return title;
 }
 
-// A pinned value and, below it, the present value minus and over the pinned one.
+// Returns a pinned value and, below it, the present value minus the pinned one and their ratio.
 function pinned([value, ...differences]) {
   const made = cell(value);
   for (const textContent of differences) if (textContent) made.append(element("small", { textContent }));
   return made;
 }
 
-// A quantity: a row with its name, and below it a row with the present and the pinned values.
+// Returns the rows of a quantity: one with its name, and one with the present and the pinned values.
 function lines({ title, now, pins }) {
   const name = element("th", { textContent: title, scope: "rowgroup", colSpan: 1 + pins.length });
   const values = element("tr", { className: title === "motion" ? title : "" }, cell(now), ...pins.map(pinned));
   return element("tbody", {}, element("tr", {}, name), values);
 }
 
-// The button that pins, and the table of pinned pictures.
+// Returns the button that pins a picture, and the table of pinned pictures.
 export function compared(model) {
   const pin = button("pin this picture", () => model.send_msg({ do: "pin" }), { className: "primary" });
   const body = element("div", { className: "compared" });

@@ -10,7 +10,7 @@ const TABLES = {
   beads: ["beads", ["bead", "largest displacement", "largest speed", "largest kinetic energy", "at"]],
   curve: ["resonance curve", ["drive frequency", "largest output force", "elastic part", "input force", "motion"]],
 };
-const CURVE = "resonance curve"; // the name of its model
+const CURVE = "resonance curve"; // the name of the curve's model
 
 let numbers = { summary: "" };
 let chosen = "forces";
@@ -22,7 +22,7 @@ export function numbersMessage(message) {
   window.granchain.emit("numbers-received");
 }
 
-// The rows of the curve come from the data of its figure.
+// Returns the rows of the curve, from the data of its figure.
 function curveRows() {
   const [figure] = modelsNamed(CURVE);
   const points = (figure?.renderers ?? [])

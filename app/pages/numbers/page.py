@@ -11,7 +11,7 @@ from .words import beads, forces_over_time, summary
 
 
 class NumbersPage(Page):
-    """Computes the tables and the summary. It has no view: the script of the tabs draws its tab."""
+    """The page, which computes the tables and the summary. It has no view; the tabs' script draws its tab."""
 
     def __init__(self, host: PageHost, view: Component) -> None:
         self._host = host

@@ -9,16 +9,16 @@ from granchain_core.scene.effects import effects_of
 
 from ...format import in_words
 
-#: Instants of a table over time; the file has all.
+#: Most instants in a table over time; the file has all.
 _MOST_INSTANTS = 25
-#: A value below this part of the largest of its series is a rounded zero, such as the sine of a full turn.
+#: A value below this fraction of its series' largest is a rounded zero, for example the sine of a full turn.
 _LARGEST_ROUNDED_ZERO = 1e-12
-#: Most beads of a table; the file has all.
+#: Most beads in a table; the file has all.
 _MOST_BEADS = 200
 
 
 def summary(run: Run) -> str:
-    """A summary of the pictures in a few sentences."""
+    """Summarise the pictures in a few sentences."""
     energy = run.kinetic_energy
     row, bead = map(int, np.unravel_index(int(energy.argmax()), energy.shape))
     far = int(energy[:, -1].argmax())
@@ -28,7 +28,7 @@ def summary(run: Run) -> str:
 
 
 def _forces(run: Run) -> str:
-    """The motion, and the largest forces at both ends with their ratio, which is not a ratio of energies."""
+    """Describe the motion, and the largest forces at both ends with their ratio, which is not a ratio of energies."""
     pushed, arrived = (in_words(force, "N", 3) for force in (run.max_input_force, run.max_output_force))
     if not run.scene.is_driven:
         return (f"Nothing drives the chain; {_time(run, -1)} from its start are shown. The force on bead 1 from the "
@@ -39,14 +39,14 @@ def _forces(run: Run) -> str:
 
 
 def _travel(run: Run) -> str:
-    """The largest displacements of the beads from rest."""
+    """Describe the largest displacement of a bead from rest."""
     far = np.abs(run.displacement).max(axis=0)
     most = int(far.argmax())
-    return f"The bead that moves farthest, number {most + 1}, goes {in_words(float(far[most]), 'm', 3)} from its place."
+    return f"Bead {most + 1} moves farthest, {in_words(float(far[most]), 'm', 3)} from its rest position."
 
 
 def _where_energy_goes(run: Run) -> str:
-    """Where the work of the driver goes in a steady motion, if only the damping of contacts can lose energy.
+    """Say where the driver's work goes in a steady motion, if only the contact damping dissipates energy.
 
     The wall takes none, because it does not move.
     """
@@ -57,21 +57,21 @@ def _where_energy_goes(run: Run) -> str:
 
 
 def forces_over_time(run: Run) -> list[list[str]]:
-    """Time, drive, input and output force at equal distances."""
+    """Return time, drive, input and output force at evenly spaced instants."""
     rows = np.unique(np.linspace(0, len(run.time) - 1, _MOST_INSTANTS).round().astype(int))
     series = ((run.drive_displacement, "m"), (run.input_force, "N"), (run.output_force, "N"))
     return [[_time(run, int(row)), *(_value(values, int(row), unit) for values, unit in series)] for row in rows]
 
 
 def _value(values: np.ndarray, row: int, unit: str) -> str:
-    """A value of a series; a rounded zero is shown as zero."""
+    """Return a value of a series in words; a rounded zero is shown as zero."""
     value = float(values[row])
     is_zero = abs(value) <= _LARGEST_ROUNDED_ZERO * float(np.abs(values).max())
     return f"0 {unit}" if is_zero else in_words(value, unit, 3)
 
 
 def beads(run: Run) -> list[list[str]]:
-    """For each bead the largest displacement, speed and kinetic energy, as sampled, and when it has that energy."""
+    """Return each bead's largest sampled displacement, speed and kinetic energy, and the time of that energy."""
     energy = run.kinetic_energy
     return [[str(bead + 1), in_words(float(np.abs(run.displacement[:, bead]).max()), "m", 3),
              in_words(float(np.abs(run.velocity[:, bead]).max()), "m/s", 3),

@@ -36,7 +36,7 @@ class PushedChain extends WholeChain {
     else this.arrow(force, xOf(1) - radius, y, this.left);
   }
 
-  // Its tip is at x = `tip`. The arrow of the largest force is `room` px long, but at least 30 px.
+  // Draws the arrow with its tip at x = `tip`. For the largest force it is `room` px long, but at least 30 px.
   arrow(force, tip, y, room) {
     const { context: g, ink } = this;
     const long = Math.min(1, Math.abs(force) / this.force) * Math.max(30, room);
@@ -57,7 +57,7 @@ class PushedChain extends WholeChain {
   }
 }
 
-// Clears a canvas at the resolution of the screen; its context then draws in CSS pixels.
+// Clears a canvas and sets it to the screen's resolution; its context then draws in CSS pixels.
 function cleared(canvas) {
   const { width, height } = canvas.getBoundingClientRect();
   const ratio = window.devicePixelRatio || 1;
@@ -69,7 +69,7 @@ function cleared(canvas) {
   return { context, width, height };
 }
 
-// F_in over the period that is replayed, with a dot at the present time.
+// Draws F_in over the period that is replayed, with a dot at the present time.
 function drawForce(canvas, { message, chain }, row) {
   const { context: g, width, height } = cleared(canvas);
   const { rows, beads } = message;
@@ -120,7 +120,7 @@ export class Chains {
     this.observer.measure();
   }
 
-  // Colours and displacements of both chains are on the scales of the main picture, once there is one.
+  // Once there is a main picture, both chains use its scales of colours and displacements.
   load({ chain, observer, message }) {
     const { scales } = window.granchain.shown ?? {};
     Object.assign(chain, scales);

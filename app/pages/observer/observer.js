@@ -1,4 +1,4 @@
-// The Observer page: the chain, below it its observer, the force that couples them, and their distance.
+// The Observer page: the chain and, below it, its observer, with the force that couples them and their distance.
 
 import { button, element, pageHead } from "../../parts/toolkit/dom.js";
 import { BokehFigure } from "../../parts/figures/bokeh_figure.js";
@@ -6,7 +6,7 @@ import { Chains } from "./chains.js";
 import { fillDistance, showDistance } from "./observer_tab.js";
 import { Replay } from "./replay.js";
 
-const KEPT_A_PERIOD = 8; // points of the distance in a drive period
+const KEPT_A_PERIOD = 8; // points of the distance per drive period
 const KEPT_PERIODS = 80;
 
 // The foundation's stiffness: a slider, and a button for each of the paper's two values.
@@ -32,7 +32,7 @@ class KappaControl {
   }
 }
 
-// The distance in a period, thinned out, as points [drive period, distance].
+// Returns the distance over a period, thinned out, as points [drive period, distance].
 function thinned({ distance, message: { rows, number } }) {
   const stride = Math.max(1, Math.round((rows - 1) / KEPT_A_PERIOD));
   const points = [];
@@ -99,7 +99,7 @@ class ObserverPage {
     if (granchain.overlay === "observer") showDistance(this.figure, figures.page, this.known);
   }
 
-  // The replay of a period begins. A lower number than before means another run, whose history is empty.
+  // Called when the replay of a period begins. A lower number than before means another run, whose history is empty.
   begin(step) {
     if (this.history.length && this.history.at(-1)[0] > step.message.number) this.history = [];
     this.history.push(...thinned(step));
@@ -108,7 +108,7 @@ class ObserverPage {
     this.showDistance();
   }
 
-  // Requests an animation frame. Each requests the next while the page or its tab is visible.
+  // Requests an animation frame. Each frame requests the next while the page or its tab is visible.
   wake() {
     this.requested ||= requestAnimationFrame((time) => {
       this.requested = 0;

@@ -1,9 +1,9 @@
-// The Observer tab: a small figure of the distance, and the way to the page, whose figure the same function fills.
+// The Observer tab: a small figure of the distance, and a button that opens the page; one function fills both figures.
 
 import { element, openButton, paragraph } from "../../parts/toolkit/dom.js";
 import { BokehFigure } from "../../parts/figures/bokeh_figure.js";
 
-// The distance over time, and its prediction by the multipliers; each point is [drive period, distance].
+// Fills a figure with the distance over time and its prediction by the multipliers, as [drive period, distance].
 export function fillDistance(figure, { history, prediction }) {
   const data = (points) => ({
     period: points.map(([period]) => period),
@@ -13,7 +13,7 @@ export function fillDistance(figure, { history, prediction }) {
   figure.set("prediction", { data: data(prediction) });
 }
 
-// The figure comes with its first points: an axis without data has no range.
+// The figure is loaded with its first points, because an axis without data has no range.
 export function showDistance(figure, item, known) {
   if (!known.history.length) return;
   if (figure.item !== item) figure.load(item, "distance between observer and chain over time");

@@ -1,4 +1,4 @@
-"""The Observer page of one session: computes a drive period for each period that the browser has shown."""
+"""The Observer page of one session: it computes a drive period for each period that the browser has shown."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ WORDS = StatusWords("the observer's kernels", OBSERVER_KERNELS)
 
 @dataclass(frozen=True)
 class _Moved:
-    """A step of a run, and whether the run began with it."""
+    """A step of a run, and whether the run started with it."""
 
     run: ObserverRun
     step: ObserverStep
@@ -29,13 +29,13 @@ class _Moved:
 
 
 class ObserverPage(Page):
-    """Each message "observer-more" asks for one period; without them nothing is computed."""
+    """The page; each message "observer-more" asks for one period, and nothing is computed without a message."""
 
     def __init__(self, host: PageHost, view: Observer) -> None:
         self._host = host
         self._view = view
         self._task = Task(host, PICTURES, self._said, "The observer", report_to_host=True,
-                          outlives_knobs="one period under way is the old chain's last, the next the new chain's")
+                          outlives_knobs="the running period is the old chain's last, the next is the new chain's")
         self._run: ObserverRun | None = None
         self._asked = False
         self._requests: list[str] = []
@@ -46,7 +46,7 @@ class ObserverPage(Page):
         }
 
     def scene_changed(self) -> None:
-        """Update the page's control after a knob has moved; the next period belongs to the new chain."""
+        """Update the page's control after a knob has moved; the next period is the new chain's."""
         scene = self._host.session.scene
         self._view.update_state(kappa=scene.kappa)
         if self._run is not None and self._run.scene.digest != scene.digest:
@@ -73,7 +73,7 @@ class ObserverPage(Page):
 
     def _next_in_thread(self, scene: Scene, settled: Settled | None, run: ObserverRun | None, requests: list[str],
                         job: Job) -> None:
-        """In a worker thread: compute one more period of this scene; `run` has the periods so far."""
+        """In a worker thread, compute one more period of this scene; `run` has the periods so far."""
         job.compile(scene, DOP853_KERNELS, OBSERVER_KERNELS)
         mine = settled if settled is not None and settled.run.scene.digest == scene.digest else None
         began = False

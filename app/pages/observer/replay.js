@@ -1,13 +1,13 @@
-// Periods that the server computes for the Observer page. They are requested ahead, queued, and replayed one by one.
+// The periods that the server computes for the Observer page are requested ahead, queued, and replayed one by one.
 
 import { unpack } from "../../parts/chain/chain_series.js";
 
 const PERIODS_A_SECOND = 4;
-const AHEAD = 2; // periods that wait in the queue
-// ms from a request to the next if no period came: an observer in step with its chain sends none until it is nudged.
+const AHEAD = 2; // periods to have in the queue
+// ms from a request to the next if no period arrived: an observer in step with its chain has none until it is nudged.
 const ASK_AGAIN = 2000;
 
-// The frames of both chains and their distance, from one message's array.
+// Returns the frames of both chains and their distance, from the array of one message.
 function parted(message) {
   const { rows, values } = message;
   const first = unpack(message);
@@ -29,14 +29,14 @@ export class Replay {
     this.askAfter = 0;
   }
 
-  // Takes a period from the server. The first of another run replaces those that wait.
+  // Receives a period from the server. The first period of another run replaces the queue.
   add(message) {
     this.askAfter = 0;
     if (message.began) this.queue = [];
     this.queue.push(parted(message));
   }
 
-  // Seconds since the last frame, at most 0.1, so that the replay does not jump after its tab was hidden.
+  // Returns the seconds since the last frame, at most 0.1, so that the replay does not jump after its tab was hidden.
   seconds(time) {
     const passed = Math.min(0.1, (time - this.last) / 1000);
     this.last = time;

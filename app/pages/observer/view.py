@@ -1,4 +1,4 @@
-"""The Observer page: a chain, its observer under it, the force between them, and their distance over time."""
+"""The Observer page: a chain, its observer below it, the force between them, and their distance over time."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ from ...plots.theme import Theme
 from ...scripts import module
 from .work import NUDGE, ObserverStep
 
-#: Drive periods after a start during which no multiplier describes the distance.
+#: Drive periods after a start in which the distance does not yet follow a multiplier.
 _TRANSIENT_PERIODS = 2
 
 
 @cache
 def empty_figures(theme: Theme) -> dict[str, Any]:
-    """The distance over time without its points, for the page and, small, for its tab."""
+    """Return the figure of the distance over time without points, for the page and, small, for its tab."""
     return page_and_small(lambda compact: observer([], [], [], theme, compact))
 
 
 class Observer(StreamedFigure):
-    """The overlay; every period comes as one message."""
+    """The overlay; every period is sent as one message."""
 
     _esm = module("observer.js")
     _stylesheets = [text("controls.css"), text("observer.css")]  # noqa: RUF012
@@ -43,7 +43,7 @@ class Observer(StreamedFigure):
         self._anchor: tuple[float, float] | None = None
 
     def step(self, step: ObserverStep, scene: Scene, began: bool, since: int, factor: float | None) -> None:
-        """Send one period, and the prediction from the end of the transient, two periods after the start."""
+        """Send one period, and the prediction from the end of the transient (two periods after the start)."""
         self.need_figures()
         if began:
             self._anchor = None
@@ -54,13 +54,13 @@ class Observer(StreamedFigure):
 
 
 def first_state() -> dict[str, Any]:
-    """The state of the page before anything is computed."""
+    """Return the state of the page before anything is computed."""
     return {"palette": ENERGY_COLOURS, "kappa": 0.0, "nudge": NUDGE, "paper_kappa": scene("fig11-founded").kappa,
             "progress": "", "sentence": ""}
 
 
 def step_message(step: ObserverStep, scene: Scene, began: bool) -> dict[str, Any]:
-    """One drive period for the browser, all series in one array: rows of the chain's, then of the observer's."""
+    """Return one drive period for the browser; one array has the chain's rows, the observer's, and their distance."""
     push = step.largest_input
     factor, letter = prefixed(push)
     series = [*chain_series(step.chain, step.chain_force, step.chain_energy, step.drive),

@@ -1,4 +1,4 @@
-"""Chain and observer of the Observer page, period by period, with the rate that the multiplier predicts."""
+"""Chain and observer of the Observer page, computed period by period, with the rate that the multiplier predicts."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ from granchain_core.scene.state import rest
 
 from ...frames import samples_for
 
-#: Root-mean-square displacement of the observer's beads by a nudge, over A0.
+#: Root-mean-square displacement of the observer's beads in a nudge, over A0.
 NUDGE = 1e-3
-#: Most rows of a drive period.
+#: Most rows per drive period.
 _MOST_ROWS = 192
 #: Drive periods whose stroboscopic differences are kept.
 _MOST_STROBES = 400
@@ -33,9 +33,9 @@ _MOST_STROBES = 400
 
 @dataclass(frozen=True)
 class ObserverStep:
-    """One drive period: T rows of chain and observer in SI, of their distance, and the period's number at its start.
+    """One drive period: its number, and T rows in SI of chain and observer and of their distance.
 
-    `largest_input` is the largest input force [N], also where it jumps between two rows.
+    `largest_input` is the largest input force [N] so far, including jumps between two rows.
     """
 
     number: int
@@ -52,7 +52,7 @@ class ObserverStep:
 
 
 class ObserverRun:
-    """One chain with one observer; it starts from the states of `previous`, the run before a knob was moved."""
+    """A chain with its observer, which start from the states of `previous`, the run before a knob was moved."""
 
     def __init__(self, scene: Scene, settled: Settled | None, stop: Stop, previous: ObserverRun | None) -> None:
         self.scene = scene
@@ -62,7 +62,7 @@ class ObserverRun:
         self.samples = min(_MOST_ROWS, samples_for(scene))
         self.pair = Pair(scene, self.samples, stop)
         self.number, self.since = 0, 0
-        self._largest_input = 0.0  # over all periods so far: an orbit of period 3 may have one push
+        self._largest_input = 0.0  # over all periods so far: an orbit of period 3 may have a single push
         if previous is not None and previous.scene.N == scene.N:
             self.number = previous.number
             self._begin(*previous.pair.states)
@@ -78,22 +78,22 @@ class ObserverRun:
         self.in_step = False
 
     def nudge(self) -> None:
-        """Displace the observer's beads slightly, always in the same way."""
+        """Displace the observer's beads slightly, always by the same amounts."""
         chain, observer = self.pair.states
         moved = observer_start(self.scene, chain, NUDGE)
         self._begin(chain, State(observer.displacement + moved.displacement - chain.displacement, observer.velocity))
 
     def from_rest(self) -> None:
-        """Let the observer begin at rest, knowing nothing of the chain."""
+        """Restart the observer at rest, without any knowledge of the chain."""
         self._begin(self.pair.states[0], rest(self.scene))
 
     def predict(self, settled: Settled) -> None:
-        """Find the orbit of a settled picture of this very chain, and the observer's multipliers on it."""
+        """Find the orbit of a settled picture of this chain, and the observer's multipliers on it."""
         try:
             self.orbit = periodic_orbit(self.scene, settled.regime.period, settled.state, observer=True,
                                         stop=self.pair.engine.stop)
             self.drifts = observer_drift(self.orbit) is not None
-        except (ComputationError, BadInput) as problem:  # `BadInput` where tension is cut
+        except (ComputationError, BadInput) as problem:  # `BadInput` if tension is cut
             self.failure = str(problem)
 
     @property
@@ -103,16 +103,16 @@ class ObserverRun:
 
     @property
     def predicted(self) -> float | None:
-        """The factor by which the distance changes in a drive period while it is small; None if unknown."""
+        """The factor by which the distance changes per drive period while it is small; None if unknown."""
         if self.orbit is None or self.leading is None:
             return None
         return float(abs(self.leading) ** (1.0 / self.orbit.period))
 
     @property
     def measured(self) -> float | None:
-        """Factor by which the distance changed in a drive period since the last start.
+        """The factor by which the distance has changed per drive period since the last start.
 
-        None until enough periods were linear.
+        None until the motion has been linear for enough periods.
         """
         linear = self._linear
         if len(self.strobes) < 8 * self._every or len(linear) < self._orbits_needed:
@@ -121,7 +121,7 @@ class ObserverRun:
 
     @property
     def _orbits_needed(self) -> float:
-        """Fewest orbits to measure: after half the time constant of the leading mode the faster modes have died out."""
+        """Fewest orbits to measure: the faster modes have died out after half the time constant of the leading mode."""
         if self.leading is None or abs(self.leading) in (0.0, 1.0):
             return 0.0
         return min(0.5 / abs(math.log(abs(self.leading))), 0.5 * _MOST_STROBES / self._every)
@@ -164,7 +164,7 @@ class ObserverRun:
 
     @property
     def sentence(self) -> str:
-        """The prediction of the multiplier in one sentence."""
+        """The multiplier's prediction in one sentence."""
         mu, factor = self.leading, self.predicted
         if self.in_step:
             return "The observer agrees with its chain to rounding; nudge it and watch it converge again."

@@ -1,4 +1,4 @@
-"""The page "The paper" of one session: computes a figure when it is chosen, and stops when the page is left."""
+"""The page "The paper" of one session: it computes a figure when it is chosen, and stops when the page is left."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ WORDS = StatusWords("the figure's kernels", ORBIT_KERNELS)
 
 
 class PaperPage(Page):
-    """The figures that were computed stay until the session ends."""
+    """The page, which keeps all computed figures until the session ends."""
 
     def __init__(self, host: PageHost, view: Paper) -> None:
         self._view = view
@@ -40,7 +40,7 @@ class PaperPage(Page):
         self.actions: Actions = {"paper-show": self._show, "paper-stop": lambda _: self._stop()}
 
     def visibility_changed(self, visible: bool) -> None:
-        """Show a figure rather than nothing when the page is opened for the first time."""
+        """Show the first figure when the page is opened for the first time, rather than none."""
         if visible and not self._chosen:
             self._show({"figure": _FIRST_FIGURE})
 
@@ -61,7 +61,7 @@ class PaperPage(Page):
         self._task.start(lambda job: self._compute(figure, job))
 
     def _compute(self, figure: PaperFigure, job: Job) -> None:
-        """In a thread of the pool `LONG`."""
+        """Compute the figure in a thread of the pool `LONG`."""
         for name, pieces in _KERNELS.get(figure.number, ()):
             job.compile(scene(name), *pieces)
         job.report("computing")

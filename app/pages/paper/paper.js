@@ -1,13 +1,13 @@
-// The page of the paper, an overlay: a chosen figure is computed; it has a caption and rows of the table.
+// The page "The paper", an overlay: the chosen figure, computed here, with its caption and its rows of the table.
 
 import { button, element, meter, pageHead, paragraph, table } from "../../parts/toolkit/dom.js";
 import { ResultFigure } from "../../parts/figures/result_figure.js";
 
 const ABOUT =
-  "The figures of Zhang et al. (2016), computed here from the presets. Choose one; what the paper states and where we differ stands under it.";
+  "The figures of Zhang et al. (2016), computed here from the presets. Choose one; below it is what the paper states and where we differ.";
 const TITLES = ["the paper states", "we get", "do they differ?", "command"];
 
-// Text in which words between two stars are bold.
+// Splits text into elements: words between double asterisks are bold.
 const bold = (text) => text.split("**").map((piece, i) => (i % 2 ? element("b", { textContent: piece }) : piece));
 
 function statedTable(rows) {

@@ -15,7 +15,7 @@ from ...scripts import module
 
 
 class Paper(ResultFigure):
-    """The overlay; captions and rows come in `state`, the figure as a message."""
+    """The overlay; captions and rows are in `state`, and the figure is sent as a message."""
 
     _esm = module("paper.js")
     _stylesheets = [text("controls.css"), text("result_page.css"), text("paper.css")]  # noqa: RUF012
@@ -36,6 +36,6 @@ class Paper(ResultFigure):
 
 
 def rows_of(number: str) -> list[dict[str, str]]:
-    """The rows of the table that concern a figure."""
+    """Return the rows of the table that concern a figure."""
     return [{"paper": statement.paper, "ours": statement.ours, "differs": statement.differs,
              "command": statement.command} for statement in statements() if number in statement.figures]

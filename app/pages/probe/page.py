@@ -13,7 +13,7 @@ from .view import Probe
 
 
 class ProbePage(Page):
-    """Follows the settled picture while the page is visible; at other times it costs nothing."""
+    """The page, which follows the settled picture while it is visible and costs nothing at other times."""
 
     def __init__(self, host: PageHost, view: Probe) -> None:
         self._host = host

@@ -1,4 +1,4 @@
-// The Probe page, an overlay: one bead in six figures. A click on a bead or its column of the map chooses it.
+// The Probe page, an overlay: one bead in six figures. A click on a bead, or on its column of the map, chooses it.
 
 import { button, element, fillBeads, pageHead, paragraph } from "../../parts/toolkit/dom.js";
 import { BokehFigure, fillModels } from "../../parts/figures/bokeh_figure.js";
@@ -6,7 +6,7 @@ import { BokehFigure, fillModels } from "../../parts/figures/bokeh_figure.js";
 const TITLES = {
   displacement: "displacement",
   forces: "forces of its two contacts",
-  phase: "phase portrait; dots: every drive period",
+  phase: "phase portrait; dots: once every drive period",
   velocity: "velocity",
   contacts: "when each contact is closed",
   spectrum: "spectrum of the displacement",
@@ -28,7 +28,7 @@ class ProbePage {
     this.bead.addEventListener("change", () => this.choose(Number(this.bead.value)));
     const step = (by, words, title) =>
       button(words, () => this.choose(this.model.state.bead + by), { title, ariaLabel: title });
-    this.before = step(-1, "◀", "the bead before");
+    this.before = step(-1, "◀", "the previous bead");
     this.after = step(1, "▶", "the next bead");
     return [this.before, this.bead, this.after];
   }

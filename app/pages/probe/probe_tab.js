@@ -1,4 +1,4 @@
-// The Probe tab: a small phase portrait of the chosen bead, and the way to the page.
+// The Probe tab: a small phase portrait of the chosen bead, and a button that opens the page.
 
 import { element, openButton, paragraph } from "../../parts/toolkit/dom.js";
 import { BokehFigure, fillModels } from "../../parts/figures/bokeh_figure.js";

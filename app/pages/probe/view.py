@@ -19,7 +19,7 @@ from ...scripts import module
 
 @cache
 def empty_figures(theme: Theme) -> dict[str, Any]:
-    """All figures, and the small one of the tab."""
+    """Return all figures without data, including the tab's small one."""
     full_size = {name: figure_item(without_points(name, theme)) for name in FIGURES}
     return {**full_size, "small": figure_item(without_points("phase", theme, compact=True))}
 
@@ -42,7 +42,7 @@ class Probe(StreamedFigure):
 
 
 def words(motion: Run, bead: int) -> str:
-    """The motion of the bead in one sentence."""
+    """Describe the motion of the bead in one sentence."""
     u, v = (abs(values[:, bead - 1]).max() for values in (motion.displacement, motion.velocity))
     lasting = motion.time[-1] - motion.time[0]
     shut = [sum(end - begin for contact, begin, end in closed_spells(motion) if contact == beside) / lasting

@@ -1,4 +1,4 @@
-// One Floquet mode as a motion of the chain: how a small disturbance of the orbit moves every bead.
+// A Floquet mode as a motion of the chain: how a small disturbance of the orbit moves every bead.
 
 import { ChainDrawing } from "../../parts/chain/chain_drawing.js";
 import { element } from "../../parts/toolkit/dom.js";
@@ -6,7 +6,7 @@ import { round3, ticks } from "../../parts/toolkit/round_numbers.js";
 import { draw, frame, words } from "../../parts/toolkit/svg.js";
 
 class DisturbedChain extends ChainDrawing {
-  // The size of a mode is arbitrary: its largest displacement is drawn as this part of the distance of two beads.
+  // The size of a mode is arbitrary: its largest displacement is drawn as this fraction of the distance of two beads.
   load(frames) {
     this.rest(frames.radii);
     this.exaggeration = 0.42;
@@ -21,7 +21,7 @@ class DisturbedChain extends ChainDrawing {
     return Number.POSITIVE_INFINITY;
   }
 
-  // Beads are smaller than their distance, so that displaced beads do not overlap.
+  // Beads are drawn smaller than their distance, so that displaced beads do not overlap.
   size(radius) {
     return Math.min(0.8 * radius, 0.3 * this.height);
   }
@@ -39,7 +39,7 @@ class DisturbedChain extends ChainDrawing {
     g.stroke();
   }
 
-  // The places of the beads on the orbit, drawn behind everything else.
+  // Draws the places of the beads on the orbit, behind everything else.
   ground(frames, _, radius, y) {
     const { context: g, ink } = this;
     g.strokeStyle = ink.text;
@@ -62,7 +62,7 @@ export class ModeView {
     this.canvas = element("canvas");
     this.drawing = new DisturbedChain(this.canvas);
     this.host = element("div", { className: "figure" });
-    this.hosts = [this.canvas, this.host]; // elements whose change of size calls for a new drawing
+    this.hosts = [this.canvas, this.host]; // elements that are redrawn when their size changes
     this.title = element("h3", { textContent: "mode" });
     this.note = element("span", { className: "soft" });
     this.root = element(
@@ -79,7 +79,7 @@ export class ModeView {
   showTitle(rank) {
     const leading = this.mode?.size < 1 ? "the slowest-decaying disturbance" : "the fastest-growing disturbance";
     this.title.textContent = this.mode ? (rank ? "the chosen disturbance" : leading) : "mode";
-    this.note.textContent = this.mode ? "exaggerated; starts again with every period of the orbit" : "";
+    this.note.textContent = this.mode ? "exaggerated; restarts with every period of the orbit" : "";
   }
 
   readTheme() {
@@ -118,13 +118,13 @@ export class ModeView {
     this.last = null;
   }
 
-  // Displacement of bead i in a row of the mode, rotated by the multiplier's angle so far (cosine c, sine s).
+  // Returns bead i's displacement in a row of the mode, rotated by the multiplier's angle so far (cosine c, sine s).
   at(row, i, c, s) {
     const { re, im, beads } = this.mode;
     return c * re[row * beads + i] - s * im[row * beads + i];
   }
 
-  // Draws the mode at `phase` drive periods. With every period of the orbit it starts again, rotated but not grown.
+  // Draws the mode at `phase` drive periods. It restarts with every period of the orbit, rotated but not grown.
   draw(phase) {
     if (!this.mode || phase === this.last) return;
     this.last = phase;

@@ -1,9 +1,9 @@
-// The multipliers in the complex plane. A click on one, or an arrow key, chooses the disturbance that is shown.
+// The multipliers in the complex plane. A click on one, or an arrow key, chooses the disturbance to show.
 
 import { element } from "../../parts/toolkit/dom.js";
 import { BokehFigure, fillModels } from "../../parts/figures/bokeh_figure.js";
 
-const OBSERVER = "the observer: a second chain pushed by this one's input force";
+const OBSERVER = "the observer: a second chain, pushed by the input force of this one";
 
 export class MultiplierPlane {
   constructor(model, send) {

@@ -1,4 +1,4 @@
-// The row with the search for an unstable orbit nearby, and the button that leads back from the orbit found.
+// The row with the search for an unstable orbit nearby, and the button that leads back from the orbit it found.
 
 import { button, element } from "../../parts/toolkit/dom.js";
 
@@ -10,7 +10,7 @@ export class OrbitSearch {
       max: longest,
       value: 1,
       title: "period of the orbit in drive periods",
-      ariaLabel: "period of the orbit that is searched",
+      ariaLabel: "period of the orbit to search for",
     });
     this.find = button("search", () => send({ do: "stability-search", value: Number(this.period.value) }), {
       title: "Newton's method from the present state, the middle of the section and its close returns",

@@ -1,4 +1,4 @@
-"""The Stability page of one session: when it computes, whether the result is still valid, and its sentences."""
+"""The Stability page of one session: when it computes, and whether its result is still valid."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ WORDS = StatusWords("the tangent flow", ORBIT_KERNELS)
 
 
 class StabilityPage(Page):
-    """Analyses every picture that stays, while the page is visible; a moving knob cancels the analysis."""
+    """The page, which analyses every picture that stays while it is visible; a moving knob cancels the analysis."""
 
     def __init__(self, host: PageHost, view: Stability) -> None:
         self._host = host
@@ -80,7 +80,7 @@ class StabilityPage(Page):
     # The picture in front
 
     def picture_requested(self) -> None:
-        """Cancel the analysis and grey the last one, because another picture is being computed."""
+        """Cancel the analysis and grey out the last result, because another picture is being computed."""
         self._give_up()
         self._settled = None
         if self._visible and self._host.session.mode == "live":
@@ -89,10 +89,10 @@ class StabilityPage(Page):
             self._view.update_state(stale=True)
 
     def picture_ready(self, settled: Settled) -> None:
-        """Analyse a picture that has arrived, if it is the final one for these knobs and stays."""
+        """Analyse a picture that has arrived, if it is the final one for these knobs and stays on the screen."""
         if not settled.final:
             return
-        # the same picture, with its energy account
+        # whether it is the same picture, now with its energy account
         again = self._settled is not None and settled.state is self._settled.state
         self._settled = settled
         if not again:
@@ -152,10 +152,10 @@ class StabilityPage(Page):
 
     @staticmethod
     def _compile(scene: Scene, job: Job) -> None:
-        refuse_cut(scene)  # before anything is compiled for it
+        refuse_cut(scene)  # before anything is compiled for the scene
         job.compile(scene, ORBIT_KERNELS)
 
-    # What comes back
+    # Results
 
     def _arrived(self, result: OrbitAnalysis | OrbitTarget | Section) -> None:
         if self._settled is None:
@@ -171,13 +171,13 @@ class StabilityPage(Page):
         self._show_evidence()
 
     def _ended(self, status: Status, sentence: str) -> None:
-        """Report a failure or a state such as "compiling"; results have arrived by themselves."""
+        """Report a failure or a state such as "compiling"; results have already arrived separately."""
         if status != "done":
             self._show_status(status, sentence)
             self._show_evidence()
 
     def _section_ended(self, status: Status, sentence: str) -> None:
-        """Report a failure; it says nothing about the analysis."""
+        """Report a failure of the section, which does not affect the analysis."""
         if status == "failed":
             self._view.update_state(failure=sentence)
 
@@ -211,7 +211,7 @@ class StabilityPage(Page):
             self._view.update_state(evidence=evidence(self._settled, self._analysis, self._section))
 
     def _clear(self, sentence: str) -> None:
-        """Show a sentence with the reason instead of multipliers."""
+        """Show a sentence with the reason for having no multipliers."""
         self._analysis, self.status = None, "none"
         self._view.update_state(**WORDS.of("none"), stale=False, sentence=sentence,
                                 plane=plane_state(None), count=0, chosen="", searched=False, evidence=[],
@@ -229,7 +229,7 @@ class StabilityPage(Page):
                                     stale=False)
             self._view.send(type="no-mode")
 
-    # What the visitor does
+    # The visitor's actions
 
     def _choose_observer(self, message: dict[str, Any]) -> None:
         self._observer = bool(message.get("value"))
@@ -259,6 +259,6 @@ class StabilityPage(Page):
         self._orbits.start(partial(self._find, settled, section, period))
 
     def _back(self, _: dict[str, Any]) -> None:
-        """Go back from a search, or from the orbit it found, to the settled motion."""
+        """Return from a search, or from the orbit it found, to the settled motion."""
         self._give_up()
         self._begin()

@@ -31,7 +31,7 @@ export class SectionView {
         { className: "row" },
         element("label", {}, "drive phase ", this.phase),
         this.phaseLabel,
-        element("label", { title: "the second half of the points only" }, this.close, "close up"),
+        element("label", { title: "show only the second half of the points" }, this.close, "close up"),
       ),
       element("div", { className: "draw" }, this.host),
       this.note,
@@ -53,7 +53,7 @@ export class SectionView {
     else this.figure.remove();
   }
 
-  // Shows the whole plane, or the part with the second half of the points.
+  // Shows the whole plane, or only the part with the second half of the points.
   showRanges() {
     const ranges = this.close.checked ? this.data?.near : this.data?.drawn;
     if (ranges) for (const name of ["displacements", "velocities"]) this.figure.set(name, ranges[name]);

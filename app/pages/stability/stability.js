@@ -1,4 +1,4 @@
-// The Stability page, an overlay: whether a disturbance dies out or how it grows, and the evidence.
+// The Stability page, an overlay: whether a disturbance dies out or grows, how it grows, and the evidence.
 
 import { element, pageHead } from "../../parts/toolkit/dom.js";
 import { ModeView } from "./mode.js";

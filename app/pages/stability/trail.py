@@ -1,4 +1,4 @@
-"""The trail of multipliers: the multipliers of earlier orbits, fading."""
+"""The trail of multipliers: those of earlier orbits, fading with age."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 
 #: Most sets of multipliers in the trail.
 _MOST_SETS = 14
-#: Sets that differ by less than this are of one orbit.
+#: Sets that differ by less than this are of the same orbit.
 _SAME_SET = 1e-4
 
 
@@ -19,7 +19,7 @@ class Trail:
         self._scene = ""
 
     def follow(self, multipliers: np.ndarray, period: int, scene: str) -> None:
-        """Add the orbit that the chain follows now."""
+        """Add the multipliers of the orbit that the chain now follows."""
         if scene != self._scene:
             self._sets, self._last, self._scene = [], None, scene
         if self._last is not None and not _same(self._last[1], multipliers):
@@ -27,7 +27,7 @@ class Trail:
         self._last = period, multipliers
 
     def before(self, period: int) -> list[np.ndarray]:
-        """Earlier sets of multipliers of orbits of this period, oldest first."""
+        """Return earlier sets of multipliers of orbits of this period, oldest first."""
         return [multipliers for n, multipliers in self._sets if n == period]
 
 

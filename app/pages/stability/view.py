@@ -1,4 +1,4 @@
-"""The Stability page: multipliers, a mode, the section and the evidence, in words and as the browser draws them."""
+"""The Stability page: multipliers, a mode, the section and the evidence, in words and as data for the browser."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ from ...plots.theme import Theme
 from ...scripts import module
 from .work import PHASES, OrbitAnalysis
 
-#: Most figures of a |μ| with its error.
+#: Most significant figures of a |μ| with its error.
 _FIGURES_OF_A_MULTIPLIER = 6
 
 
 @cache
 def empty_figures(theme: Theme) -> dict[str, Any]:
-    """The plane, also small for the tab, and the section, all without points."""
+    """Return the plane, also small for the tab, and the section, all without points."""
     empty = plane_state(None)
     nothing = SectionPoints(np.zeros((1, 2)), np.zeros((0, 2)), 1, 0, False, 1, ("m", "m/s"))
     return {"section": figure_item(section(nothing, theme)), "plane": figure_item(plane(empty, theme)),
@@ -52,19 +52,19 @@ class Stability(StreamedFigure):
         super().__init__(received, state={"longest_period": LONGEST_LOCKED_PERIOD, "phases": PHASES}, **params)
 
     def section(self, shown: SectionPoints) -> None:
-        """Replace the section shown by another."""
+        """Show another section."""
         self.need_figures()
         self.send(**section_message(shown))
 
 
 def period_words(orbit: Orbit) -> str:
-    """One period of the orbit in drive periods and seconds."""
+    """Return one period of the orbit in drive periods and seconds."""
     n = orbit.period
     return f"{n} drive period{'s' if n > 1 else ''}, {duration(n * orbit.scene.period)}"
 
 
 def verdict(orbit: Orbit) -> str:
-    """Whether a disturbance of the orbit dies out or, if it does not, how it grows."""
+    """Say whether a disturbance of the orbit dies out or, if it does not, how it grows."""
     leading = complex(orbit.multipliers[0])
     size = abs(leading)
     if orbit.multiplier_errors is not None and not orbit.stability_certain:
@@ -82,7 +82,7 @@ def verdict(orbit: Orbit) -> str:
 
 
 def _observed(orbit: Orbit) -> str:
-    """The observer's stability, if it was asked for."""
+    """Describe the observer's stability, if its multipliers were computed."""
     if orbit.observer_multipliers is None:
         return ""
     size = float(np.abs(orbit.observer_multipliers).max())
@@ -101,7 +101,7 @@ def _leaves(leading: complex) -> str:
 
 
 def no_multipliers(settled: Settled) -> str:
-    """The reason why a motion that does not repeat has no multipliers."""
+    """Say why a motion that does not repeat has no multipliers."""
     regime = settled.regime
     if not regime.driven:
         return "No multipliers: nothing drives the chain, and only a motion that repeats has them."
@@ -116,13 +116,13 @@ def no_multipliers(settled: Settled) -> str:
 
 
 def multiplier_sentence(orbit: Orbit, rank: int) -> str:
-    """The multiplier of this rank, or the last one, in one sentence."""
+    """Describe the multiplier of this rank, or the last one, in one sentence."""
     value, modulus, *_ = multiplier_words(complex(orbit.multipliers[:rank + 1][-1]), orbit)
     return f"ringed: μ = {value}, |μ| {modulus}"
 
 
 def evidence(settled: Settled, analysis: OrbitAnalysis | None, section: Section | None) -> list[dict[str, str]]:
-    """Name, value and meaning of all evidence for the verdict; a number that was not computed has no row."""
+    """Return name, value and meaning of all evidence for the verdict; a number that was not computed has no row."""
     regime, rows = settled.regime, []
 
     def row(name: str, value: str, meaning: str) -> None:
@@ -147,7 +147,7 @@ def evidence(settled: Settled, analysis: OrbitAnalysis | None, section: Section 
     if regime.window_ratios is not None:
         row("change from window to window", " to ".join(f"{ratio:.3f}" for ratio in regime.window_ratios),
             "Smallest and largest ratio of the largest change in 100 periods to that in the 100 before, over all "
-            "periods tried: 1 where nothing shrinks or grows.")
+            "periods tried: 1 if nothing shrinks or grows.")
     if analysis is not None:
         _orbit_rows(row, settled, analysis)
     cost = settled.run.cost
@@ -176,8 +176,8 @@ def _orbit_rows(row: Any, settled: Settled, analysis: OrbitAnalysis) -> None:
             "from it: the error of the method that settled it.")
     if analysis.target.distance_of_motion is not None:
         row("nearest to the motion", f"{analysis.target.distance_of_motion:.2g} of its size",
-            "Newton's method was started near the motion and may end elsewhere: least distance of the orbit from the "
-            "states of the section, relative to their largest displacement and velocity.")
+            "Newton's method was started near the motion and may end elsewhere: smallest distance of the orbit from "
+            "the states of the section, relative to their largest displacement and velocity.")
     why = ("the smallest multipliers are below rounding" if len(orbit.multipliers) == 2 * orbit.scene.N
            else f"only the {len(orbit.multipliers)} leading multipliers are computed")
     row("product of all μ", why if orbit.liouville_error is None else f"{short_error(orbit.liouville_error)} off",
@@ -192,7 +192,7 @@ def _orbit_rows(row: Any, settled: Settled, analysis: OrbitAnalysis) -> None:
 
 
 def _size_words(size: float, orbit: Orbit) -> str:
-    """The largest |μ| with the figures that its error leaves, and the error."""
+    """Return the largest |μ| with the significant figures that its error allows, and the error."""
     if orbit.multiplier_errors is None:
         return modulus_words(size)
     error = float(orbit.multiplier_errors[0])
@@ -201,7 +201,7 @@ def _size_words(size: float, orbit: Orbit) -> str:
 
 
 def mode_message(mode: Mode, orbit: Orbit) -> dict[str, Any]:
-    """One mode for the chain: real and imaginary part, rows by beads, and where its multiplier points."""
+    """Return a mode for the chain: real and imaginary part, (rows, beads), and the direction of its multiplier."""
     turn = mode.multiplier / abs(mode.multiplier) if mode.multiplier else 1.0
     factor, letter = prefixed(orbit.period * orbit.scene.period)
     return {
@@ -215,7 +215,7 @@ def mode_message(mode: Mode, orbit: Orbit) -> dict[str, Any]:
 
 def section_points(section: Section, on_the_way: int, orbit: Section | None, bead: int, phase: int, period: int = 0,
                    unstable: bool = False) -> SectionPoints:
-    """Points of one bead at one phase, and the orbit's own; all were computed at this very phase."""
+    """Return the points of one bead at one phase, and the orbit's points; all were computed at exactly this phase."""
     points = section.points(bead, phase)
     own = np.zeros((0, 2)) if orbit is None else orbit.points(bead, phase)
     factors, units = zip(*(prefixed(float(np.abs(np.concatenate([points, own])[:, i]).max())) for i in (0, 1)),
@@ -225,6 +225,6 @@ def section_points(section: Section, on_the_way: int, orbit: Section | None, bea
 
 
 def section_message(shown: SectionPoints) -> dict[str, Any]:
-    """The data that the browser puts into its figure, and the ranges of the close view."""
+    """Return the data that the browser puts into its figure, and the ranges of the close-up."""
     return {"type": "section", "drawn": section_state(shown), "near": close_up(shown), "count": len(shown.points),
             "own": len(shown.own)}

@@ -21,23 +21,23 @@ from granchain_core.orbits.search import (
 from granchain_core.steady.poincare import Section, iter_section
 from granchain_core.steady.settling.regime_decisions import EXAMINED_AFTER
 
-#: Phases of the drive period at which the section is kept.
+#: Number of drive phases at which the section is kept.
 PHASES = 48
 #: Fewest drive periods of a section.
 _FEWEST_PERIODS = 24
 #: Drive periods of a section whose motion is not periodic.
 _CLOUD_PERIODS = 1200
-#: Most values of a mode; a mode that would have more has fewer samples in time.
+#: Most values of a mode; a mode that would have more gets fewer samples in time.
 _MOST_MODE_VALUES = 60_000
-#: A mode that ends farther than this from μ times itself contradicts μ; correct ones are within about 1e-8.
+#: A mode that ends farther than this from μ times itself contradicts μ; correct modes are within about 1e-8.
 _LARGEST_MODE_ERROR = 1e-4
 
 
 @dataclass(frozen=True)
 class OrbitTarget:
-    """The orbit asked for, at `start`: the one that is followed, or one that a search found with these residuals.
+    """The orbit to analyse, near `start`: the one that the motion follows, or one that a search found.
 
-    `distance_of_motion` is that of an orbit that was found by a search (`Orbit.distance_of_motion`).
+    `residuals` and `distance_of_motion` are those of an orbit found by a search (`Orbit.distance_of_motion`).
     """
 
     scene: Scene
@@ -52,7 +52,7 @@ class OrbitTarget:
 class OrbitAnalysis:
     """An orbit, one of its modes, its points, its distance from `target.start`, and the time taken [s].
 
-    The distance says something only of an orbit that is followed: a search has ended at `target.start`.
+    The distance is meaningful only for an orbit that the motion follows, because a search has ended at `target.start`.
     """
 
     target: OrbitTarget
@@ -64,10 +64,10 @@ class OrbitAnalysis:
 
 
 def analyse(target: OrbitTarget, observer: bool, rank: int, stop: Stop) -> OrbitAnalysis:
-    """Multipliers, the mode at place `rank` and the points of one orbit.
+    """Compute multipliers, the mode at place `rank` and the points of one orbit.
 
-    Raises `BadInput` for a scene without multipliers, `ComputationError` where Newton's method ends elsewhere, or where
-    a disturbance that is carried along contradicts its multiplier; `Cancelled`.
+    Raise `BadInput` for a scene without multipliers, `ComputationError` if Newton's method ends on another orbit or if
+    a disturbance that is carried along contradicts its multiplier, and `Cancelled`.
     """
     began = time.perf_counter()
     scene = target.scene
@@ -75,8 +75,8 @@ def analyse(target: OrbitTarget, observer: bool, rank: int, stop: Stop) -> Orbit
     distance = distance_of_states(orbit.state, target.start)
     if target.followed and distance > OWN_ORBIT_DISTANCE:
         raise ComputationError(f"Newton's method ended {distance:.0e} away from the settled motion, on another orbit; "
-                               "its multipliers are not those of what the chain does.", "another-orbit")
-    orbit.find_errors(stop)  # here, because the words about the orbit are made in the event loop
+                               "its multipliers are not those of the chain's motion.", "another-orbit")
+    orbit.find_errors(stop)  # here and not in the event loop, where the sentences about the orbit are made
     samples = next((n for n in (PHASES, 24, 12) if n * orbit.period * scene.N <= _MOST_MODE_VALUES), 8)
     shape = mode(orbit, min(rank, len(orbit.multipliers) - 1), samples, stop)
     if not shape.closure <= _LARGEST_MODE_ERROR * max(1.0, abs(shape.multiplier)):
@@ -87,23 +87,23 @@ def analyse(target: OrbitTarget, observer: bool, rank: int, stop: Stop) -> Orbit
 
 
 def section_of(settled: Settled, start: State | None, stop: Stop) -> Iterator[Section]:
-    """The section from the start of the picture's chain: a transient and, if it is not periodic, a cloud."""
+    """Yield the section from the start of the picture's motion: a transient and, if it is not periodic, a cloud."""
     regime = settled.regime
     periods = max(regime.periods_run, _FEWEST_PERIODS if regime.name == "periodic" else _CLOUD_PERIODS)
     yield from iter_section(settled.run.scene, start, periods, PHASES, stop=stop)
 
 
 def transient(settled: Settled, section: Section) -> int:
-    """How many of its first periods are a transient: all, if the motion is periodic or has not settled."""
+    """Return how many of the first periods are a transient: all, if the motion is periodic or has not settled."""
     if settled.regime.name in ("periodic", "unsettled"):
         return section.periods
     return min(EXAMINED_AFTER, section.periods)
 
 
 def search(settled: Settled, section: Section | None, period: int, stop: Stop) -> OrbitTarget:
-    """An orbit sought near the motion shown, which the motion does not follow.
+    """Search for an orbit near the motion shown that the motion does not follow.
 
-    Raises what `search_orbit` raises, and `ComputationError` where the search ends on the orbit that is followed.
+    Raise the errors of `search_orbit`, and `ComputationError` if the search ends on the orbit that the motion follows.
     """
     scene = settled.run.scene
     strobes = np.zeros((0, 2, scene.N))

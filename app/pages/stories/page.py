@@ -1,4 +1,4 @@
-"""The Stories tab of one session: the story and its step, and the step's motion."""
+"""The Stories tab of one session: the story, its current step, and the step's motion."""
 
 from __future__ import annotations
 
@@ -23,19 +23,19 @@ def _stories_read(overlays: tuple[str, ...]) -> tuple[tuple[Story, ...], tuple[s
 
 
 def story_places(overlays: tuple[str, ...]) -> tuple[str, ...]:
-    """Every step of every story by its name in a link, "coexisting.2"; `overlays` names the existing overlays."""
+    """Return the link names of every step of every story, like "coexisting.2"; `overlays` names the overlays."""
     return tuple(f"{story.name}.{number}" for story in _stories_read(overlays)[0]
                  for number in range(1, len(story.steps) + 1))
 
 
 def story_step(place: str, overlays: tuple[str, ...]) -> StoryStep:
-    """The step that has this name in a link."""
+    """Return the step that has this name in a link."""
     name, _, number = place.partition(".")
     return next(story for story in _stories_read(overlays)[0] if story.name == name).steps[int(number) - 1]
 
 
 class StoriesPage(Page):
-    """Shows a step of a story: sets its scene and sends its text to the tab."""
+    """The page, which shows a step of a story: it sets the step's scene and sends its text to the tab."""
 
     def __init__(self, host: PageHost, view: Component) -> None:
         self._host = host
@@ -49,17 +49,17 @@ class StoriesPage(Page):
         self.address_applied()
 
     def scene_changed(self) -> None:
-        """Drop a step that is still being settled, because the knobs have moved."""
+        """Cancel a step that is still being settled, because the knobs have moved."""
         self._task.cancel()
 
     def picture_ready(self, settled: Settled) -> None:
-        """Settle the step of a link that names it alone, if its motion is reached through others (`StoryStep.via`)."""
+        """Settle the step of a link that names only the step, if its motion is reached via others (`StoryStep.via`)."""
         if settled.final and self._host.session.story_to_settle:
             self._host.session.story_to_settle = False
             self._task.start(partial(self._through, story_step(self._host.session.story, self._host.overlays)))
 
     def address_applied(self) -> None:
-        """The address has the step of the story, and the motion of the step."""
+        """Show the step that the address names; the address also sets the step's motion."""
         self._task.cancel()
         name, _, number = self._host.session.story.partition(".")
         self._view.update_state(story=self._words(self._stories[name], int(number)) if name else None)
@@ -90,7 +90,7 @@ class StoriesPage(Page):
             self._show(step, None)
 
     def _through(self, step: StoryStep, job: Job) -> None:
-        """In a worker thread: settle the frequencies through which the step's motion is reached, then show it."""
+        """In a worker thread, settle at the frequencies through which the step's motion is reached, then show it."""
         job.compile(step.scene, *PICTURE_PIECES)
         job.next_tick(self._show, step, state_before(step, job.stop))
 

@@ -1,13 +1,13 @@
-// The Stories tab: the list of stories, or one step: what to see, a question, and its answer on demand.
+// The Stories tab: the list of stories, or one step with what to look at, a question, and its answer on demand.
 
 import { button, element, paragraph, PHONE } from "../../parts/toolkit/dom.js";
 
-const INVITES = "A story turns the knobs, says where to look, and asks. All controls stay available.";
+const INVITES = "A story turns the knobs, says where to look, and asks questions. All controls stay available.";
 
 let revealed = ""; // the step whose answer is shown
 let shownStep = ""; // the step that was shown last
 
-// Frames the part of the page that a step is about.
+// Puts a frame around the part of the page that a step is about.
 function point(look, inStory = false) {
   document.getElementById("curves").classList.toggle("in-story", inStory);
   window.granchain.emit("story", inStory);
@@ -60,7 +60,7 @@ function comeUp(story) {
   if (step === shownStep) return;
   const before = shownStep;
   shownStep = step;
-  // So is the list of stories after a step, as it is below the pictures; not when the page has just been opened.
+  // The same applies to the list of stories after a step, since it is below the pictures, but not to a page just opened.
   if ((step || before) && PHONE.matches) requestAnimationFrame(() => document.getElementById("tabs").scrollIntoView());
 }
 

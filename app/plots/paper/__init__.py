@@ -1,4 +1,4 @@
-"""The figures of Zhang et al. 2016: `paper_figure` draws any result, each type of them in its module."""
+"""The figures of Zhang et al. (2016): `paper_figure` draws any result; each type of result has its module."""
 
 from __future__ import annotations
 
@@ -37,10 +37,10 @@ _SIZES = {Rig: (1100, 400), Transmission: (1100, 560), EnergyMaps: (1100, 560), 
 
 
 def paper_figure(result: Result, theme: Theme) -> LayoutDOM:
-    """The figure of a result of `granchain_core.paper.compute`; it fills the room that it is given."""
+    """Draw the figure of a result of `granchain_core.paper.compute`; it fills the available room."""
     return _DRAW[type(result)](result, theme)
 
 
 def size_of(result: Result) -> tuple[int, int]:
-    """Width and height in which a figure reads well [px]."""
+    """Return the width and height in which a figure is easy to read [px]."""
     return _SIZES[type(result)]

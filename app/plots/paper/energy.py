@@ -1,4 +1,4 @@
-"""Figure 3: kinetic energy over bead and time beside the drive's displacement and the force on bead 1."""
+"""Figure 3: kinetic energy over bead and time, next to the driver's displacement and the force on bead 1."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _LETTERS = {"fig3a": "(a)", "fig3b": "(b)"}
 
 
 def energy(shown: EnergyMaps, theme: Theme) -> LayoutDOM:
-    """A pair of panels for each orbit, time downwards on both."""
+    """Draw a pair of panels for each orbit, with time downwards on both."""
     panels = []
     for settled, periods in shown.parts:
         index, seconds = repeated(settled.run, periods)

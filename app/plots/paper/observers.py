@@ -1,4 +1,4 @@
-"""Figure 11: multipliers of chain and observer, and the first bead of both over time."""
+"""Figure 11: multipliers of chain and observer, and the displacement of their first beads over time."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .panels import grid
 
 
 def observers(shown: Observers, theme: Theme) -> LayoutDOM:
-    """A row for each κ: the plane of multipliers, bead 1 of the chain, bead 1 of the observer."""
+    """Draw a row for each κ: the plane of multipliers, bead 1 of the chain, bead 1 of the observer."""
     values = np.concatenate([bead for part in shown.parts for bead in part.first_beads]) * 1e6
     room = 0.06 * float(np.ptp(values))
     across = Range1d(float(values.min()) - room, float(values.max()) + room)
@@ -24,7 +24,7 @@ def observers(shown: Observers, theme: Theme) -> LayoutDOM:
 
 def _row(part: CoupledRow, letters: str, across: Range1d, theme: Theme) -> list[figure]:
     orbit = part.twin.orbit
-    assert orbit is not None  # figure 11 is one of periodic orbits
+    assert orbit is not None  # figure 11 shows periodic orbits
     plane = multipliers(orbit, theme)
     plane.title.text = f"({letters[0]}) κ = {part.kappa:.3g}, {part.frequency:g} Hz: {len(part.outside)} outside"
     panels = [plane]

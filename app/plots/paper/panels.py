@@ -1,4 +1,4 @@
-"""Elements that several figures share: panels beside and above each other, measured points, small legends."""
+"""Elements that several figures share: panels in rows, measured points, small legends."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from ..themed import themed
 
 
 def grid(rows: Sequence[Sequence[figure]]) -> LayoutDOM:
-    """Panels in rows, which fill the room; the wheel scrolls the page until its tool is chosen."""
+    """Arrange panels in rows that fill the available room; the wheel scrolls the page until its tool is chosen."""
     for row in rows:
         for plot in row:
             plot.toolbar.active_scroll = None
@@ -27,7 +27,7 @@ def grid(rows: Sequence[Sequence[figure]]) -> LayoutDOM:
 
 
 def fewer(values: np.ndarray, part: float = 2e-4) -> np.ndarray:
-    """Indices of equally spaced samples, except samples that a straight line replaces to `part` of the range."""
+    """Return indices of equally spaced samples, without those on a straight line to within `part` of the range."""
     kept = np.ones(len(values), dtype=bool)
     limit = part * float(np.ptp(values)) if len(values) else 0.0
     for step in (1, 2, 4, 8, 16):
@@ -40,7 +40,7 @@ def fewer(values: np.ndarray, part: float = 2e-4) -> np.ndarray:
 
 
 def inside_legend(plot: figure, theme: Theme, location: str = "top_right") -> None:
-    """A small legend within the frame, whose lines can be hidden."""
+    """Put a small legend inside the frame; a click on an entry hides its line."""
     for legend in plot.legend:
         legend.update(location=location, padding=2, margin=4, spacing=0, label_height=14, glyph_height=14,
                       background_fill_alpha=0.8, click_policy="hide",
@@ -48,7 +48,7 @@ def inside_legend(plot: figure, theme: Theme, location: str = "top_right") -> No
 
 
 def hollow_points(plot: figure, x: Any, y: Any, error: Any, words: str, hover: Sequence[tuple[str, str]]) -> None:
-    """Measured points with the source "measured": hollow, thin, in front, with bars where there are errors."""
+    """Draw measured points with the source "measured": hollow, thin, in front, with bars if there are errors."""
     data = {"x": x, "y": y}
     if error is not None:
         data |= {"low": y - error, "high": y + error}
@@ -63,6 +63,6 @@ def hollow_points(plot: figure, x: Any, y: Any, error: Any, words: str, hover: S
 
 
 def measured_curve(plot: figure, measured: Measured | None, unit: float) -> None:
-    """A user's curve over one whose forces are in `unit` newtons."""
+    """Draw a user's measured curve, if there is one, over a computed curve whose forces are in `unit` newtons."""
     if measured is not None:
         measured_over(plot, measured, unit)

@@ -1,4 +1,4 @@
-"""Figures 6 and 9: the rig's curves with stated or measured values, and beside them force trains at 60 Hz."""
+"""Figures 6 and 9: the rig's curves with stated or measured values, next to force trains at 60 Hz."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _COLOURS = ("output", "input", "second", "naive")
 
 
 def response(shown: RigResponse, theme: Theme) -> LayoutDOM:
-    """Curves on the left, trains on the right."""
+    """Draw curves on the left and force trains on the right."""
     return row([_curves(shown.curves, theme), trains(Trains((shown.column,)), theme)], sizing_mode="stretch_both")
 
 
@@ -58,7 +58,7 @@ def _curves(shown: RigCurves, theme: Theme) -> figure:
 
 
 def _curve(plot: figure, swept: Curve, dash: str | list[int], role: str, marked: bool) -> None:
-    """A curve; points that are not periodic are always marked, the others only where there is one curve."""
+    """Draw a curve; points that are not periodic are always marked, the others only if `marked`."""
     points = [p for p in swept.points if math.isfinite(p.max_output_force_elastic)]
     keys = [regime_key(p.regime.name, p.regime.period) for p in points]
     source = ColumnDataSource({
@@ -78,7 +78,7 @@ def _curve(plot: figure, swept: Curve, dash: str | list[int], role: str, marked:
 
 
 def _states(plot: figure, shown: RigCurves) -> None:
-    """The presets of figure 12, ringed at the frequency that the paper names."""
+    """Draw a ring for each preset of figure 12, at the frequency that the paper gives."""
     source = ColumnDataSource({
         "x": [named for named, _ in shown.states], "y": [s.run.max_output_force_elastic for _, s in shown.states],
         "words": [f"{1e6 * s.run.scene.A0:g} µm" + ("" if s.run.scene.f == named else f" at {s.run.scene.f:g} Hz")

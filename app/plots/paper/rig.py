@@ -15,7 +15,7 @@ _MM = 1e3
 
 
 def rig(shown: Rig, theme: Theme) -> figure:
-    """Beads with their radii in mm; what has no size in the text is drawn in grey."""
+    """Draw the beads with their radii in mm; parts without a size in the text are grey."""
     scene = shown.scene
     rows = list(shown.rows())
     centres = np.array([row["centre_m"] for row in rows]) * _MM
@@ -50,7 +50,7 @@ def rig(shown: Rig, theme: Theme) -> figure:
 
 
 def _driver(plot: figure, radius: float, amplitude: float, f: float) -> None:
-    """Bead 0 in the drive's colour, and which way it moves."""
+    """Draw bead 0 in the drive's colour, with arrows in the directions of its motion."""
     bead = plot.circle(radius, 0.0, radius=radius, fill_alpha=0.25)
     themed(bead, fill_color="drive", line_color="drive", line_width=2.0)
     arrow = plot.segment([-0.2 * radius], [1.5 * radius], [2.2 * radius], [1.5 * radius])
@@ -70,7 +70,7 @@ def _wall(plot: figure, left: float, radius: float, height: float) -> None:
 
 
 def _springs(plot: figure, centres: np.ndarray, radius: float) -> None:
-    """A symbol of a spring from every bead to the ground."""
+    """Draw the symbol of a spring from every bead to the ground."""
     top, bottom = -radius, -3.2 * radius
     y = np.linspace(top, bottom, 11)
     across = np.concatenate([[0.0, 0.0], np.tile([0.3, -0.3], 4)[:7], [0.0, 0.0]]) * radius
@@ -80,7 +80,7 @@ def _springs(plot: figure, centres: np.ndarray, radius: float) -> None:
 
 
 def _fixture(plot: figure, centres: np.ndarray, radius: float, end: float) -> None:
-    """The parts that the text describes without sizes, in grey: flexures, shaft, pillars, shaker, sensors."""
+    """Draw in grey the parts that the text describes without sizes: flexures, shaft, pillars, shaker, sensors."""
     shaft, foot = 4.2 * radius, -1.2 * radius
     pillars = plot.quad(left=[centres[1] - 2.6 * radius, end + radius],
                         right=[centres[1] - 2.1 * radius, end + 1.5 * radius],
@@ -110,7 +110,7 @@ def _fixture(plot: figure, centres: np.ndarray, radius: float, end: float) -> No
 
 
 def _dimension(plot: figure, left: float, right: float, y: float, words: str) -> None:
-    """A line from `left` to `right` with its length."""
+    """Draw a line from `left` to `right` with its length."""
     ends = plot.scatter([left, right], [y, y], marker="dash", angle=np.pi / 2, size=10)
     line = plot.segment([left], [y], [right], [y])
     for mark in (ends, line):

@@ -15,7 +15,7 @@ _DASHES = ("dashed", "solid", "dotted")
 
 
 def shaker(shown: ShakerAmplitude, theme: Theme) -> LayoutDOM:
-    """(a) V0 in mm/s and (b) A0 in µm, a line for every amplitude and a band between the outer two."""
+    """Draw (a) V0 in mm/s and (b) A0 in µm: a line for every amplitude and a band between the outer two."""
     panels = []
     for name, label, unit in (("velocity", "velocity amplitude V0 (mm/s)", 1e3),
                               ("displacement", "displacement amplitude A0 (µm)", 1e6)):

@@ -1,4 +1,4 @@
-"""Figures 6b, 7, 9b, 10 and 12: the shaker's velocity, input force and output force, a column for each frequency."""
+"""Figures 6b, 7, 9b, 10 and 12: the shaker's velocity, input force and output force, with a column per frequency."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _ROWS = (("velocity", "shaker velocity (mm/s)", 1e3, "drive"), ("input_force", "
 
 
 def trains(shown: Trains, theme: Theme) -> LayoutDOM:
-    """Rows share their forces, all panels their time; model (3) and measured series are drawn over model (5)."""
+    """Draw the panels, whose rows share a force axis; model (3) and measured series are drawn over model (5)."""
     time = Range1d(0.0, _MS * SHOWN)
     rows = []
     for name, label, unit, role in _ROWS:
@@ -64,7 +64,7 @@ def _heading(column: Column) -> str:
 
 
 def _limits(shown: Trains, name: str, unit: float) -> tuple[float, float]:
-    """The range of a row over all its columns."""
+    """Return the range of a row over all its columns."""
     every = [unit * getattr(column, name) for column in shown.columns]
     every += [unit * values for column in shown.columns if column.measured is not None
               if (values := getattr(column.measured, name)) is not None and len(values)]
@@ -89,7 +89,7 @@ def _line(plot: figure, time: Any, values: Any, role: str, words: str, label: st
 
 
 def _velocity(plot: figure, column: Column, last: bool) -> None:
-    """The contact of driver and bead 1 on an axis of its own, and the paper's shaker where it ran at another f."""
+    """Draw the contact of driver and bead 1 on its own axis, and the paper's shaker if it ran at another frequency."""
     scene = column.found.run.scene
     plot.extra_y_ranges = {"contact": Range1d(-0.3, 3.2)}
     if last:

@@ -1,4 +1,4 @@
-"""Figure 2: the resonance curve of section 2 with its peaks and dips named."""
+"""Figure 2: the resonance curve of section 2 with labels at its peaks and dips."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .panels import measured_curve
 
 
 def transmission(shown: Transmission, theme: Theme) -> figure:
-    """Largest elastic output force over the frequency; peaks 1:n and the dips between have their frequencies."""
+    """Draw the largest elastic output force over the frequency; peaks 1:n and the dips between them have labels."""
     plot = curve([shown.curve], theme, elastic=True)
     largest = max(p.max_output_force_elastic for p in shown.curve.points)
     scale = force_scale("", largest).factor
