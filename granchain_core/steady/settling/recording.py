@@ -23,7 +23,7 @@ _PERIODS_SHOWN = 4
 
 
 def motion_so_far(motion: SettlingRun, samples: int, began: float, origin: str, final: bool) -> Settled:
-    """The present motion, over one orbit or a few periods; the settling itself is not advanced."""
+    """Record the current motion over one orbit or a few periods; the settling itself is not advanced."""
     engine = Engine(motion.scene, motion.engine.setting, samples, stop=motion.stop)
     state = motion.engine.state
     engine.start(state)
@@ -36,10 +36,10 @@ def motion_so_far(motion: SettlingRun, samples: int, began: float, origin: str, 
 
 
 def recorded_orbit(motion: SettlingRun, samples: int, began: float, origin: str) -> Settled:
-    """The periodic orbit by the finer method, with its error: integration plus distance from the orbit.
+    """Record the periodic orbit with the finer method, and its error: integration plus distance from the orbit.
 
-    An error e of the n-period map moves its fixed point by e/(1 − |μ|). A chain that the finer method does not bring to
-    the orbit is unsettled.
+    An error e of the n-period map moves its fixed point by e/(1 − |μ|). If the finer method does not bring the chain to
+    the orbit, it is unsettled.
     """
     n = motion.regime.period
     assert n is not None
