@@ -1,7 +1,7 @@
 """Basins of attraction: the steady state that each start in a plane leads to.
 
-A start is the chain at rest but for two coordinates at drive phase 0, each the displacement or the velocity of a bead.
-The space of starts has 2N dimensions; of it a plane shows a slice, in which a basin may be missing or in pieces.
+A start is the chain at rest at drive phase 0, except for two coordinates, each the displacement or the velocity of a
+bead. The space of starts has 2N dimensions; a plane is a slice of it, in which a basin may be missing or in pieces.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from ..scene.state import State
 from ..tables import Column, Labelled, Table, axis, provenance
 from ..tables.provenance import Attribute
 
-#: Most starts of one picture.
+#: Maximum number of starts in one plane.
 MOST_CELLS = 250_000
 
 

@@ -1,7 +1,7 @@
 """The bifurcation diagram: a bead's states once per drive period (strobes) over a knob.
 
-At each value of the knob, the chain settles (regime, with its evidence), and strobes are kept. For an orbit of period n,
-these are its n points, refined to the scene's accuracy and repeated. For a motion that does not repeat, they are its
+At each value of the knob, the chain settles (regime, with its evidence), and strobes are kept. For an orbit of period
+n, these are its n points, refined to the scene's accuracy and repeated. For a motion that does not repeat, they are its
 next points: a closed curve seen from the side, or the many points of chaos. Where sweeps up and down differ, there is
 more than one attractor.
 """

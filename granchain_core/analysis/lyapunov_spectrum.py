@@ -32,8 +32,8 @@ from ..tables import Column, Labelled, Table, axis, or_nan, provenance
 from ..tables.provenance import Attribute
 
 #: [no threshold] The stretching of a direction in one period is rounding if it is at most this fraction of the largest.
-#: The error of the derivative is about 1e-13 of its largest entry (the tolerance of its flow), so that it is at most ten
-#: per cent of a larger stretching, which is little in an exponent, the logarithm.
+#: The error of the derivative is about 1e-13 of its largest entry (the tolerance of its flow), so it is at most ten per
+#: cent of a larger stretching, which is little in an exponent, the logarithm.
 _ROUNDING = 1e-12
 #: [no threshold] First periods, which are left out of the means: in them, the directions align with those of the
 #: exponents. The remaining misalignment falls as exp(−(λ_i − λ_{i+1}) P), slowly where two exponents are close. It is
@@ -146,7 +146,7 @@ class LyapunovSpectrum(Labelled):
             "exponent": Column(self.exponents, along, "1", "Lyapunov exponent per drive period"),
             "error": Column(self.errors, along, "1", "its standard error"),
             "resolved": Column((ranks < self.resolved).astype(np.int8), along, "1",
-                               "1 if it is known, 0 if it is at most what is given")}),)
+                               "1 if it is resolved, 0 if it is an upper bound")}),)
 
     def attributes(self) -> dict[str, Attribute]:
         """Dimension, sums and provenance."""

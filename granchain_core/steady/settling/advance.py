@@ -50,7 +50,7 @@ class SettlingRun:
         self.decided = False
 
     def _begin(self, periods_run: int) -> None:
-        """Begin a new record of strobes at the engine's state, after `periods_run` periods; `_here` counts from there."""
+        """Begin a record of strobes at the engine's state, after `periods_run` periods; `_here` counts from there."""
         first, scales = self.engine.state, self.engine.scaled.scales
         self.strobes = np.array([[scales.scaled_displacements(first.displacement),
                                   scales.scaled_velocities(first.velocity)]])

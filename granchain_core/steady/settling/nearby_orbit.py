@@ -41,8 +41,8 @@ _ALMOST_PERIODIC_CHANGES = 32
 #: [followed] The period tried is the shortest over which the motion changes by at most this many times the least
 #: change.
 _CHANGE_FACTOR = 3.0
-#: [followed] Factor from one tested distance to the next. Near an orbit that has just become stable, the motion may stay
-#: on a closed curve, and distances vary by a few per cent: hence several distances, and large fractions of each.
+#: [followed] Factor from one tested distance to the next. Near an orbit that has just become stable, the motion may
+#: stay on a closed curve, and distances vary by a few per cent: hence several distances, and large fractions of each.
 _DISTANCE_FACTOR = 0.4
 #: [followed] Smallest distance from that orbit that is tested, relative to the orbit.
 _SMALLEST_DISTANCE = 1e-5
@@ -151,7 +151,7 @@ def _lengths(rows: np.ndarray, offsets: np.ndarray) -> np.ndarray:
 
 
 def orbit_of(scene: Scene, period: int, x: np.ndarray, stop: Stop) -> NearbyOrbit | None:
-    """The orbit of `period` drive periods, or of a divisor, that Newton's method finds from x; None if it finds none."""
+    """The orbit of `period` drive periods, or a divisor, that Newton's method finds from x; None if it finds none."""
     stroboscopic_map = FiniteDifferenceMap(scene, period, stop)
     point = fixed_point(stroboscopic_map, x)
     if point is None:

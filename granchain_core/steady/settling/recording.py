@@ -1,7 +1,7 @@
 """The motion of a settling chain as a result: the motion so far, or its refined periodic orbit with an error.
 
-Motions that are not periodic are recorded by the setting they settled with, without a claim on their error. `origin` is
-where the motion began, in the words of a run's `start`.
+Motions that are not periodic are recorded with the setting with which they settled, without a stated error. `origin` is
+where the motion started, in the words of a run's `start`.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from .advance import SettlingRun
 from .outcome import Settled
 from .refine_orbit import FARTHEST_FROM_ORBIT, refined_orbit
 
-#: Periods shown of a motion that is not periodic.
+#: Number of periods shown of a motion that is not periodic.
 _PERIODS_SHOWN = 4
 
 

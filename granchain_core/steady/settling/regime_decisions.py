@@ -1,8 +1,8 @@
 """Decisions on the regime of a motion that seems periodic, or that has not settled for a long time.
 
 A motion that seems settled is confirmed by the multipliers of its orbit. Otherwise a nearby orbit is examined: if the
-motion approaches it, the orbit is reported; if the motion departs from it, the departure is enlarged. A motion that does
-neither is classified by its Lyapunov exponent (steady/exponent_measurements.py).
+motion approaches it, the orbit is reported; if the motion departs from it, the departure is enlarged. A motion that
+does neither is classified by its Lyapunov exponent (steady/exponent_measurements.py).
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ MOST_SETTLING_PERIODS = 4000
 #: [quasi-periodic] Number of strobes on which the decision is based. A batch keeps a few more (`STROBES_KEPT` in
 #: kernels/batch/record.py).
 REMEMBERED = 420
-#: [chaotic, quasi-periodic] In a batch, or for a motion that is not continued (`run`), maximum number of measurements of
-#: the exponent.
+#: [chaotic, quasi-periodic] In a batch, or for a motion that is not continued (`run`), maximum number of measurements
+#: of the exponent.
 MOST_MEASUREMENTS = 3
 #: [chaotic, quasi-periodic] A chain settled alone: maximum number of parts of one measurement, each of
 #: `MEASURED_PERIODS`.
