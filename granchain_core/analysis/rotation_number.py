@@ -39,8 +39,8 @@ _LONGER = 2.0
 #: [rotation] The shorter steps: number per drive period relative to the default. The difference between the two
 #: computations gives their error.
 _SHORTER = 4.0
-#: [rotation] Maximum number of records of one motion, each after the previous one and twice as long. The regime is known
-#: before the curve is reached to rounding, and near a fraction a record must be long.
+#: [rotation] Maximum number of records of one motion, each after the previous one and twice as long. The regime is
+#: known before the curve is reached to rounding, and near a fraction a record must be long.
 _MOST_RECORDS = 3
 #: [rotation] Maximum number of beads whose strobes are kept. In a longer chain, they are evenly spaced.
 _MOST_BEADS = 30

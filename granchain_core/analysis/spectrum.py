@@ -70,7 +70,7 @@ class Spectrum(Labelled):
 
     @property
     def error(self) -> float:
-        """Estimated error of an amplitude [N]: `aliasing` plus the relative error of the motion times its largest force.
+        """Estimated error of an amplitude [N]: `aliasing`, plus the largest force times the motion's relative error.
 
         NaN if the run states no error.
         """
@@ -260,7 +260,7 @@ def _record(run: Run, values: np.ndarray) -> tuple[np.ndarray, int | None]:
 
 
 def cosines(values: np.ndarray, repeats: bool) -> np.ndarray:
-    """Complex amplitudes of the cosines in equally spaced values, the mean first; with a Hann window unless `repeats`."""
+    """Complex amplitudes of the cosines in equally spaced values, the mean first; Hann-windowed unless `repeats`."""
     if not repeats:
         window = np.hanning(len(values) + 1)[:-1]
         mean = float(np.average(values, weights=window))

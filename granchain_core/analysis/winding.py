@@ -34,9 +34,9 @@ LARGEST_DENOMINATOR = 60
 #: motion to the next.
 _FEWEST_PASSES = 4.0
 #: [rotation] Minimum number of passes near a fraction whose denominator is at most `_SMALL`. It is two widths of a line
-#: (`_WIDTH` in strobe_lines.py). With fewer passes, the line of one turn may lie within the width of a stronger multiple
-#: of it, or be discarded as a drift; only multiples of 2ρ are then left. Of 240 curves with 0.5 to 30 passes, limits of
-#: 4, 8, 12 and 16 left 12, 11, 3 and 0 wrong.
+#: (`_WIDTH` in strobe_lines.py). With fewer passes, the line of one turn may lie within the width of a stronger
+#: multiple of it, or be discarded as a drift; only multiples of 2ρ are then left. Of 240 curves with 0.5 to 30 passes,
+#: limits of 4, 8, 12 and 16 left 12, 11, 3 and 0 wrong.
 _FEWEST_PASSES_IF_SMALL = 16.0
 #: [rotation] Largest denominator of a fraction that needs more passes.
 _SMALL = 5

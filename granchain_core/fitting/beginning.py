@@ -38,7 +38,7 @@ _IN_MOTION = 0.05
 
 @dataclass(frozen=True, eq=False)
 class Beginning:
-    """The state of the chain and the displacement of the driver [m] at a record's first sample; `words` say whence."""
+    """The state of the chain and the driver's displacement [m] at a record's first sample; `words` say their origin."""
 
     state: State
     displacement: float

@@ -20,7 +20,8 @@ _DESCENT_CALLS = 6
 _ROOT_TOLERANCE = 0.03
 #: [fit] A misfit that is lower than the least so far by more than this, in its unit, is another minimum.
 _BETTER_BY = 0.3
-#: [fit] First distance from the best value at which an end is sought if χ² has no curvature, as a fraction of the range.
+#: [fit] First distance from the best value at which an end is sought if χ² has no curvature, as a fraction of the
+#: range.
 _FLAT_REACH = 0.25
 #: [fit] Distance below which two values of a parameter are the same, as a fraction of the range.
 _SAME_VALUE = 1e-9

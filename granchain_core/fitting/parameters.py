@@ -14,8 +14,8 @@ from ..inputs.text import number_in
 from ..scene import Amplitude, Bead, Scene
 from ..scene.quantities import QUANTITIES
 
-#: Parameters that can be fitted, with their units. K is the contact stiffness, which changes with the Young's modulus of
-#: all beads.
+#: Parameters that can be fitted, with their units. K is the contact stiffness; it is varied through the Young's modulus
+#: of all beads.
 UNITS = {name: "N/m^{3/2}" if name == "K" else QUANTITIES[name].unit
          for name in ("A0", "k", "kappa", "D", "K", "F0", "wall")}
 
