@@ -180,7 +180,7 @@ def _locks(candidate: Candidate, stop: Stop | None) -> bool:
 
 
 def share(count: int, of: int) -> tuple[float | None, float | None]:
-    """A fraction and its standard error by the plus-four rule (Agresti & Coull 1998), which is positive even at 0 and 1.
+    """A fraction and its standard error by the plus-four rule (Agresti & Coull 1998), positive even at 0 and 1.
 
     Both are None if nothing was drawn.
     """

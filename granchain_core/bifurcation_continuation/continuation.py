@@ -125,10 +125,11 @@ def _inwards(branch: KnobBranch, state: np.ndarray) -> np.ndarray:
 
 
 def _extrapolated(last_two: list[BifurcationPoint], y: float, x_knob: str, y_knob: str) -> tuple[float, np.ndarray]:
-    """Knob x and state at y, on the line through the last two points; from a single point, by f ∝ A0^{1/4} if it applies.
+    """Knob x and state at y, on the line through the last two points, or from a single point.
 
-    (A0, f) → (s A0, s^{1/4} f) leaves the scaled orbit unchanged if D and k are scaled too, and almost if they are not.
-    For other knobs, a single point gives its own x. The line is in logarithms, except to or from a knob value of 0.
+    A single point gives f ∝ A0^{1/4} if the knobs are f and A0: (A0, f) → (s A0, s^{1/4} f) leaves the scaled orbit
+    unchanged if D and k are scaled too, and almost unchanged if they are not. For other knobs, it gives its own x. The
+    line is in logarithms, except to or from a knob value of 0.
     """
     if len(last_two) == 1:
         power = {("f", "A0"): RATE_POWER, ("A0", "f"): 1.0 / RATE_POWER}.get((x_knob, y_knob), 0.0)

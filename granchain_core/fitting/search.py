@@ -61,7 +61,7 @@ _NEAR_SIMPLEX = 0.02
 _FIRST_SIMPLEX = 0.1
 #: [fit] Size of the simplex at which its search ends: a twentieth of `STEP`.
 _LAST_SIMPLEX = 1e-4
-#: [fit] Range of misfits in the simplex at which its search ends. It is far below the rise of 3.84 at an interval's end.
+#: [fit] Range of misfits in the simplex at which its search ends. It is far below the rise of 3.84 at an interval end.
 _LAST_RANGE = 1e-3
 
 
@@ -120,7 +120,7 @@ class Problem:
                          in zip(self.free, self.values(np.clip(x, 0, 1)), strict=True) if parameter.prior])
 
     def residuals(self, x: np.ndarray) -> np.ndarray:
-        """Residuals (R + 1,) at x: of the data, of the priors, and last, the root of the logarithms of the variances."""
+        """Residuals (R + 1,) at x: of the data, of the priors, and lastly the root of the variances' logarithms."""
         evaluation = self.evaluate(x)
         return np.concatenate([evaluation.residuals, self.priors(x), [np.sqrt(max(evaluation.log_variance, 0.0))]])
 

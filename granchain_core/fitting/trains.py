@@ -1,10 +1,10 @@
 """The model's force as a sensor samples it, with jumps at their exact times.
 
-If the sensor's bandwidth is known, this is the force after the sensor's low-pass (experiment/sensors.py), at the time of
-each sample: continuous, and delayed as by the sensor. If it is not known, this is the mean over each sampling interval:
-a force that jumps between two samples would make a misfit that jumps with the parameters, whereas its mean over an
-interval changes smoothly. The mean is not a model of a recorder, whose anti-aliasing filter is not a mean over an
-interval and delays the force.
+If the sensor's bandwidth is known, this is the force after the sensor's low-pass (experiment/sensors.py), at the time
+of each sample: continuous, and delayed as by the sensor. If it is not known, this is the mean over each sampling
+interval: a force that jumps between two samples would make a misfit that jumps with the parameters, whereas its mean
+over an interval changes smoothly. The mean is not a model of a recorder, whose anti-aliasing filter is not a mean over
+an interval and delays the force.
 """
 
 from __future__ import annotations
