@@ -54,7 +54,7 @@ class ForceRecord:
         return float(np.median(np.diff(self.time)))
 
     def thinned(self) -> tuple[ForceRecord, np.ndarray, np.ndarray]:
-        """The record of a sensor half as fast, and the indices of its measured samples in this record and in the new one.
+        """The record of a sensor half as fast, and the indices of its measured samples in this record and in that one.
 
         It has every second measured sample, including the first and the last. The zero force in gaps begins and ends
         next to the remaining samples, at twice the distance: the force falls to it half as fast, whichever sample was
@@ -148,7 +148,7 @@ def _offset(record: ForceRecord, offset: float | str) -> float:
 
 
 def _bridged(record: ForceRecord, gap: str, notes: list[str]) -> ForceRecord:
-    """The samples with their gaps treated; zero force begins and ends one usual spacing away from a gap's neighbours."""
+    """The samples with their gaps treated; zero force begins and ends one usual spacing from a gap's neighbours."""
     gaps = Gaps.of(record.time, record.place)
     treated = gaps.treated(gap, "a smooth curve across it", "force")
     if not treated:

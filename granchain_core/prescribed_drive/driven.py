@@ -1,9 +1,9 @@
 """`drive`: the motion of a chain whose driver follows a given signal.
 
 The motion is computed with steps that are halved until the stated error is small enough, by the rules of `run`
-(integrate/stated.py). The signal's motion is computed exactly. If it represents a formula (signal.py), the effect of its
-difference from the formula is added to the stated errors. If it represents samples, the motion is computed twice more,
-from the samples with even and with odd numbers, and an error estimated from the differences is added.
+(integrate/stated.py). The signal's motion is computed exactly. If it represents a formula (signal.py), the effect of
+its difference from the formula is added to the stated errors. If it represents samples, the motion is computed twice
+more, from the samples with even and with odd numbers, and an error estimated from the differences is added.
 """
 
 from __future__ import annotations
@@ -169,7 +169,8 @@ def drive(scene: Scene, signal: Signal, start: State | None = None, stop: Stop |
     """
     require_scene(scene)
     if not isinstance(signal, Signal):
-        raise BadInput(f"A drive is a Signal, for example Signal.chirp(…), not a value of type {type(signal).__name__}.")
+        raise BadInput("A drive is a Signal, for example Signal.chirp(…), not a value of type "
+                       f"{type(signal).__name__}.")
     if len(signal.time) * scene.N > MOST_RECORDED:
         raise BadInput(f"{len(signal.time)} knots for {scene.N} beads are more than {MOST_RECORDED:.0e} values; give a "
                        "shorter signal or fewer beads.")

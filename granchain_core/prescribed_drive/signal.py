@@ -26,7 +26,7 @@ from . import waveforms
 KNOTS = 400
 #: Maximum number of knots of a signal.
 MOST_KNOTS = 2_000_000
-#: Number of corrections of the velocities at the knots; each multiplies the displacement's error there by h² (d²/dt²)/4.
+#: Number of corrections of the velocities at the knots: each replaces the displacement's error e there by h² e''/4.
 _CORRECTIONS = 3
 #: Number of pieces into which the interval between two samples of a measured displacement is divided.
 _PIECES = 8
@@ -178,7 +178,7 @@ class Signal:
     @classmethod
     def of(cls, velocity: Callable[[np.ndarray], np.ndarray], displacement: Callable[[np.ndarray], np.ndarray],
            duration: float, highest: float, words: str) -> Signal:
-        """Make a motion from formulas for velocity [m/s] and displacement [m], with frequencies up to `highest` [Hz]."""
+        """Make a motion from formulas of velocity [m/s] and displacement [m], with frequencies up to `highest` [Hz]."""
         count = math.ceil(KNOTS * duration * highest)
         if count > MOST_KNOTS:
             raise BadInput(f"{duration:g} s at up to {highest:g} Hz are {count:.1e} knots; the nearest valid duration "
