@@ -120,7 +120,7 @@ class Grid:
         return np.asarray(1 << np.minimum(_level(i), _level(j)))
 
     def coarse_first(self) -> np.ndarray:
-        """Numbers of all cells, the coarsest net first, each next one twice as fine, so that the map's shape shows early.
+        """Numbers of all cells, the coarsest net first, then each twice as fine, so that the map's shape shows early.
 
         In each net, the cells with the longest drive period in the chain's own time, A0^{1/4}/f, come first: they cost
         most, and one of them started last would keep the other cores waiting.

@@ -39,10 +39,10 @@ from ..steady_state import IRREGULAR_PERIODS, SteadyState
 FINE_STEPS_PER_COARSE = 3
 #: [no threshold] Setting for the largest forces of an orbit with jumps: finer than in the batch that found the orbit.
 _LOCATED_SETTING = fixed_step_setting(8)
-#: [period n] In a batch, an orbit found by extrapolation needs multipliers if its contraction factor per orbit is above
+#: [period n] A batch: an orbit found by extrapolation needs multipliers if its contraction factor per orbit is above
 #: this.
 _SLOW_CONTRACTION = 0.998
-#: [period n] In a batch, an orbit that needs multipliers is accepted if its largest |μ|, by one-sided differences, is
+#: [period n] A batch: an orbit that needs multipliers is accepted if its largest |μ|, by one-sided differences, is
 #: below this; otherwise the chain is settled alone. An orbit near which changes grew in the fine run needs them too.
 _LARGEST_SURE_MULTIPLIER = 0.995
 #: [no threshold] Typical relative error of the fine run.

@@ -25,9 +25,9 @@ from .regime_decisions import EXAMINED_AFTER, REMEMBERED, Decisions
 #: [unsettled] Maximum number of steps of a chain settled alone, or of a coarse run. They take 6 s for eleven beads, at
 #: 60 ns per step; where tension is cut, a hundred times as long.
 MOST_SETTLING_STEPS = 100_000_000
-#: [period n] A chain settled alone: drive periods before the first check for a period.
+#: [period n] A chain alone: drive periods before the first check for a period.
 _FIRST_CHECK = 2
-#: [period n] A chain settled alone: fewest drive periods between two checks; later an eighth of those run so far.
+#: [period n] A chain alone: fewest drive periods between two checks; later an eighth of those run so far.
 _BETWEEN_CHECKS = 8
 
 

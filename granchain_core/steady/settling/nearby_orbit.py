@@ -23,8 +23,8 @@ from ..residuals import least_displacement
 from ..returns import shorter_periods
 from .finite_difference_map import FiniteDifferenceMap, FixedPoint, fixed_point
 
-#: [period n] A chain settled alone: an unconfirmed claim needs multipliers up to this many beads. Up to this number,
-#: the derivative of the map is computed.
+#: [period n] A chain alone: an unconfirmed claim needs multipliers up to this many beads. Up to this number, the
+#: derivative of the map is computed.
 MOST_BEADS_WITH_MULTIPLIERS = 100
 #: [period n] An orbit counts as stable if |μ| is below 1 by more than this. No |μ| is known more accurately.
 MODULUS_ERROR = 1e-5

@@ -30,20 +30,20 @@ REMEMBERED = 420
 #: [chaotic, quasi-periodic] In a batch, or for a motion that is not continued (`run`), maximum number of measurements
 #: of the exponent.
 MOST_MEASUREMENTS = 3
-#: [chaotic, quasi-periodic] A chain settled alone: maximum number of parts of one measurement, each of
+#: [chaotic, quasi-periodic] For a chain settled alone, maximum number of parts of one measurement, each of
 #: `MEASURED_PERIODS`.
 _MOST_PARTS = 8
-#: [period n] A chain settled alone: up to this many beads, multipliers confirm every claim of `settled`; in longer
+#: [period n] A chain alone: up to this many beads, multipliers confirm every claim that a motion is periodic; in longer
 #: chains, only unconfirmed ones.
 _CONFIRMED_BEADS = 30
-#: [period n] A chain settled alone: a claim is unconfirmed if the contraction factor per drive period is above this, or
-#: if the motion started from another state than rest. A slowly unstable orbit may look the same.
+#: [period n] A chain alone: a claim is unconfirmed if the contraction factor per drive period is above this, or if the
+#: motion started from another state than rest. A slowly unstable orbit may look the same.
 CLEAR_CONTRACTION = 0.9
 #: [unsettled] Factor on the maximum number of drive periods for a motion that leaves an unstable orbit. Departures are
 #: slow too.
 _DEPARTURE_FACTOR = 4
-#: [period n] A chain settled alone: if |μ| at the motion's own state, by differences, is larger than this, the orbit is
-#: found by Newton's method.
+#: [period n] A chain alone: if |μ| at the motion's own state, by differences, is larger than this, Newton's method finds
+#: the orbit.
 _CLEAR_MULTIPLIER = 0.97
 #: [followed] Maximum number of departures from an orbit that are enlarged in one motion.
 _MOST_DEPARTURES = 6
