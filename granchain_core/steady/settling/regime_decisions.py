@@ -42,8 +42,8 @@ CLEAR_CONTRACTION = 0.9
 #: [unsettled] Factor on the maximum number of drive periods for a motion that leaves an unstable orbit. Departures are
 #: slow too.
 _DEPARTURE_FACTOR = 4
-#: [period n] A chain alone: if |μ| at the motion's own state, by differences, is larger than this, Newton's method finds
-#: the orbit.
+#: [period n] A chain alone: if |μ| at the motion's own state, by differences, is larger than this, the orbit is found
+#: by Newton's method.
 _CLEAR_MULTIPLIER = 0.97
 #: [followed] Maximum number of departures from an orbit that are enlarged in one motion.
 _MOST_DEPARTURES = 6
