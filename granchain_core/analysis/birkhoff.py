@@ -45,7 +45,7 @@ def fourier_coefficient(states: np.ndarray, frequency: float) -> np.ndarray:
 
 
 def refined_frequency(states: np.ndarray, frequency: float) -> float:
-    """The frequency ν per period of the spectral line of states (P, D) that is within 1/P of `frequency`.
+    """Compute the frequency ν per period of the spectral line of states (P, D) that is within 1/P of `frequency`.
 
     The coefficients of the two halves differ by the phase 2π (ν − frequency) P/2.
     """

@@ -77,7 +77,7 @@ def curves_of(lines: np.ndarray, periods: int) -> int:
 
 
 def basic_frequency(lines: np.ndarray, periods: int) -> Basic | None:
-    """The frequency of which all lines (L,) of a record are multiples modulo 1; None if there is no such frequency.
+    """Find the frequency of which all lines (L,) of a record are multiples modulo 1; None if there is no such one.
 
     The strongest line may itself be a small multiple k of it, for example if a coordinate goes round k times in one
     turn of the curve. Then the basic frequency is one of (ν₁ + j)/k with j = 0 … k − 1.

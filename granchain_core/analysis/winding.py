@@ -75,7 +75,7 @@ def folded(value: float) -> float:
 
 
 def winding_of(states: np.ndarray) -> Winding:
-    """The rotation number of stroboscopic states (P, 2, N), one per drive period: displacements, and v or w."""
+    """Compute the rotation number of stroboscopic states (P, 2, N), one per drive period: displacements, and v or w."""
     embedded = _embedded(states)
     if len(embedded) < FEWEST_STATES:
         return _none(1, f"there are fewer than {FEWEST_STATES} states on one curve")

@@ -82,7 +82,7 @@ class Candidate:
 
 
 def with_section(result: SteadyState) -> Candidate:
-    """A result with the section of its motion."""
+    """Add the section of its motion to a result."""
     period = result.regime.period
     return Candidate(result, _strobes(result.scene, result.state, period, _setting(result)) if period
                  else _section(result, _STATES_OF_SECTION[0]))

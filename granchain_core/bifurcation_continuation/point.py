@@ -174,7 +174,7 @@ def _check(scene: Scene, kind: str, x: str, y: str) -> None:
 
 
 def nearest_point(branch: KnobBranch, kind: str, guess: np.ndarray, along: np.ndarray, y: str) -> BifurcationPoint:
-    """The branch's point at which the condition is met, by secants from a guess (2N + 1,) in the direction `along`."""
+    """Find the branch's point at which the condition is met, by secants from a guess (2N + 1,) along `along`."""
     try:
         slope = branch.slope(guess)
         before, derivative = branch.solve(guess, along, slope)

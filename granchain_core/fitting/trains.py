@@ -97,7 +97,7 @@ def _releases(run: Run, contact: int) -> tuple[np.ndarray, np.ndarray]:
 
 def moved(time: np.ndarray, measured: dict[str, np.ndarray], trains: dict[str, Train], width: float, count: int,
           sensors: Sensors = _PERFECT) -> float:
-    """The shift of the trains [s] for the least sum of squares: the best on a grid of all shifts, then exactly."""
+    """Find the shift of the trains [s] with the least sum of squares, first on a grid of all shifts, then exactly."""
     length = next(iter(trains.values())).length
     bins = np.floor(np.mod(time, length) / length * count).astype(int) % count
     score = np.zeros(count)

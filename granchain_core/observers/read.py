@@ -82,7 +82,7 @@ def _described(record: ForceRecord, units: str) -> ForceRecord:
     output = "with" if record.output is not None else "no"
     return replace(record, understood=(
         f"{len(record.time)} samples from {record.time[0]:.6g} to {record.time[-1]:.6g} s, "
-        f"{round(1.0 / record.spacing):d} a second, force {record.force.min():.4g} to {record.force.max():.4g} N, "
+        f"{round(1.0 / record.spacing):d} per second, force {record.force.min():.4g} to {record.force.max():.4g} N, "
         f"{output} output force; {units}"))
 
 
@@ -111,7 +111,7 @@ def _group(file: File) -> str:
 
 
 def first_state(path: str | Path, beads: int) -> State:
-    """The first displacements and velocities in an HDF5 file of granchain, where an observer may start."""
+    """Read the first displacements and velocities from an HDF5 file of granchain, as the start of an observer."""
     with opened(path, "has no state to start from") as file:
         group = _group(file)
         shape = (*file.shape(f"{group}/time"), beads)

@@ -116,7 +116,7 @@ def checked(record: ForceRecord) -> ForceRecord:
 
 def prepared(record: ForceRecord, scene: Scene, offset: float | str = 0.0, gap: str = "refuse",
              sensors: Sensors = _PERFECT) -> ForceRecord:
-    """The force to be applied: with the offset subtracted, gaps treated, and its sampling checked for `scene`.
+    """Prepare the force to be applied: subtract the offset, treat gaps, and check the sampling for `scene`.
 
     `offset` is a force in N, or "median" for the median of all samples, which is the sensor's zero if the driver is out
     of contact for more than half of the time. Raises `BadInput` naming the sample.

@@ -30,7 +30,7 @@ from .pair import Pair
 
 #: Largest distance, in scaled units, at which the difference between two motions is still linear.
 LINEAR = 0.03
-#: Smallest distance that the fit of the multipliers uses: smaller ones contain a notable part of rounding.
+#: Smallest distance that the fit of the multipliers uses: rounding is a notable fraction of smaller ones.
 LEAST_DISTANCE = 1e-11
 #: The observer is in step, and the computation ends, once all entries of the difference are below this for a period.
 #: It is a tenth of `LEAST_DISTANCE`, so that the fit misses no distance.
@@ -263,7 +263,7 @@ def rate_of(strobes: np.ndarray) -> tuple[float | None, float | None]:
 
 
 def multipliers_of(strobes: np.ndarray) -> tuple[complex, ...]:
-    """One or two leading multipliers from successive differences (P, 2N), the larger first; empty for too few of them.
+    """Fit one or two leading multipliers to successive differences (P, 2N), the larger first; none if these are few.
 
     If one real multiplier explains the differences, no second one is fitted.
     """

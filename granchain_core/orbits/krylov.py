@@ -59,7 +59,7 @@ def newton_step(stroboscopic_map: StroboscopicMap, x: np.ndarray, end: np.ndarra
 
 def leading_multipliers(stroboscopic_map: StroboscopicMap, x: np.ndarray, observer: bool = False,
                         count: int = LEADING) -> np.ndarray:
-    """The `count` multipliers of largest modulus at the fixed point x, largest first, by Arnoldi iteration.
+    """Compute the `count` multipliers of largest modulus at the fixed point x, largest first, by Arnoldi iteration.
 
     Raises `ComputationError` where they do not converge.
     """
@@ -69,7 +69,7 @@ def leading_multipliers(stroboscopic_map: StroboscopicMap, x: np.ndarray, observ
 
 def arnoldi(stroboscopic_map: StroboscopicMap, x: np.ndarray, count: int, observer: bool = False,
             vectors: bool = False) -> Any:
-    """The `count` multipliers of largest modulus at the fixed point x, in any order.
+    """Compute the `count` multipliers of largest modulus at the fixed point x, in any order.
 
     With `vectors`, returns a pair: the multipliers and their eigenvectors (2N, count).
 

@@ -72,7 +72,7 @@ def mode(orbit: Orbit, rank: int = 0, samples: int = 48, stop: Stop | None = Non
 
 def eigenpair(stroboscopic_map: StroboscopicMap, x: np.ndarray, rank: int,
               observer: bool = False) -> tuple[complex, np.ndarray]:
-    """The multiplier of this `rank` by modulus, with its eigenvector; for a long chain by Arnoldi iteration.
+    """Compute the multiplier of this `rank` by modulus and its eigenvector; for a long chain by Arnoldi iteration.
 
     With `observer`, the multiplier and eigenvector of the observer of model (4), Zhang et al. 2016.
     """
@@ -101,7 +101,7 @@ def _carried(orbit: Orbit, x: np.ndarray, direction: np.ndarray, size: float, sa
 
 
 def orbit_section(orbit: Orbit, samples: int = 48, stop: Stop | None = None) -> Section:
-    """The n points of the orbit at every phase, by dop853, which stays on an unstable orbit for n periods."""
+    """Compute the orbit's n points at every phase by dop853, which stays on an unstable orbit for n periods."""
     stroboscopic_map = StroboscopicMap(orbit.scene, orbit.period, stop)
     engine = Engine(orbit.scene, dop853_setting(TOLERANCE), samples, stop=stop)
     engine.start_scaled(stroboscopic_map.inner(stroboscopic_map.engine.scaled.from_si(orbit.state)))

@@ -71,7 +71,7 @@ class Response:
 
 
 def response(orbit: Orbit) -> Response:
-    """The response of a periodic orbit."""
+    """Compute the pulse ratio of a periodic orbit, with its evidence."""
     run = recorded(orbit)
     counted = pushes(run)
     strong, periods = counted if counted is not None else (orbit.period, orbit.period)
@@ -97,7 +97,7 @@ def _begin(force: np.ndarray, peak: int) -> int | None:
 
 
 def recorded(orbit: Orbit) -> Run:
-    """The orbit as a run over its whole period."""
+    """Record the orbit as a run over its whole period."""
     engine = Engine(orbit.scene, dop853_setting(_TOLERANCE), _SAMPLES)
     engine.start(orbit.state)
     samples = engine.record(orbit.period * _SAMPLES)

@@ -74,7 +74,7 @@ def refuse_own_orbit(orbit: Orbit, states: Iterable[State]) -> None:
 
 
 def distance_of_states(state: State, reference: State) -> float:
-    """Largest difference of two states over the largest displacement and velocity of the second."""
+    """Largest difference between two states, relative to the largest displacement and velocity of the second."""
     return max(float(np.abs(a - b).max() / max(1e-300, np.abs(b).max()))
                for a, b in ((state.displacement, reference.displacement), (state.velocity, reference.velocity)))
 
@@ -138,7 +138,7 @@ def _close_returns(strobes: np.ndarray, period: int) -> Iterator[State]:
 
 
 def least_period_of(orbit: Orbit, stop: Stop | None = None) -> int:
-    """The least period of an orbit in drive periods."""
+    """Compute the least period of an orbit, in drive periods."""
     scaled = scale_chain(orbit.scene)
     x = scaled.beads_of(scaled.from_si(orbit.state))
 

@@ -14,7 +14,7 @@ def starts_of(grid: Grid, numbers: Iterable[int]) -> Iterator[Start]:
 
 
 def by_kernel(grid: Grid, numbers: Iterable[int]) -> list[list[int]]:
-    """The cells in groups that share a kernel: where an axis reaches 0, or the beads are equal, an effect is off.
+    """Group the cells by the kernel they share: where an axis reaches 0, or the beads are equal, an effect is off.
 
     The names of the effects and whether the beads are equal determine the group, because a map has one N; `structure`
     (precompile/warm.py) considers more.

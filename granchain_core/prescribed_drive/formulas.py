@@ -89,7 +89,7 @@ FORMULAS: dict[str, Formula] = {
 
 
 def formula_signal(text: str, amplitude: float) -> Signal | None:
-    """The signal that NAME=a:b:c describes, with the drive amplitude [m]; None for anything else, for example a file.
+    """Make the signal that NAME=a:b:c describes, with the drive amplitude [m]; None for anything else, e.g. a file.
 
     Raises `BadInput` if the numbers cannot be used.
     """

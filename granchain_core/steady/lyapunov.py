@@ -65,7 +65,7 @@ class MeasuredGrowth:
 
 
 def growth_of(batch: Batch, member: int) -> MeasuredGrowth:
-    """The growth measured for a member that is due and still has its neighbour."""
+    """Return the growth measured for a member that is due and still has its neighbour."""
     growth = batch.growth(member)
     periods, state, y = len(growth), batch.state, batch.state.motion.y
     strobes = state.record.strobes[member, : periods + 1]

@@ -61,7 +61,7 @@ def most_periods(scene: Scene, samples: int, wanted: int) -> int:
 
 def iter_section(scene: Scene, start: State | None, periods: int, samples: int = 48, seconds: float = 0.15,
                  stop: Stop | None = None) -> Iterator[Section]:
-    """Yield the growing section from `start` (by default from rest) about every `seconds`.
+    """Yield the growing section from `start`, by default the scene's own start, about every `seconds`.
 
     It ends after `periods` drive periods, or after as many as are kept (`most_periods`). Raises `ComputationError`,
     `Cancelled`.

@@ -287,7 +287,7 @@ def continue_branch(scene: Scene, knob: str, start: float, end: float, period: i
 
 
 def _refuse_shorter(equations: BranchEquations, x: np.ndarray, value: float) -> None:
-    """Raise `BadInput` where the orbit has a shorter period than the one asked for."""
+    """Raise `BadInput` if the orbit has a shorter period than the requested one."""
     n, least_period = equations.period, equations.least_period(x, value)
     if least_period < n:
         raise BadInput(f"The orbit of {n} drive periods found at {equations.axis.text(value)} repeats after "

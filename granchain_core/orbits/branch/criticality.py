@@ -36,7 +36,7 @@ _TOLERANCE = 1e-12
 def with_normal_forms(special: list[SpecialPoint], between: Between,
                       amplitudes: Mapping[str, tuple[float, ...]] = AMPLITUDES,
                       tolerance: float = _TOLERANCE) -> list[SpecialPoint]:
-    """The special points between two neighbours, with normal forms for the bifurcation points.
+    """Return the special points between two neighbours, with normal forms for the bifurcation points.
 
     `amplitudes` are those of the differences (`normal_form`), and `tolerance` is that of the map near an orbit.
     """

@@ -100,12 +100,12 @@ class BranchPoint:
 
 
 def branch_point(equations: BranchEquations, solved: Solved, tangent: np.ndarray, arclength: float) -> BranchPoint:
-    """The point with its multipliers, and with forces and contacts from a run along the orbit."""
+    """Make the point with its multipliers, and with forces and contacts from a run along the orbit."""
     return recorded(equations, unrecorded(equations, solved, tangent, arclength), solved.flow.contact_events)
 
 
 def unrecorded(equations: BranchEquations, solved: Solved, tangent: np.ndarray, arclength: float) -> BranchPoint:
-    """The point without a run along its orbit: its forces are NaN and its closings are not counted."""
+    """Make the point without a run along its orbit: its forces are NaN and its closings are not counted."""
     multipliers = sorted_multipliers(solved.flow.derivative)
     return BranchPoint(
         knob=equations.value(solved.z), x=equations.state(solved.z), tangent=tangent, arclength=arclength,
@@ -116,7 +116,7 @@ def unrecorded(equations: BranchEquations, solved: Solved, tangent: np.ndarray, 
 
 
 def recorded(equations: BranchEquations, point: BranchPoint, contact_events: np.ndarray) -> BranchPoint:
-    """The point with its forces and contacts; `contact_events` are those of its orbit, as in `Flow`."""
+    """Add forces and contacts to a point; `contact_events` are those of its orbit, as in `Flow`."""
     engine, record = record_along(equations, point.x, point.knob)
     maxima = engine.scaled.scales.forces(largest_forces(record.peaks))
     return replace(
@@ -133,7 +133,7 @@ def state_at(scene: Scene, x: np.ndarray) -> State:
 
 def rough_point(equations: BranchEquations, z: np.ndarray, tangent: np.ndarray, slope: np.ndarray,
                 multipliers: np.ndarray, residuals: list[float], arclength: float) -> BranchPoint:
-    """A point near the branch with its contacts, for the search only: without forces and Liouville's formula."""
+    """Make a point near the branch with its contacts, for the search only: without forces and Liouville's formula."""
     x, value = equations.state(z), equations.value(z)
     _, record = record_along(equations, x, value, _ROUGH_TOLERANCE)
     return BranchPoint(
@@ -145,7 +145,7 @@ def rough_point(equations: BranchEquations, z: np.ndarray, tangent: np.ndarray, 
 
 def record_along(equations: BranchEquations, x: np.ndarray, value: float,
                  tolerance: float = _TOLERANCE) -> tuple[Engine, OrbitRecord]:
-    """Largest forces and extrema of all overlaps along the motion from the scaled state x."""
+    """Record largest forces and the extrema of all overlaps along the motion from the scaled state x."""
     engine = Engine(equations.axis.scene_at(value), dop853_setting(tolerance), 1, stop=equations.stop)
     stepper, room = engine.stepper, _FIRST_ROOM * (equations.size // 2 + 1) * equations.period
     while True:

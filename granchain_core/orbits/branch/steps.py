@@ -47,10 +47,11 @@ def predicted(step: float, z: np.ndarray, tangent: np.ndarray,
 
 
 def next_step(step: float, off: float, cosine: float, failed: bool) -> float:
-    """The length of the next step, after one that ended at distance `off` from its prediction and turned by arccos.
+    """The length of the next step, from the miss `off` and the turn of the last one.
 
-    `cosine` is that of the angle of the turn. The turn grows with the step; `off` relative to the step grows with the
-    square of the step. `failed` means that longer steps from there had failed.
+    `off` is the distance of the last point from its prediction, and `cosine` that of the angle by which the branch
+    turned. The turn grows with the step, and `off` relative to the step with its square. `failed` means that longer
+    steps from there had failed.
     """
     angle = max(float(np.arccos(min(1.0, cosine))), 1e-9)
     most = 1.0 if failed else _GROWTH_FACTOR

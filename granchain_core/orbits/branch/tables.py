@@ -93,7 +93,7 @@ def _special(over: KnobAxis, special: Sequence[SpecialPoint], half_branches: Seq
         "knob": Column(number([s.knob for s in special]), along, unit,
                        "knob at the special point, the middle of its interval"),
         "knob_low": Column(number([s.interval[0] for s in special]), along, unit,
-                           "lower end of the interval that holds it"),
+                           "lower end of the interval that contains it"),
         "knob_high": Column(number([s.interval[1] for s in special]), along, unit, "upper end of that interval"),
         "multiplier_real": Column(multipliers.real, along, "1",
                                   "multiplier that passes the unit circle, real part"),

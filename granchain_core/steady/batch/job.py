@@ -207,9 +207,10 @@ def draft_result(job: BatchJob, batch: Batch, member: int) -> SteadyState:
 
 
 def outcome_of_coarse_run(job: BatchJob, batch: Batch, member: int) -> SteadyState | BatchJob | None:
-    """The outcome of a coarse run without an orbit: a job that measures the exponent, or a result if no steps are left.
+    """Return what follows a coarse run that has not found an orbit.
 
-    None means that the member continues.
+    This is the result if no steps are left, otherwise a job that measures the exponent, or None if the member
+    continues.
     """
     here = int(batch.state.record.periods[member])
     periods_run = job.periods_run + here

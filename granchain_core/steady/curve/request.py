@@ -31,7 +31,7 @@ class CurveRequest:
 
     @property
     def digest(self) -> str:
-        """Hash of all fields, without the scene's own frequency and without new fields at their defaults."""
+        """Hash of all fields; the scene's own frequency is ignored, and later fields are left out at their defaults."""
         hashed: dict[str, Any] = {
             "scene": self.scene.evolve(f=self.frequencies[0]).digest, "frequencies": self.frequencies,
             "start": self.start}

@@ -83,7 +83,7 @@ def pushes(run: Run) -> tuple[int, int] | None:
 
 def place_of(frequency: Sequence[float] | np.ndarray, force: Sequence[float] | np.ndarray,
              periods: Sequence[int | None], at: float, output: float, transmission: float) -> Place:
-    """The place of a state with largest output force `output` at frequency `at` on a curve in ascending frequency.
+    """Find the place of a state with largest output force `output` at frequency `at` on a curve in ascending frequency.
 
     `periods` are those of the curve's points, None where not periodic; `transmission` is the state's largest output
     force over its largest input force.

@@ -102,7 +102,7 @@ class FixedPoint:
 
 
 def fixed_point(stroboscopic_map: FiniteDifferenceMap, x: np.ndarray) -> FixedPoint | None:
-    """The fixed point to which Newton's method converges from x; None where it does not converge.
+    """Return the fixed point to which Newton's method converges from x, or None if it does not converge.
 
     The derivative is computed again only where the current one does not reduce the residual enough: by differences it
     costs 4N maps, by tangents (orbits/damped_newton.py) only as much as two.

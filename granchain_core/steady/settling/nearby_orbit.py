@@ -151,7 +151,7 @@ def _lengths(rows: np.ndarray, offsets: np.ndarray) -> np.ndarray:
 
 
 def orbit_of(scene: Scene, period: int, x: np.ndarray, stop: Stop) -> NearbyOrbit | None:
-    """The orbit of `period` drive periods, or a divisor, that Newton's method finds from x; None if it finds none."""
+    """Find an orbit of `period` drive periods, or of a divisor, by Newton's method from x; None if it finds none."""
     stroboscopic_map = FiniteDifferenceMap(scene, period, stop)
     point = fixed_point(stroboscopic_map, x)
     if point is None:
@@ -166,7 +166,7 @@ def orbit_of(scene: Scene, period: int, x: np.ndarray, stop: Stop) -> NearbyOrbi
 
 
 def seen_modulus(scene: Scene, period: int, x: np.ndarray, stop: Stop, refine: float) -> float:
-    """Largest |μ| at a settled state by one-sided differences: fast, and accurate to about 1e-4."""
+    """Compute the largest |μ| at a settled state by one-sided differences: fast, and accurate to about 1e-4."""
     matrix = FiniteDifferenceMap(scene, period, stop, refine).derivative(x, central=False)
     return float(np.abs(np.linalg.eigvals(matrix)).max())
 

@@ -155,7 +155,7 @@ def _orbits_beside(engine: Engine, strobes: np.ndarray) -> Iterator[NearbyOrbit]
 
 
 def regime_without_continuing(engine: Engine, strobes: np.ndarray, regime: Regime) -> Regime:
-    """The regime of a motion that is not continued: one that is only approaching an orbit is not called periodic.
+    """Decide the regime of a motion that is not continued: one only approaching an orbit is not called periodic.
 
     `engine` is at the end of the strobes (P, 2, N); it is advanced if a Lyapunov exponent is measured.
     """

@@ -23,7 +23,7 @@ CURVE_ACCURACY = 1e-5
 
 
 def settle_to_forces(scene: Scene, start: State | None, stop: Stop, periods_run: int = 0) -> SteadyState:
-    """The steady state of `scene` from rest or from `start`, refined where it is periodic.
+    """Settle `scene` from rest or from `start`; refine the steady state if it is periodic.
 
     `periods_run` drive periods came before `start`.
     """
@@ -55,8 +55,7 @@ def _on_its_orbit(settling: SettlingRun) -> SteadyState:
 
 
 def settle_or_failure(scene: Scene, start: State | None, stop: Stop, periods_run: int = 0) -> SteadyState:
-    """The steady state of `settle_to_forces`, or one with its failure, so that one failed point does not lose a curve.
-    """
+    """Like `settle_to_forces`, but return a steady state with the failure, so that one failed point loses no curve."""
     try:
         return settle_to_forces(scene, start, stop, periods_run)
     except ComputationError as failed:

@@ -22,7 +22,7 @@ _FINEST_REFINEMENT = 64
 
 
 def undriven_motion(scene: Scene, start: State | None, samples: int, began: float, stop: Stop | None) -> Settled:
-    """The motion of a chain without a drive from its start, over the time 1/f, to the requested accuracy."""
+    """Compute the motion of a chain without a drive from its start, over the time 1/f, to the requested accuracy."""
     begin = rest(scene) if start is None else replace(checked_start(scene, start), phase=0.0)  # there is no phase
     setting, total = following_setting(scene.cuts_tension), Counts()
 
