@@ -22,9 +22,9 @@ from ..steady.curve.resonance import END_FRACTION, STOP_BAND_FRACTION, pushes
 from .orbit import Orbit
 
 #: [response] The reflected pulse of a 1:1 orbit is in step if bead 1, just before the strongest push, approaches the
-#: driver with at least this fraction of the drive's largest speed 2πf A0. For `rig` (20 to 160 Hz in steps of 1), no
-#: orbit is classified differently from 0.2 to 1/3, and three of 102 are at 0.4. For `sec2` (60 to 3000 Hz in steps of
-#: 10), one of 261 orbits is at 0.3, three are at 0.4, and four at 0.25.
+#: driver with at least this fraction of the drive's largest speed 2πf A0. No orbit of `rig` (20 to 160 Hz in steps of
+#: 1) is classified differently with 0.2 to 1/3; with 0.4, three of 102 are. Of 261 orbits of `sec2` (60 to 3000 Hz in
+#: steps of 10), one is classified differently with 0.3, three with 0.4 and four with 0.25.
 RETURNS_IN_STEP = 1.0 / 3.0
 #: [no threshold] Samples per period: events are placed to about a degree of the drive.
 _SAMPLES = 480

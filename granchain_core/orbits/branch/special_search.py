@@ -124,7 +124,7 @@ def _fraction(axis: KnobAxis, a: BranchPoint, b: BranchPoint, depth: int,
 
 def _inverse_quadratic_root(a: BranchPoint, b: BranchPoint, values: tuple[float, float],
                             beyond: BranchPoint) -> float | None:
-    """Root of the test function by inverse quadratic interpolation, from a (0) to b (1); None if there is no such."""
+    """Root of the test function by inverse quadratic interpolation, from a (0) to b (1); None if there is none."""
     first, last = (a, beyond) if beyond.arclength > b.arclength else (beyond, b)
     outer = None if first.signature == last.signature else _test_values(first, last)
     if outer is None:

@@ -31,8 +31,8 @@ END_FRACTION = 0.05
 #: motions differ from point to point, has two more at 0.18 and two fewer at 0.25.
 PROMINENCE = 0.2
 #: [response] A state is on a peak if its force is below the peak by at most this fraction of the height above the next
-#: valley. It moves only the border between peak and flank: for at most 3 % of the states from 0.15 to 0.25, and for 7 %
-#: from 0.1 to 0.3.
+#: valley. This moves only the border between peak and flank: for at most 3 % of the states from 0.15 to 0.25, and for
+#: 7 % from 0.1 to 0.3.
 _PEAK_FRACTION = 0.2
 #: [response] A state is in a valley if its force is above the valley by less than this fraction of the height of the
 #: next peak above it. States in between are on a flank. From 0.05 to 0.15, the words change for at most 1 % of the
