@@ -1,9 +1,9 @@
 """Pass bands of a precompressed chain: the frequencies at which small waves propagate.
 
-Every contact is a spring k_c = dF/dδ = (3/2) K_c^{2/3} F0^{1/3} about the compressed rest. Equal beads have one band,
-from 0 to the cut-off f_c = (1/π) √(k_c/m), on a foundation from √(k/m)/2π to √((4k_c + k)/m)/2π. Dimers have an
-acoustic and an optical one with a gap between them (Nesterenko, Dynamics of Heterogeneous Materials, 2001, section
-1.2). In one dimension a band ends where the waves of neighbouring cells are in phase or opposite.
+About the compressed rest, every contact is a spring k_c = dF/dδ = (3/2) K_c^{2/3} F0^{1/3}. Equal beads have one band,
+from 0 to the cut-off f_c = (1/π) √(k_c/m), or on a foundation from √(k/m)/2π to √((4k_c + k)/m)/2π. Dimers have an
+acoustic and an optical band with a gap between them (Nesterenko, Dynamics of Heterogeneous Materials, 2001, section
+1.2). In one dimension, a band ends where neighbouring cells move in phase or in antiphase.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from ..scene.hertz import EXPONENT, OVERLAP_POWER
 
 
 def bands(scene: Scene) -> list[tuple[float, float]]:
-    """Pass bands of small waves in an infinite chain of a scene's beads.
+    """Compute the pass bands of small waves in an infinite chain of a scene's beads.
 
     Parameters
     ----------
@@ -31,9 +31,9 @@ def bands(scene: Scene) -> list[tuple[float, float]]:
     Returns
     -------
     list of (float, float)
-        Lowest and highest frequency of each band [Hz], ascending, a band for each bead of the unit cell: the pattern,
-        repeated to an even number of beads where `dimer` makes every second bead another one. The upper edge of the
-        last band is the cut-off.
+        Lowest and highest frequency of each band [Hz], ascending, one band for each bead of the unit cell. The cell is
+        the pattern, repeated to an even number of beads if `dimer` makes every second bead different. The upper edge of
+        the last band is the cut-off.
 
     Raises
     ------
@@ -63,7 +63,7 @@ def bands(scene: Scene) -> list[tuple[float, float]]:
 
 
 def _frequencies(mass: np.ndarray, spring: np.ndarray, ground: float, phase: float) -> np.ndarray:
-    """Frequencies of a cell [Hz], ascending, whose next one moves with the factor `phase`."""
+    """Frequencies [Hz], ascending, of a cell whose motion is repeated in the next cell with the factor `phase`."""
     count = len(mass)
     matrix = np.diag(spring + np.roll(spring, 1) + ground)
     for i in range(count):

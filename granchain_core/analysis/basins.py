@@ -1,7 +1,7 @@
 """Basins of attraction: the steady state that each start in a plane leads to.
 
-A start is the chain at rest but for two coordinates at drive phase 0, each the displacement or the velocity of a bead.
-The space of starts has 2N dimensions; of it a plane shows a slice, in which a basin may be missing or in pieces.
+A start is the chain at rest at drive phase 0, except for two coordinates, each the displacement or the velocity of a
+bead. The space of starts has 2N dimensions; a plane is a slice of it, in which a basin may be missing or in pieces.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from ..scene.state import State
 from ..tables import Column, Labelled, Table, axis, provenance
 from ..tables.provenance import Attribute
 
-#: Most starts of one picture.
+#: Maximum number of starts in one plane.
 MOST_CELLS = 250_000
 
 
@@ -40,8 +40,8 @@ class Basins(Labelled):
     attractors : list of Attractor
         The steady states that were found, the one with the most starts first.
     number : numpy.ndarray of int, shape (len(y), len(x))
-        Index in `attractors` of each start, from 0; −1 where the computation failed or was stopped. The command's JSON
-        has the same numbers. Tables and files count from 1, and have 0 where there is none.
+        Index in `attractors` of each start's attractor, from 0; −1 where the computation failed or was stopped. The
+        command's JSON has the same numbers. Tables and files count from 1, with 0 where there is no attractor.
 
     Examples
     --------
@@ -64,7 +64,7 @@ class Basins(Labelled):
         return np.array([(self.number == i).mean() for i in range(len(self.attractors))])
 
     def tables(self) -> tuple[Table, ...]:
-        """`basins`: the attractor of each start; `attractors`: what they are."""
+        """`basins`: the attractor of each start; `attractors`: a row for each attractor."""
         axes: dict[str, Column] = {}
         for name, values in (self.y, self.x):
             kind, unit = ("displacement", "m") if name[0] == "u" else ("velocity", "m/s")
@@ -87,7 +87,7 @@ class Basins(Labelled):
 
 def basins(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, Iterable[float]], stop: Stop | None = None,
            progress: Callable[[float], None] | None = None) -> Basins:
-    """The basins of attraction in a plane of starts: the steady state that each start leads to.
+    """Compute the basins of attraction in a plane of starts: the steady state that each start leads to.
 
     Parameters
     ----------
@@ -95,11 +95,11 @@ def basins(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, Iterable[
         The chain.
     x, y : tuple of (str, iterable of float)
         A coordinate, "u1" … "uN" [m] or "v1" … "vN" [m/s], and its values. All others are 0 at the start, which is at
-        drive phase 0; the scene's `strike` does not count.
+        drive phase 0; the scene's `strike` is ignored.
     stop : Stop, optional
-        When set, the computation ends with what is finished; the other starts are −1.
+        When set, the computation ends with the finished starts; the others are −1.
     progress : callable, optional
-        Called with the fraction that is done, 0 to 1.
+        Called with the completed fraction, 0 to 1.
 
     Returns
     -------

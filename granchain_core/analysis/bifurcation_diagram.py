@@ -1,8 +1,9 @@
 """The bifurcation diagram: a bead's states once per drive period (strobes) over a knob.
 
-At each value of the knob the chain settles (regime, with its evidence), and strobes are kept: the n points of an orbit
-of period n, refined to the scene's accuracy and repeated, or the next points of a motion that does not repeat, a closed
-curve seen from the side or the many points of chaos. Where sweeps up and down differ, more than one attractor exists.
+At each value of the knob, the chain settles (regime, with its evidence), and strobes are kept. For an orbit of period
+n, these are its n points, refined to the scene's accuracy and repeated. For a motion that does not repeat, they are its
+next points: a closed curve seen from the side, or the many points of chaos. Where sweeps up and down differ, there is
+more than one attractor.
 """
 
 from __future__ import annotations
@@ -33,15 +34,15 @@ from ..tables import Column, Labelled, Table, axis, bead_axis, provenance
 from ..tables.provenance import Attribute, or_nan
 from ..tables.words import state_columns
 
-#: Strobes closer than this fraction of the largest are one.
+#: Strobes closer than this fraction of the largest count as one.
 _APART = 1e-3
-#: An orbit is refined to this fraction of the accuracy asked for: the error of its strobes is stated with a factor.
+#: An orbit is refined to this fraction of the requested accuracy, since a safety factor enlarges its stated error.
 _REFINED_FRACTION = 0.1
-#: Meaning of the error of a value's strobes.
+#: Meaning of the column with the error of the strobes at each value.
 _ERROR = "largest error of a strobe over the largest displacement or velocity, NaN where none is stated"
-#: Most values of the knob.
+#: Maximum number of values of the knob.
 MOST_VALUES = 20_000
-#: Most strobes at each.
+#: Maximum number of strobes at each value.
 MOST_STROBES = 10_000
 
 
@@ -49,9 +50,10 @@ MOST_STROBES = 10_000
 class StrobePoint:
     """The strobes at one value of the knob: displacement and velocity of every bead at phase 0, (P, 2, N) [m, m/s].
 
-    `failure` is a sentence where the computation failed; there are no strobes then. `strobe_error` is the largest error
-    of a displacement over the largest of them, or of a velocity over the largest velocity; None where the motion is not
-    periodic or its orbit is not known to 1e-3. `state` is where the next value begins if the state is carried along.
+    `failure` is a sentence if the computation failed; there are then no strobes. `strobe_error` is the largest error of
+    a displacement relative to the largest displacement, or of a velocity relative to the largest velocity; None if the
+    motion is not periodic or its orbit is not known to 1e-3. `state` is where the next value starts if the state is
+    carried along.
     """
 
     value: float
@@ -78,7 +80,7 @@ class BifurcationDiagram(Labelled):
     scene : Scene
         The chain.
     knob : str
-        Name of the knob that is varied.
+        Name of the varied knob.
     start : str
         "rest": every value from rest; "up" or "down": the state is carried along.
     points : list of StrobePoint
@@ -103,7 +105,7 @@ class BifurcationDiagram(Labelled):
         return (self.knob,)
 
     def cloud(self, bead: int, velocity: bool = False) -> tuple[np.ndarray, np.ndarray]:
-        """All points of bead 1..N, (M,) each: the knob's values, and displacements [m] or velocities [m/s]."""
+        """All points (M,) of bead 1..N: the knob's values, and displacements [m] or velocities [m/s]."""
         bead = whole_number("bead", bead, 1, self.scene.N)
         kept = [point for point in self.points if not point.failure]
         values = np.concatenate([np.full(len(point.strobes), point.value) for point in kept] or [np.zeros(0)])
@@ -111,7 +113,7 @@ class BifurcationDiagram(Labelled):
         return values, states
 
     def tables(self) -> tuple[Table, ...]:
-        """`strobes`: states over knob, strobe and bead, NaN after a failure; `values`: the regime of each."""
+        """`strobes`: states over knob, strobe and bead, NaN after a failure; `values`: the regime at each value."""
         quantity, most = QUANTITIES[self.knob], max((len(point.strobes) for point in self.points), default=0)
         states = np.full((len(self.points), most, 2, self.scene.N), np.nan)
         for row, point in zip(states, self.points, strict=True):
@@ -129,16 +131,16 @@ class BifurcationDiagram(Labelled):
                                    "failure": Column(failures, (self.knob,), "", "why there are no strobes")}))
 
     def attributes(self) -> dict[str, Attribute]:
-        """Knob and start, and where it comes from; `accuracy_reached` is the largest error of a strobe."""
+        """Knob, start and provenance; `accuracy_reached` is the largest error of a strobe."""
         method = f"{methods_alone(self.scene)} value by value"
         return {**provenance(self.scene, method, self._largest_error()), "knob": self.knob, "start": self.start}
 
     def _largest_error(self) -> float | None:
-        """The largest error of a strobe, None where none is stated."""
+        """The largest stated error of a strobe; None if no error is stated."""
         return max((point.strobe_error for point in self.points if point.strobe_error is not None), default=None)
 
     def summary(self) -> list[str]:
-        """The range of the knob, what kinds of motion there are, and the largest error of a periodic one."""
+        """The range of the knob, the number of values by regime, and the largest error of periodic strobes."""
         if not self.points:
             return ["no values"]
         unit, low, high = QUANTITIES[self.knob].unit, self.points[0].value, self.points[-1].value
@@ -152,7 +154,7 @@ class BifurcationDiagram(Labelled):
 def bifurcation_diagram(scene: Scene, knob: str, values: Sequence[float] | np.ndarray, start: str = "up",
                         keep: int = 60, stop: Stop | None = None,
                         progress: Callable[[float], None] | None = None) -> BifurcationDiagram:
-    """The bifurcation diagram: strobes over one knob.
+    """Compute the bifurcation diagram: strobes over one knob.
 
     Parameters
     ----------
@@ -163,18 +165,18 @@ def bifurcation_diagram(scene: Scene, knob: str, values: Sequence[float] | np.nd
     values : sequence of float
         Its values in SI, at most 20,000.
     start : str
-        "up" or "down": each value starts where the one before it settled; "rest": each from rest, on all cores.
+        "up" or "down": each value starts where the previous one settled; "rest": each from rest, on all cores.
     keep : int
-        Strobes at each value, 1 to 10,000.
+        Number of strobes at each value, 1 to 10,000.
     stop : Stop, optional
-        When set, the computation ends with the values that are finished.
+        When set, the computation ends with the finished values.
     progress : callable, optional
-        Called with the fraction that is done, 0 to 1.
+        Called with the completed fraction, 0 to 1.
 
     Returns
     -------
     BifurcationDiagram
-        Strobes, regime, and the error of the strobes where it is periodic, at each value.
+        Strobes and regime at each value, with the error of the strobes where the motion is periodic.
 
     Raises
     ------
@@ -234,15 +236,15 @@ def _point(value: float, chain: Scene, start: State | None, keep: int, stop: Sto
     except ComputationError as failed:
         return StrobePoint(value, Regime.unsettled(0), np.zeros((0, 2, chain.N)), start, failed.sentence)
     strobes = settling.engine.scaled.scales.states(strobes)
-    kept = np.resize(strobes, (keep, *strobes.shape[1:]))  # those of an orbit are repeated
+    kept = np.resize(strobes, (keep, *strobes.shape[1:]))  # the strobes of an orbit are repeated
     return StrobePoint(value, settling.regime, kept, engine.state, strobe_error=error)
 
 
 def _refined(settling: SettlingRun) -> tuple[Engine, np.ndarray, float | None] | None:
-    """The strobes (n, 2, N) of an orbit to the scene's accuracy, with their error: integration plus distance from it.
+    """The engine on an orbit, its strobes (n, 2, N) to the scene's accuracy, and their error.
 
-    None where the motion is not periodic, or its orbit is not known to `_APART`. An error e of the n-period map moves
-    its fixed point by e/(1 − |μ|).
+    The error is that of integration plus the distance from the orbit; an error e of the n-period map moves its fixed
+    point by e/(1 − |μ|). None if the motion is not periodic, or its orbit is not known to `_APART`.
     """
     regime = settling.regime
     if regime.period is None:

@@ -4,8 +4,8 @@ Equation   ⟨h⟩ = Σ_p ŵ_p h_p,  ŵ_p = w(t_p) / Σ w,  t_p = (p + 1) / (P +
            the Fourier coefficient at the frequency ν per period: ⟨x e^{−2πiνp}⟩
 Source     Das, Saiki, Sander & Yorke 2016, 2017; the weight is their bump function of order 1. The frequency from the
            phases of two halves is the main idea of Laskar 1993
-Note       Along a smooth torus with a Diophantine rotation the average converges faster than any power of 1/P, where an
-           average of equal weights converges as 1/P. In chaos it gains nothing over 1/√P.
+Note       Along a smooth torus with a Diophantine rotation, the average converges faster than any power of 1/P, whereas
+           an average with equal weights converges as 1/P. In chaos it is no better than 1/√P.
 """
 
 from __future__ import annotations
@@ -14,13 +14,13 @@ import functools
 
 import numpy as np
 
-#: Corrections of a line's frequency: each leaves a small part of the error, the last one rounding.
+#: Number of corrections of a line's frequency: each leaves a small fraction of the error, the last only rounding.
 _CORRECTIONS = 3
 
 
 @functools.lru_cache(maxsize=16)
 def weights(count: int) -> np.ndarray:
-    """The weights ŵ (count,) of an average over so many points; their sum is 1."""
+    """The weights ŵ (count,) of an average over `count` points; their sum is 1."""
     t = np.arange(1, count + 1) / (count + 1)
     bump = np.exp(-1.0 / (t * (1.0 - t)))
     bump /= bump.sum()
@@ -45,9 +45,9 @@ def fourier_coefficient(states: np.ndarray, frequency: float) -> np.ndarray:
 
 
 def refined_frequency(states: np.ndarray, frequency: float) -> float:
-    """The frequency per period of the line of states (P, D) that is within 1/P of `frequency`.
+    """Compute the frequency ν per period of the spectral line of states (P, D) that is within 1/P of `frequency`.
 
-    The coefficients of both halves differ by the phase 2π (ν − frequency) P/2.
+    The coefficients of the two halves differ by the phase 2π (ν − frequency) P/2.
     """
     half = len(states) // 2
     for _ in range(_CORRECTIONS):

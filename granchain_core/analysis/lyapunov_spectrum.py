@@ -5,11 +5,11 @@ Equation   Q_{p+1} R_{p+1} = M_p Q_p with M_p the derivative of the map over per
            D_KY = j + (λ_1 + … + λ_j) / |λ_{j+1}| with the largest j for which the sum is not negative
 Source     Benettin et al. 1980; Kaplan & Yorke 1979; standard errors from means of blocks
 Note       The sum of all exponents is the mean of ∫ trace along the motion (Liouville), which is computed too.
-           Standard errors take the means of the blocks as independent. The blocks are plain ones, not those of
-           steady/lyapunov.py: on a closed curve their error covers the swing of the growth (docs/analysis.md), and
-           where all blocks hold the same part of the swing, half of the swing over the periods is the error.
-           A strong dashpot shrinks some directions by more than double precision resolves in a period: such
-           exponents are bounds from above, and `resolved` says how many are more than that.
+           Standard errors treat the means of the blocks as independent. The blocks do not overlap, unlike those of
+           steady/lyapunov.py: on a closed curve their error covers the swing of the growth (docs/analysis.md). Where
+           all blocks contain the same part of the swing, the error is half of the swing over the number of periods.
+           In one period, a strong dashpot shrinks some directions by more than double precision resolves: such
+           exponents are only upper bounds, and `resolved` is the number of the others.
 """
 
 from __future__ import annotations
@@ -31,20 +31,20 @@ from ..steady.settling.nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS
 from ..tables import Column, Labelled, Table, axis, or_nan, provenance
 from ..tables.provenance import Attribute
 
-#: [no threshold] Directions whose stretching in one period is at most this fraction of the largest are rounding. The
-#: derivative errs by about 1e-13 of its largest entry (the tolerance of its flow), so that an error of ten per cent of
-#: the stretching is still none; an exponent is its logarithm.
+#: [no threshold] The stretching of a direction in one period is rounding if it is at most this fraction of the largest.
+#: The error of the derivative is about 1e-13 of its largest entry (the tolerance of its flow), so it is at most ten per
+#: cent of a larger stretching, which is little in an exponent, the logarithm.
 _ROUNDING = 1e-12
-#: [no threshold] First periods, which are left out of the means: in them the directions align with those of the
-#: exponents. What is left of the alignment falls as exp(−(λ_i − λ_{i+1}) P), slowly where two are near. It is part of
-#: the swing, so that it moves a mean by at most twice the stated error. Over the same 400 periods the exponents after
-#: 200 periods of alignment differ from those after 50 by at most 1.9 stated errors on four orbits (in `precompressed`,
-#: where the leading two differ by 5e-5), by 0.5 on a torus and by 0.08 in two chaotic motions.
+#: [no threshold] First periods, which are left out of the means: in them, the directions align with those of the
+#: exponents. The remaining misalignment falls as exp(−(λ_i − λ_{i+1}) P), slowly where two exponents are close. It is
+#: part of the swing, so it moves a mean by at most twice the stated error. Over the same 400 periods, the exponents
+#: after 200 periods of alignment differ from those after 50 by at most 1.9 stated errors on four orbits (in
+#: `precompressed`, where the leading two differ by 5e-5), by 0.5 on a torus and by 0.08 in two chaotic motions.
 _ALIGNMENT_PERIODS = 50
-#: [no threshold] Most periods of one measurement.
+#: [no threshold] Maximum number of periods of one measurement.
 MOST_SPECTRUM_PERIODS = 1_000_000
-#: [no threshold] Blocks over which the standard errors are taken. Twenty means give a standard error to 16 %; a block
-#: of the fewest periods allowed is then one period.
+#: [no threshold] Number of blocks from which the standard errors are computed. Twenty means give a standard error to
+#: 16 %; with the fewest periods allowed, a block is one period.
 _BLOCKS = 20
 
 
@@ -58,8 +58,8 @@ class LyapunovSpectrum(Labelled):
     scene : Scene
         The chain.
     exponents, errors : numpy.ndarray, shape (2N,)
-        Per drive period, largest first, and their standard errors: of the means of 20 blocks taken as independent, at
-        least half the swing of the summed growth over the number of periods.
+        Exponents per drive period, largest first, and their standard errors. These follow from the means of 20 blocks
+        treated as independent, and are at least half the swing of the summed growth over the number of periods.
     dimension : float or None
         Kaplan–Yorke dimension of the section's attractor, from the exponents without their errors; 1 on a closed curve
         (`on_closed_curve`).
@@ -68,9 +68,9 @@ class LyapunovSpectrum(Labelled):
     resolved : int
         Number of exponents that are resolved; the others are upper bounds.
     periods : int
-        Drive periods over which they are means.
+        Number of drive periods over which the exponents are means.
     mean_trace : float
-        Mean of ∫ trace per period: what the exponents must add up to if all are resolved.
+        Mean of ∫ trace per period: the sum of the exponents if all are resolved.
     regime : str
         What kind of motion it is (`Regime.name`).
 
@@ -92,9 +92,9 @@ class LyapunovSpectrum(Labelled):
 
     @property
     def on_closed_curve(self) -> bool:
-        """Whether the regime is quasi-periodic and all exponents but the largest are surely negative.
+        """Whether the regime is quasi-periodic and all exponents but the largest are certainly negative.
 
-        The largest exponent is 0 then, whose sign no record can show.
+        The largest exponent is then 0, and no record can show its sign.
         """
         return self.regime == "quasi-periodic" and self.resolved > 1 and bool(
             self.exponents[1:].max() < -self.errors[np.argmax(self.exponents[1:]) + 1])
@@ -103,8 +103,8 @@ class LyapunovSpectrum(Labelled):
     def dimension(self) -> float | None:
         """Kaplan–Yorke dimension of the section's attractor; that of the flow is one more.
 
-        1 on a closed curve; 2N where no sum is negative, as without damping; None where it depends on exponents that
-        are not resolved.
+        It is 1 on a closed curve, 2N where no sum is negative, as without damping, and None where it depends on
+        exponents that are not resolved.
         """
         if self.on_closed_curve:
             return 1.0
@@ -112,10 +112,10 @@ class LyapunovSpectrum(Labelled):
 
     @property
     def dimension_range(self) -> tuple[float, float] | None:
-        """The dimension with all exponents one standard error lower, and higher; None where one of them is not known.
+        """The dimension with all exponents one standard error lower, and higher; None if one of the two is not known.
 
-        A range and no confidence interval: the errors of the exponents are taken to have the same sign. On a closed
-        curve both are 1.
+        This is a range, not a confidence interval: the errors of all exponents are assumed to have the same sign. On a
+        closed curve, both are 1.
         """
         if self.on_closed_curve:
             return 1.0, 1.0
@@ -131,7 +131,7 @@ class LyapunovSpectrum(Labelled):
 
     @property
     def liouville_error(self) -> float | None:
-        """Difference of the exponents' sum from the mean trace, over the larger of |mean trace| and 1.
+        """Difference between the exponents' sum and the mean trace, over the larger of |mean trace| and 1.
 
         None unless all exponents are resolved.
         """
@@ -146,10 +146,10 @@ class LyapunovSpectrum(Labelled):
             "exponent": Column(self.exponents, along, "1", "Lyapunov exponent per drive period"),
             "error": Column(self.errors, along, "1", "its standard error"),
             "resolved": Column((ranks < self.resolved).astype(np.int8), along, "1",
-                               "1 if it is known, 0 if it is at most what is given")}),)
+                               "1 if it is resolved, 0 if it is an upper bound")}),)
 
     def attributes(self) -> dict[str, Attribute]:
-        """Dimension and sums, and where they come from."""
+        """Dimension, sums and provenance."""
         low, high = self.dimension_range or (None, None)
         return {**provenance(self.scene, FLOW_METHOD, None), "periods": self.periods, "regime": self.regime,
                 "mean_trace": self.mean_trace,
@@ -180,7 +180,7 @@ class LyapunovSpectrum(Labelled):
 
 
 def _kaplan_yorke(exponents: np.ndarray, resolved: int) -> float | None:
-    """The dimension from exponents (2N,), of which the first `resolved` are known and the rest smaller."""
+    """The dimension from exponents (2N,), of which the first `resolved` are known and the others smaller."""
     exponents = np.concatenate([np.sort(exponents[:resolved])[::-1], exponents[resolved:]])
     sums = np.cumsum(exponents)
     if sums[0] < 0.0:
@@ -193,20 +193,20 @@ def _kaplan_yorke(exponents: np.ndarray, resolved: int) -> float | None:
 
 def lyapunov_spectrum(scene: Scene, periods: int = 400, start: State | None = None, stop: Stop | None = None,
                       progress: Callable[[float], None] | None = None) -> LyapunovSpectrum:
-    """All Lyapunov exponents of the motion that a chain settles to.
+    """Compute all Lyapunov exponents of the motion that a chain settles to.
 
     Parameters
     ----------
     scene : Scene
-        The chain, of at most 100 beads, tension allowed.
+        The chain, of at most 100 beads, with tension allowed.
     periods : int
-        Drive periods over which the exponents are means, 20 to 1,000,000.
+        Number of drive periods over which the exponents are means, 20 to 1,000,000.
     start : State, optional
-        Where the chain starts before it settles; its scene's start if not given.
+        Where the chain starts to settle; by default the scene's own start.
     stop : Stop, optional
-        Once it is set the computation ends with `Cancelled`.
+        Once it is set, the computation ends with `Cancelled`.
     progress : callable, optional
-        Called with the fraction that is done, 0 to 1.
+        Called with the completed fraction, 0 to 1.
 
     Returns
     -------
@@ -235,7 +235,7 @@ def lyapunov_spectrum(scene: Scene, periods: int = 400, start: State | None = No
     x = stroboscopic_map.inner(settling.engine.y)
     growth, traces, resolved = _growth(stroboscopic_map, x, _ALIGNMENT_PERIODS + periods, progress)
     exponents, errors = _exponents(growth[_ALIGNMENT_PERIODS:])
-    # the factorization puts them in this order in the limit only: near ones may have changed places
+    # the factorization sorts them only in the limit: close ones may be out of order
     order = np.concatenate([np.argsort(-exponents[:resolved], kind="stable"), np.arange(resolved, len(x))])
     mean_trace = float(traces[_ALIGNMENT_PERIODS:].mean())
     return LyapunovSpectrum(scene, exponents[order], errors[order], resolved, periods, mean_trace,
@@ -246,7 +246,7 @@ def _growth(stroboscopic_map: StroboscopicMap, x: np.ndarray, periods: int,
             progress: Callable[[float], None] | None) -> tuple[np.ndarray, np.ndarray, int]:
     """Logarithms of the stretching of 2N orthogonal directions in each period (P, 2N), and ∫ trace over it (P,).
 
-    The third value is the number of leading directions whose stretching is above rounding in every period.
+    The third result is the number of leading directions whose stretching is above rounding in every period.
     """
     directions, growth, traces = np.eye(len(x)), np.zeros((periods, len(x))), np.zeros(periods)
     rounding = np.zeros(len(x), dtype=bool)
@@ -271,10 +271,10 @@ def _exponents(growth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _swing(deviations: np.ndarray) -> np.ndarray:
-    """Highest less lowest of the summed deviations from the mean growth (P, n), from before the first period on.
+    """Range of the cumulative sums, including 0 at the start, of deviations (P, n) from the mean growth.
 
-    Complex multipliers turn the directions; if a block holds a whole number of half turns, all block means are alike,
-    and their scatter does not show what the unfinished half turn at the end of the record leaves in the mean.
+    Complex multipliers turn the directions. If a block contains a whole number of half turns, all block means are
+    alike, and their scatter does not show how the unfinished half turn at the end of the record changes the mean.
     """
     sums = np.cumsum(deviations, axis=0)
     return np.maximum(sums.max(axis=0), 0.0) - np.minimum(sums.min(axis=0), 0.0)

@@ -1,10 +1,10 @@
-"""The rotation number of a quasi-periodic motion: its second frequency over that of the drive.
+"""The rotation number of a quasi-periodic motion: its second frequency over the drive frequency.
 
-Definition  ρ = lim (θ_p − θ_0) / p: on a closed curve that the stroboscopic map P takes to itself, the mean advance of
+Definition  ρ = lim (θ_p − θ_0) / p: on a closed curve that the stroboscopic map P maps to itself, the mean advance of
             the angle θ, in turns, per drive period p. The second frequency is f₂ = ρ f
 Convention  ρ is known up to its sign and a whole number, and is given in [0, ½]. On q closed curves that are visited in
-            turn it is the rotation number of P^q, and f₂ = ρ f / q, up to its sign and multiples of f / q
-Source      winding.py beside this file, which computes it from strobes
+            turn, it is the rotation number of P^q, and f₂ = ρ f / q, up to its sign and multiples of f / q
+Source      winding.py in this folder, which computes it from strobes
 """
 
 from __future__ import annotations
@@ -30,21 +30,21 @@ from ..tables import Column, Labelled, Table, axis, or_nan, provenance
 from ..tables.provenance import Attribute
 from .winding import LARGEST_DENOMINATOR, LENGTHS, Winding, folded, winding_of
 
-#: [rotation] Fewest drive periods in a first record.
+#: [rotation] Minimum number of drive periods in the first record.
 FEWEST_PERIODS = 1000
-#: [rotation] Most drive periods in a first record.
+#: [rotation] Maximum number of drive periods in the first record.
 MOST_ROTATION_PERIODS = 10_000
-#: [rotation] Steps in a drive period over the default ones, of the longer steps.
+#: [rotation] The longer steps: number per drive period relative to the default.
 _LONGER = 2.0
-#: [rotation] Steps in a drive period over the default ones, of the shorter steps. The difference of the two
+#: [rotation] The shorter steps: number per drive period relative to the default. The difference between the two
 #: computations gives their error.
 _SHORTER = 4.0
-#: [rotation] Most records of one motion, each after the one before and twice as long. The regime is known before the
-#: curve is reached to rounding, and near a fraction a record must be long.
+#: [rotation] Maximum number of records of one motion, each after the previous one and twice as long. The regime is
+#: known before the curve is reached to rounding, and near a fraction a record must be long.
 _MOST_RECORDS = 3
-#: [rotation] Most beads whose strobes are kept. They are evenly spaced along a longer chain.
+#: [rotation] Maximum number of beads whose strobes are kept. In a longer chain, they are evenly spaced.
 _MOST_BEADS = 30
-#: [rotation] Drive periods that are run at once.
+#: [rotation] Number of drive periods run at once.
 _PERIODS_AT_ONCE = 1000
 #: [rotation] Error of the average below which no further record follows.
 _SMALL_ERROR = 1e-8
@@ -63,22 +63,22 @@ class RotationNumber(Labelled):
     value : float or None
         ρ in [0, ½], of the `curves`-th iterate of the stroboscopic map; None if it is not decided.
     average_error : float or None
-        Error of the average: `_STATED` (winding.py) times the largest difference of the first, middle and last half of
-        the record, and of other projections.
+        Error of the average: `_STATED` (winding.py) times the largest difference between the first, middle and last
+        half of the record, and between projections.
     step_error : float or None
-        Error of the integration: `IRREGULAR` (integrate/safety_factors.py) times the difference from steps twice as
-        long.
+        Error of the integration: `IRREGULAR` (integrate/safety_factors.py) times the difference from the result with
+        steps twice as long.
     curves : int
         Number of closed curves that the motion visits in turn.
     periods : int
-        Drive periods of the last record.
+        Number of drive periods of the last record.
     projections : int
         Number of projections of the state from which it was computed, and which agree within `average_error`.
     reason : str
-        Why it is not decided; empty where it is.
+        Why it is not decided; empty if it is decided.
     convergence : numpy.ndarray, shape (4, 3)
-        For an eighth, a quarter, a half and the whole of the record: states on one curve, ρ, and the largest difference
-        of the first, middle and last half. NaN where it is not decided.
+        For an eighth, a quarter, a half and the whole of the record: number of states on one curve, ρ, and the largest
+        difference between the first, middle and last half. NaN if it is not decided.
 
     Examples
     --------
@@ -103,7 +103,7 @@ class RotationNumber(Labelled):
 
     @property
     def error(self) -> float | None:
-        """The sum of both errors; None where there is no value."""
+        """The sum of both errors; None if there is no value."""
         return None if self.average_error is None or self.step_error is None else self.average_error + self.step_error
 
     @property
@@ -128,21 +128,21 @@ class RotationNumber(Labelled):
 
     @property
     def fraction_distance(self) -> float | None:
-        """|ρ − p/q| of the nearest fraction: compare it with `error`; None where there is no value."""
+        """|ρ − p/q| for the nearest fraction, to be compared with `error`; None where there is no value."""
         nearest = self.nearest_fraction
         return None if self.value is None or nearest is None else abs(self.value - float(nearest))
 
     def tables(self) -> tuple[Table, ...]:
         """One table, `rotation`: how the average converges with the length of the record."""
         along, lengths = ("length",), np.array([2.0**-k for k in range(LENGTHS)][::-1])
-        return (Table("rotation", axis("length", lengths, "1", "part of the record, from its beginning"), {
+        return (Table("rotation", axis("length", lengths, "1", "fraction of the record, from its beginning"), {
             "states": Column(self.convergence[:, 0], along, "1", "states on one curve in it"),
             "rotation_number": Column(self.convergence[:, 1], along, "1", "rotation number from it"),
             "difference": Column(self.convergence[:, 2], along, "1", "largest difference of its first, middle and "
                                                                       "last half")}),)
 
     def attributes(self) -> dict[str, Attribute]:
-        """The number with its errors, and where it comes from."""
+        """The rotation number with its errors, and provenance."""
         nearest = self.nearest_fraction
         return {**provenance(self.scene, RK4_SPLIT, None), "regime": self.regime.name, "periods": self.periods,
                 "rotation_number": or_nan(self.value), "rotation_number_error": or_nan(self.error),
@@ -154,7 +154,7 @@ class RotationNumber(Labelled):
                 "fraction_distance": or_nan(self.fraction_distance)}
 
     def summary(self) -> list[str]:
-        """Rotation number, second frequency, and the nearest fraction; or why it is not decided."""
+        """Rotation number, second frequency and nearest fraction; or why it is not decided."""
         if self.value is None or self.second_frequency is None:
             return [f"rotation number not decided: {self.reason}"]
         per = "period" if self.curves == 1 else f"{self.curves} periods: {self.curves} curves are visited in turn"
@@ -168,7 +168,7 @@ class RotationNumber(Labelled):
 
 
 def with_error(value: float, error: float | None) -> str:
-    """A number and its error with two figures; the number has no more decimals than the error, and at most 15."""
+    """A number and its error with two digits; the number has no more decimals than the error, and at most 15."""
     if error is None:
         return f"{value:.6g}"
     decimals = min(15, max(0, 1 - math.floor(math.log10(error))))
@@ -177,23 +177,23 @@ def with_error(value: float, error: float | None) -> str:
 
 def rotation_number(scene: Scene, periods: int = 4000, start: State | None = None, stop: Stop | None = None,
                     progress: Callable[[float], None] | None = None) -> RotationNumber:
-    """The rotation number of the quasi-periodic motion that a chain settles to.
+    """Compute the rotation number of the quasi-periodic motion that a chain settles to.
 
-    The chain settles; then its strobes are recorded with half the default step and with a quarter of it. While the
-    average's error is above 1e-8, a record twice as long follows, up to three with each step.
+    The chain settles; then its strobes are recorded with half the default step and with a quarter of it. As long as the
+    average's error is above 1e-8, a record twice as long follows, up to three records with each step.
 
     Parameters
     ----------
     scene : Scene
         The chain.
     periods : int
-        Drive periods of the first record, 1000 to 10,000.
+        Number of drive periods of the first record, 1000 to 10,000.
     start : State, optional
-        Where the chain starts before it settles; its scene's start if not given.
+        Where the chain starts to settle; by default the scene's own start.
     stop : Stop, optional
-        Once it is set the computation ends with `Cancelled`.
+        Once it is set, the computation ends with `Cancelled`.
     progress : callable, optional
-        Called with the fraction that is done, 0 to 1.
+        Called with the completed fraction, 0 to 1.
 
     Returns
     -------
@@ -235,7 +235,8 @@ def _engine(scene: Scene, refined: float, state: State, stop: Stop) -> Engine:
 
 
 def _recorded(engine: Engine, periods: int, reported: Callable[[float], None]) -> tuple[Winding, int]:
-    """The rotation number of the last record, and its length: the first has `periods`, each other one twice as many."""
+    """The rotation number from the last record, and its length: the first has `periods`, each next one twice as many.
+    """
     for number in range(_MOST_RECORDS):
         length = periods << number
         winding = winding_of(_strobes(engine, length))
@@ -246,20 +247,20 @@ def _recorded(engine: Engine, periods: int, reported: Callable[[float], None]) -
 
 
 def _strobes(engine: Engine, periods: int) -> np.ndarray:
-    """The strobes (P, 2, n) of the next periods, of all beads or of at most `_MOST_BEADS` of a longer chain."""
+    """The strobes (P, 2, n) of the next periods, for all beads or, in a longer chain, for at most `_MOST_BEADS`."""
     stride = -(-engine.scaled.beads // _MOST_BEADS)
     parts = [min(_PERIODS_AT_ONCE, periods - first) for first in range(0, periods, _PERIODS_AT_ONCE)]
     return np.concatenate([engine.periods(part, watch=False)[0][1:, :, ::stride] for part in parts])
 
 
 def _compared(longer: Winding, shorter: Winding) -> tuple[Winding, float | None]:
-    """The rotation number by the shorter steps, and the error of these, from its difference from the longer ones."""
+    """The rotation number with the shorter steps, and its error from the difference to that with the longer steps."""
     if shorter.value is None:
         return shorter, None
     if longer.value is None:
-        return Winding(None, None, shorter.curves, f"with steps twice as long there is none: {longer.reason}"), None
+        return Winding(None, None, shorter.curves, f"steps twice as long give none: {longer.reason}"), None
     if longer.curves != shorter.curves:
-        reason = f"with steps twice as long there are {longer.curves} curves in place of {shorter.curves}"
+        reason = f"with steps twice as long there are {longer.curves} curves instead of {shorter.curves}"
         return Winding(None, None, shorter.curves, reason), None
     return shorter, IRREGULAR * folded(longer.value - shorter.value)
 

@@ -4,9 +4,9 @@ Equation   F(t) = Σ_m A_m cos(2π m f t / n + φ_m) for a motion of period n: i
            H_m = F̂_out,m / F̂_in,m at the lines at which the input force is not negligible
 Note       The spectrum of a motion without a period is not such a series: quasi-periodic motion has lines at
            combinations of its frequencies, chaotic motion a continuous part. Its record is weighted by a Hann window,
-           and a peak's height is that of a sine that stands alone; two peaks closer than 2 / duration are one.
-           Frequencies above half the sampling frequency are folded back (aliased). `aliasing` estimates the error of
-           this: twice the largest difference from the lines computed from every second sample, in the lower half of
+           and a peak has the height of an isolated sine; two peaks closer than 2 / duration are not resolved.
+           Frequencies above half the sampling frequency are folded back (aliased). `aliasing` estimates the resulting
+           error: twice the largest difference from the lines computed from every second sample, in the lower half of
            their frequencies.
 """
 
@@ -24,9 +24,9 @@ from ..scene import Scene
 from ..tables import Column, Labelled, Table, axis
 from ..tables.provenance import Attribute
 
-#: Forces that have a spectrum, as attributes of a run, and their names.
+#: Names of the forces that have a spectrum, and the corresponding attributes of a run.
 FORCES = {"input": "input_force", "output": "output_force", "elastic": "output_force_elastic"}
-#: Part of the input force's largest line that a line must have to be the denominator of a transfer.
+#: A line of the input force is used for a transfer only if it is above this fraction of the largest line.
 _SMALLEST_INPUT_LINE = 1e-6
 
 
@@ -45,9 +45,10 @@ class Spectrum(Labelled):
     amplitude : numpy.ndarray, shape (M,)
         Amplitude of the cosine at each frequency; at frequency 0 the mean of the force [N].
     phase : numpy.ndarray, shape (M,)
-        Phase of the cosine at each frequency, counted from drive phase 0 [rad].
+        Phase of the cosine at each frequency, measured from drive phase 0 [rad].
     period : int or None
-        Drive periods of the motion whose Fourier series it is; None: a windowed record of a motion without period.
+        Period of the motion, in drive periods, if this is its Fourier series; None for a windowed record of a motion
+        without a period.
     aliasing : float
         Estimate of the part of an amplitude that is folded back from above half the sampling frequency [N].
 
@@ -69,9 +70,9 @@ class Spectrum(Labelled):
 
     @property
     def error(self) -> float:
-        """Estimated error of an amplitude [N]: `aliasing`, and the error of the motion as that of its largest force.
+        """Estimated error of an amplitude [N]: `aliasing`, plus the largest force times the motion's relative error.
 
-        NaN where the run states no error.
+        NaN if the run states no error.
         """
         stated = (getattr(self.run.force_errors, self.force), self.run.displacement_error)
         known = [error for error in stated if error is not None]
@@ -79,9 +80,9 @@ class Spectrum(Labelled):
 
     @property
     def resolution(self) -> float:
-        """Frequency resolution [Hz]: lines nearer to each other are not told apart.
+        """Frequency resolution [Hz]: lines closer than this are not separated.
 
-        It is the spacing of the frequencies for a Fourier series, and twice the spacing with Hann's window.
+        It is the spacing of the frequencies for a Fourier series, and twice the spacing with a Hann window.
         """
         return float(self.frequency[1]) * (1.0 if self.period else 2.0)
 
@@ -95,15 +96,15 @@ class Spectrum(Labelled):
         along = ("frequency",)
         return (Table("spectrum", axis("frequency", self.frequency, "Hz", "frequency"), {
             "amplitude": Column(self.amplitude, along, "N", f"amplitude of the {self.force} force, the mean at 0"),
-            "phase": Column(self.phase, along, "rad", "phase of the cosine, counted from drive phase 0")}),)
+            "phase": Column(self.phase, along, "rad", "phase of the cosine, measured from drive phase 0")}),)
 
     def attributes(self) -> dict[str, Attribute]:
-        """Force, period, aliasing and resolution, and the attributes of its run."""
+        """Force, period, aliasing and resolution, along with the attributes of its run."""
         return {**self.run.attributes(), "force": self.force, "period": self.period or 0, "aliasing": self.aliasing,
                 "resolution": self.resolution}
 
     def summary(self) -> list[str]:
-        """Which force it belongs to, and its largest lines."""
+        """The force, and its largest lines."""
         top = [i for i in np.argsort(-self.amplitude) if self.frequency[i] > 0.0][:3]
         kind = f"lines of a motion of period {self.period}" if self.period else "windowed record, no period"
         return [f"{self.force} force, {kind}; resolution {self.resolution:.4g} Hz",
@@ -118,12 +119,12 @@ class Transfer(Labelled):
     Attributes
     ----------
     frequency : numpy.ndarray, shape (M,)
-        Lines at which the input force is above 1e-6 of its largest part and above twice its `aliasing` [Hz].
+        Lines at which the input force is above 1e-6 of its largest line and above twice its `aliasing` [Hz].
     gain, phase : numpy.ndarray, shape (M,)
-        |H|, and its argument [rad]: negative where the output is late.
+        |H|, and the argument of H [rad]: negative where the output is late.
     gain_error, phase_error : numpy.ndarray, shape (M,)
-        Estimated errors of both, that of the phase [rad] at most π; the gain's is NaN at lines of the input force that
-        are not known.
+        Estimated errors of both, that of the phase [rad] at most π. The gain's error is NaN where the line of the input
+        force is smaller than its error.
     run : Run
         The motion.
 
@@ -169,25 +170,25 @@ class Transfer(Labelled):
 
 
 def spectrum(run: Run, force: str = "output") -> Spectrum:
-    """The spectrum of a force of a recorded motion.
+    """Compute the spectrum of a force of a recorded motion.
 
     Parameters
     ----------
     run : Run
-        A motion whose recorded periods are whole; one of period n must hold n of them.
+        A motion with a whole number of recorded drive periods, at least n for a motion of period n.
     force : str
         "input", "output", or "elastic", the elastic part of the output force.
 
     Returns
     -------
     Spectrum
-        Lines of the Fourier series where the motion is periodic, else those of the windowed record.
+        Lines of the Fourier series if the motion is periodic, otherwise those of the windowed record.
 
     Raises
     ------
     BadInput
-        Another force; fewer than four samples a drive period, or an odd number; less than one period of the motion
-        recorded, or not whole drive periods.
+        An unknown force; fewer than four samples per drive period, or an odd number; less than one recorded period of
+        the motion, or not a whole number of drive periods.
 
     Examples
     --------
@@ -207,7 +208,7 @@ def spectrum(run: Run, force: str = "output") -> Spectrum:
 
 
 def transfer(run: Run) -> Transfer:
-    """The transfer from the input force to the output force of a periodic motion.
+    """Compute the transfer from the input force to the output force of a periodic motion.
 
     Parameters
     ----------
@@ -222,7 +223,7 @@ def transfer(run: Run) -> Transfer:
     Raises
     ------
     BadInput
-        The motion has no period, or as for `spectrum`.
+        The motion has no period, or any error of `spectrum`.
 
     Examples
     --------
@@ -245,21 +246,21 @@ def transfer(run: Run) -> Transfer:
 
 
 def _record(run: Run, values: np.ndarray) -> tuple[np.ndarray, int | None]:
-    """The samples that count, and the motion's period: the last n drive periods of a periodic motion, else all."""
+    """The samples to use, the last n drive periods of a motion of period n or all others, and the period."""
     if run.samples < 4 or run.samples % 2:
-        raise BadInput(f"A spectrum needs an even number of samples a period, at least 4, not {run.samples}.")
+        raise BadInput(f"A spectrum needs an even number of samples per period, at least 4, not {run.samples}.")
     recorded = len(values) // run.samples
     needed = run.regime.period or 1
     if recorded < needed or len(values) % run.samples:
         raise BadInput(f"The spectrum of a motion of period {needed} needs {needed} whole recorded drive periods; the "
-                       f"run holds {len(values) / run.samples:g}.")
+                       f"run has {len(values) / run.samples:g}.")
     if run.regime.period is None:
         return values, None
     return values[-needed * run.samples :], needed
 
 
 def cosines(values: np.ndarray, repeats: bool) -> np.ndarray:
-    """Complex amplitudes of the cosines in equally spaced values, the mean first; a Hann window unless they repeat."""
+    """Complex amplitudes of the cosines in equally spaced values, the mean first; Hann-windowed unless `repeats`."""
     if not repeats:
         window = np.hanning(len(values) + 1)[:-1]
         mean = float(np.average(values, weights=window))
@@ -268,5 +269,5 @@ def cosines(values: np.ndarray, repeats: bool) -> np.ndarray:
     else:
         amplitudes = np.fft.rfft(values) * (2.0 / len(values))
         amplitudes[0] *= 0.5
-    amplitudes[-1] *= 0.5  # at half the sampling frequency: one line, where others have one at −f besides
+    amplitudes[-1] *= 0.5  # at half the sampling frequency, which has no second line at −f
     return np.asarray(amplitudes)

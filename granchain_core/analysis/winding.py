@@ -1,12 +1,12 @@
-"""The rotation number of stroboscopic states, from the angle at which they go round a closed curve.
+"""The rotation number of stroboscopic states, from the angle with which they go round a closed curve.
 
 Equation   ρ = ⟨θ_{p+1} − θ_p⟩ with θ = arg(z) / 2π, z = a* · (x_p, x_{p+1}) and ⟨⟩ the weighted Birkhoff average
            a = C⁺ X: C is the covariance of (x_p, x_{p+1}), X its Fourier coefficient at one line of the spectrum
 Source     Das, Saiki, Sander & Yorke 2016, 2017; Sander & Meiss 2020 for the average as a test of chaos
-Note       C⁺ X is the projection in which this line is strongest beside everything else (a matched filter), so that z
-           goes round zero once in each turn of the line even where the curve is folded in every plane of two
-           coordinates. The angle is well defined where z, turned back by ν p, stays in one half plane. By a line at mρ
-           the angle advances by mρ.
+Note       C⁺ X is the projection in which this line is strongest relative to everything else (a matched filter), so
+           that z goes round zero once in each turn of the line, even if the curve is folded in every plane of two
+           coordinates. The angle is well defined if z, turned back by ν p, stays in one half plane. For a line at mρ,
+           the angle advances by mρ per period.
 """
 
 from __future__ import annotations
@@ -19,46 +19,46 @@ import numpy as np
 from .birkhoff import average, fourier_coefficient, turns
 from .strobe_lines import AT_MULTIPLE, Basic, basic_frequency, curves_of, fraction_at, lines_of
 
-#: [rotation] Fewest states on one curve from which a rotation number is read.
+#: [rotation] Minimum number of states on one curve from which a rotation number is computed.
 FEWEST_STATES = 200
 #: [rotation] Directions whose variance is below this fraction of the largest are left out of a projection.
 _LEAST_VARIANCE = 1e-8
-#: [rotation] States whose changes are below this fraction of the largest are at rest.
+#: [rotation] States whose changes are below this fraction of the largest state do not move.
 _AT_REST = 1e-9
-#: [rotation] Lines whose angles are averaged.
+#: [rotation] Number of lines whose angles are averaged.
 _PROJECTED_LINES = 3
-#: [rotation] Largest denominator of a fraction that a rotation number is compared with: the longest period that a
+#: [rotation] Largest denominator of a fraction with which a rotation number is compared: the longest period that a
 #: regime may have.
 LARGEST_DENOMINATOR = 60
-#: [rotation] Fewest passes, P |qρ − p|, of the states near a fraction from one of the places of a locked motion to the
-#: next.
+#: [rotation] Minimum number of passes, P |qρ − p|, of the states near a fraction from one of the places of a locked
+#: motion to the next.
 _FEWEST_PASSES = 4.0
-#: [rotation] Fewest passes near a fraction whose denominator is at most `_SMALL`. It is two widths of a line (`_WIDTH`
-#: in strobe_lines.py). With fewer the line of one turn may lie within the width of a stronger multiple of it, or be
-#: left out as a drift; what is left are multiples of 2ρ. Of 240 curves with 0.5 to 30 passes, 4, 8, 12 and 16 left 12,
-#: 11, 3, 0 wrong.
+#: [rotation] Minimum number of passes near a fraction whose denominator is at most `_SMALL`. It is two widths of a line
+#: (`_WIDTH` in strobe_lines.py). With fewer passes, the line of one turn may lie within the width of a stronger
+#: multiple of it, or be discarded as a drift; only multiples of 2ρ are then left. Of 240 curves with 0.5 to 30 passes,
+#: limits of 4, 8, 12 and 16 left 12, 11, 3 and 0 wrong.
 _FEWEST_PASSES_IF_SMALL = 16.0
 #: [rotation] Largest denominator of a fraction that needs more passes.
 _SMALL = 5
-#: [rotation] Stated error of the average over the largest difference of averages. A few of them may all be small by
-#: chance.
+#: [rotation] Stated error of the average over the largest difference between averages. A few differences may all be
+#: small by chance.
 _STATED = 3.0
-#: [rotation] Smallest error of the average that is stated: rounding.
+#: [rotation] Smallest stated error of the average: rounding.
 _ROUNDING = 1e-15
-#: Parts of a record whose averages are compared: as fractions of its length.
+#: Parts of a record whose averages are compared, as fractions of its length.
 _PARTS = ((0.0, 0.5), (0.25, 0.75), (0.5, 1.0))
-#: [rotation] Lengths of the record at which the convergence is given, each half of the next.
+#: [rotation] Number of record lengths for which the convergence is given, each half of the next.
 LENGTHS = 4
 
 
 @dataclass(frozen=True)
 class Winding:
-    """The rotation number of states, or why there is none.
+    """The rotation number of states, or the reason why there is none.
 
-    `value` is in [0, ½] and belongs to the `curves`-th iterate of the map. `error` is `_STATED` times the largest of
-    the differences between three halves of the record (first, middle, last), between `projections` projections, and
-    from the line of the spectrum. `convergence` (4, 3) has a row for each length: states on one curve, rotation number
-    of the first so many, largest difference of their halves. Where `value` is None, `reason` says why.
+    `value` is in [0, ½] and is that of the `curves`-th iterate of the map. `error` is `_STATED` times the largest
+    difference between the first, middle and last half of the record, between `projections` projections, or from the
+    spectral line. `convergence` (4, 3) has a row for each record length: number of states on one curve, their rotation
+    number, and the largest difference between their halves. If `value` is None, `reason` says why.
     """
 
     value: float | None
@@ -70,12 +70,12 @@ class Winding:
 
 
 def folded(value: float) -> float:
-    """A rotation number in [0, ½]: it is known up to its sign and a whole number."""
+    """A rotation number folded into [0, ½], since it is known only up to its sign and a whole number."""
     return abs(value - round(value))
 
 
 def winding_of(states: np.ndarray) -> Winding:
-    """The rotation number of stroboscopic states (P, 2, N), once a period: displacements, and v or w."""
+    """Compute the rotation number of stroboscopic states (P, 2, N), one per drive period: displacements, and v or w."""
     embedded = _embedded(states)
     if len(embedded) < FEWEST_STATES:
         return _none(1, f"there are fewer than {FEWEST_STATES} states on one curve")
@@ -110,12 +110,12 @@ def _on_one_curve(embedded: np.ndarray, lines: np.ndarray, curves: int) -> Windi
     if len(lines) == 0:
         return _none(curves, "their spectrum has no line")
     if any(fraction_at(float(line), count) for line in lines):
-        return _none(curves, "the states repeat, or there are more curves than are looked for")
+        return _none(curves, "the states repeat, or there are more curves than can be detected")
     basic = basic_frequency(lines, count)
     if basic is None:
         shown = ", ".join(f"{line:.6f}" for line in lines[:_PROJECTED_LINES])
-        return _none(curves, f"the strongest lines of their spectrum ({shown} per period) and the others are no "
-                             "multiples of one frequency: there is a third one, the motion is chaotic, or it is "
+        return _none(curves, f"the strongest lines of their spectrum ({shown} per period) and the others are not "
+                             "multiples of one frequency: there is a third frequency, the motion is chaotic, or it is "
                              "locked to a long period")
     increments = [(steps, multiple) for steps, multiple in _projections(embedded, lines, basic) if steps is not None]
     if len(increments) < 2:
@@ -133,9 +133,10 @@ def _on_one_curve(embedded: np.ndarray, lines: np.ndarray, curves: int) -> Windi
 
 
 def _projections(embedded: np.ndarray, lines: np.ndarray, basic: Basic) -> list[tuple[np.ndarray | None, int]]:
-    """Increments of the angle in several projections, and how often each goes round in a turn of the curve.
+    """Increments of the angle in several projections, and how often each goes round in one turn of the curve.
 
-    All coordinates by each of the strongest lines; displacements alone and velocities alone by the strongest.
+    All coordinates are projected with each of the strongest lines; displacements alone and velocities alone are
+    projected with the strongest line.
     """
     half = np.arange(embedded.shape[1]) % (embedded.shape[1] // 2) < embedded.shape[1] // 4
     strongest = zip(lines[:_PROJECTED_LINES], basic.multiples, strict=False)
@@ -144,9 +145,9 @@ def _projections(embedded: np.ndarray, lines: np.ndarray, basic: Basic) -> list[
 
 
 def _increments(states: np.ndarray, line: float) -> np.ndarray | None:
-    """Advance of the angle in turns from state to state (P − 1,), in the projection by one line; None if undefined.
+    """Advance (P − 1,) of the angle in turns from state to state, in the projection with one line; None if undefined.
 
-    Where too few coordinates cannot separate the line from a stronger one, z follows that one.
+    If there are too few coordinates to separate the line from a stronger one, z follows the stronger one.
     """
     variances, directions = np.linalg.eigh(states.T @ states / len(states))
     kept = variances > _LEAST_VARIANCE * variances.max()
@@ -163,13 +164,13 @@ def _increments(states: np.ndarray, line: float) -> np.ndarray | None:
 
 
 def _rotation(steps: np.ndarray, multiple: int, near: float) -> float:
-    """The rotation number near `near` of an angle that goes round `multiple` times in a turn of the curve."""
+    """The rotation number near `near`, from an angle that goes round `multiple` times in one turn of the curve."""
     advance = float(average(steps))
     return (advance + round(multiple * near - advance)) / multiple
 
 
 def _at_length(steps: np.ndarray, multiple: int, near: float) -> tuple[float, float, float]:
-    """States, rotation number, and the largest difference of the first, middle and last half."""
+    """Number of states, rotation number, and the largest difference between the first, middle and last half."""
     count = len(steps)
     halves = [_rotation(steps[int(a * count) : int(b * count)], multiple, near) for a, b in _PARTS]
     full = _rotation(steps, multiple, near)
@@ -177,9 +178,9 @@ def _at_length(steps: np.ndarray, multiple: int, near: float) -> tuple[float, fl
 
 
 def _passes(rotation: float, states: int) -> Fraction | None:
-    """The fraction near which so many states do not fill a curve.
+    """The fraction near which `states` states do not fill a curve; None if there is no such fraction.
 
-    Near p/q the states stay close to q places, and move on by q|ρ − p/q| of their distance in q periods.
+    Near p/q, the states stay close to q places, and in q periods they move by q|ρ − p/q| of the distance between these.
     """
     for q in range(1, LARGEST_DENOMINATOR + 1):
         fewest = _FEWEST_PASSES_IF_SMALL if q <= _SMALL else _FEWEST_PASSES

@@ -20,13 +20,13 @@ from ..tables.provenance import Attribute, or_nan
 from ..tables.shown import as_text
 from ..tables.words import state_columns
 
-#: Failed starts that a sentence names.
+#: Number of failed starts that a sentence names.
 _NAMED = 4
 
 
 @dataclass(frozen=True, eq=False)
 class Origin:
-    """One start: "rest", "up", "down" or "random 17", and the state it is at phase 0."""
+    """One start: its name, "rest", "up", "down" or "random 17", and its state at phase 0."""
 
     name: str
     state: State
@@ -34,7 +34,7 @@ class Origin:
 
 @dataclass(eq=False)
 class Attractor:
-    """A steady state that starts lead to; an unstable orbit where a start had not left it after three rounds.
+    """A steady state to which starts lead, or an unstable orbit that a start had not left after three rounds.
 
     Attributes
     ----------
@@ -45,21 +45,21 @@ class Attractor:
     max_input_force, max_output_force, max_output_force_elastic : float
         Largest forces [N].
     force_errors : ForceErrors
-        Their relative errors; None where the motion is not periodic.
+        Their relative errors; each None if the motion is not periodic.
     state : State
-        Where it is at drive phase 0.
+        A state of it at drive phase 0.
     orbit : Orbit or None
-        The converged orbit with its multipliers; None where the motion is not periodic or Newton's method did not
-        reach it.
+        The converged orbit with its multipliers; None if the motion is not periodic or Newton's method did not reach
+        it.
     origins : list of Origin
         The starts that end here: "rest", "up", "down", "random 17".
     share, share_error : float or None
-        Fraction of the starts named in `share_of` that end here, and its standard error where these are random; None
-        where there is none.
+        Fraction of the starts named in `share_of` that end here, and its standard error if these are random; otherwise
+        None.
     share_interval : tuple of float or None
-        The 95 % interval of the share where the starts are random; None where there is none.
+        The 95 % interval of the share if the starts are random; otherwise None.
     share_of : str
-        "random states" of `attractors`, or "starts of the plane" of `basins`.
+        The starts that the share refers to: "random states" for `attractors`, "starts of the plane" for `basins`.
 
     Examples
     --------
@@ -85,15 +85,16 @@ class Attractor:
 
     @property
     def error_estimate(self) -> float | None:
-        """`force_errors.output` by the name that it has in the command line's JSON.
+        """`force_errors.output`, under its name in the command line's JSON.
 
-        Of a motion this name is the error of the displacements (docs/result-files.md, "Which name is which error").
+        For a single motion, this name means the error of the displacements (docs/result-files.md, "Which name is which
+        error").
         """
         return self.force_errors.output
 
     @property
     def share_words(self) -> str:
-        """The share with its 95 % interval in per cent, "–" where there is none."""
+        """The share with its 95 % interval in per cent, or "–" if there is no share."""
         if self.share is None:
             return "–"
         if self.share_interval is None:
@@ -108,14 +109,14 @@ class Attractor:
 
 
 class Attractors(list[Attractor], Labelled):
-    """The list of steady states that were found; the one that most starts lead to comes first.
+    """The list of steady states that were found, the one to which most starts lead first.
 
     Attributes
     ----------
     scene : Scene
         The chain.
     failed : list of Origin
-        The starts whose computation failed. Shares count them among the random states.
+        The starts whose computation failed. For shares, they are counted among the random states.
 
     Examples
     --------
@@ -143,7 +144,7 @@ class Attractors(list[Attractor], Labelled):
         return dict(provenance(self.scene, attractor_methods(self.scene, self), max(errors) if errors else None))
 
     def summary(self) -> list[str]:
-        """The number of steady states, a line for each, and the starts that failed."""
+        """The number of steady states, one line for each, and the failed starts."""
         return [f"{len(self)} found", *(f"{i}: {line}" for i, line in enumerate(listing(self), 1)),
                 *failed_sentence(self.failed)]
 
@@ -152,7 +153,7 @@ class Attractors(list[Attractor], Labelled):
 
 
 def attractor_methods(scene: Scene, listed: Iterable[Attractor]) -> str:
-    """The methods behind the attractors of `scene` in words, for their provenance."""
+    """The methods behind the attractors of `scene`, in words for provenance."""
     has_orbits = any(attractor.orbit is not None for attractor in listed)
     return settling_methods(scene, "start") + (f"; orbits by {FLOW_METHOD}" if has_orbits else "")
 
@@ -181,20 +182,20 @@ def attractors_table(scene: Scene, listed: Sequence[Attractor]) -> Table:
         "share_low": Column(intervals[:, 0], along, "1", "lower end of the 95 % interval of the share"),
         "share_high": Column(intervals[:, 1], along, "1", "upper end of the 95 % interval of the share"),
         "share_of": Column(np.array([attractor.share_of for attractor in listed], dtype=object), along, "",
-                           "which starts the share is a fraction of"),
+                           "the starts that the share refers to"),
         "starts": Column(starts, along, "", "starts that end here"),
         **state_columns(states[:, 0], states[:, 1], ("attractor", "bead"))})
 
 
 def listing(attractors_found: Sequence[Attractor]) -> Iterator[str]:
-    """The attractors in words, one line each."""
+    """Yield the attractors in words, one line each."""
     for attractor in attractors_found:
         share = "" if attractor.share is None else f"{attractor.share_words} of {attractor.share_of}; "
         yield f"{attractor.regime.sentence}; {attractor.max_output_force:.4g} N, {share}{len(attractor.origins)} starts"
 
 
 def failed_sentence(failed: Sequence[Origin]) -> list[str]:
-    """One sentence about the starts without a steady state, which names the first; empty where there is none."""
+    """One sentence about the failed starts, with the names of the first; an empty list if none failed."""
     if not failed:
         return []
     names = ", ".join(origin.name for origin in failed[:_NAMED])

@@ -1,7 +1,7 @@
 """The search for all steady states of one setting: from rest, from sweeps up and down, and from random states.
 
 All starts are settled in batches; sameness.py merges equal results. A start that ends on an unstable orbit, where a
-slow departure looks like a steady state, is displaced and run further.
+slow departure looks like a steady state, is displaced and continued.
 """
 
 from __future__ import annotations
@@ -30,58 +30,59 @@ from ..steady.steady_state import SteadyState
 from .attractor import Attractor, Attractors, Origin
 from .sameness import Candidate, merged, with_section
 
-#: [attractors] Frequencies of a sweep before the one asked for.
+#: [attractors] Number of frequencies in a sweep before the requested one.
 _SWEEP_POINTS = 8
-#: [attractors] Drive periods at each frequency of a sweep, and from rest for the size of the box of random states.
+#: [attractors] Number of drive periods at each frequency of a sweep, and from rest for the size of the box of random
+#: states.
 _PASS_PERIODS = 150
-#: [attractors] Distance from the frequency asked for at which a sweep begins, relative to it.
+#: [attractors] Distance from the requested frequency at which a sweep begins, relative to that frequency.
 _SWEEP_RANGE = 0.08
-#: [attractors] Size of the box of random states, over the largest displacement and velocity of any bead at phase 0 from
-#: rest. These are taken over the first `_PASS_PERIODS`.
+#: [attractors] Size of the box of random states, relative to the largest displacement and velocity of any bead at phase
+#: 0 from rest. These are determined over the first `_PASS_PERIODS`.
 _BOX_SIZE = 1.5
 #: [attractors] Displacement from an unstable orbit, relative to the motion.
 _DEPARTURE = 1e-2
-#: [attractors] Drive periods after a displacement from an unstable orbit before the next check. They are enough to
-#: leave an orbit with |μ| = 1.003.
+#: [attractors] Number of drive periods after a displacement from an unstable orbit before the next check. They are
+#: enough to leave an orbit with |μ| = 1.003.
 _DEPARTURE_PERIODS = 3000
-#: [attractors] Drive periods that a motion that does not repeat is run on, to see whether it comes to an orbit after
-#: all. On the way to a locked orbit of long period it may wander for thousands beside a closed curve.
+#: [attractors] Number of further drive periods in which a motion that does not repeat may still reach an orbit. On the
+#: way to a locked orbit of long period, it may stay near a closed curve for thousands of periods.
 _LATER_PERIODS = 6400
-#: [attractors] Most times that motions are run on, for either reason.
+#: [attractors] Maximum number of times that motions are continued, for either reason.
 _MOST_ROUNDS = 3
-#: [attractors] Most random states.
+#: [attractors] Maximum number of random states.
 MOST_STATES = 10_000
 
 
 def attractors(scene: Scene, random_states: int = 64, seed: int = 0, stop: Stop | None = None,
                progress: Callable[[float], None] | None = None) -> Attractors:
-    """All steady states of one setting that are found from rest, from sweeps of f both ways and from random states.
+    """Find the steady states of one setting from rest, from sweeps of f both ways and from random states.
 
-    Random states are uniform in a box, and their shares refer to it (docs/parameter-map.md, "All attractors of one
-    setting").
+    Random states are uniformly distributed in a box, to which the shares refer (docs/parameter-map.md, "All attractors
+    of one setting").
 
     Parameters
     ----------
     scene : Scene
         The chain.
     random_states : int
-        How many random states, 0 to 10,000.
+        Number of random states, 0 to 10,000.
     seed : int
-        Seed of the random states; the same seed gives the same answer.
+        Seed of the random states; the same seed gives the same result.
     stop : Stop, optional
-        When set, the search ends with what it has found, or raises `Cancelled` if that is nothing.
+        When set, the search ends with the steady states found so far, or raises `Cancelled` if there are none.
     progress : callable, optional
-        Called with the fraction that is done, 0 to 1.
+        Called with the completed fraction, 0 to 1.
 
     Returns
     -------
     Attractors
-        A list of `Attractor`, each steady state once; the one that most starts lead to comes first.
+        A list of `Attractor`, each steady state once, the one to which most starts lead first.
 
     Raises
     ------
     BadInput
-        `random_states` or `seed` is not a whole number or out of range.
+        `random_states` or `seed` is not a whole number, or is out of range.
     ComputationError
         The computation of every start failed.
 
@@ -110,9 +111,9 @@ def _random_count(origins: list[Origin]) -> int:
 
 def attractors_from(scene: Scene, origins: list[Origin], stop: Stop | None = None,
                     progress: Callable[[float], None] | None = None) -> tuple[list[Attractor], list[Origin]]:
-    """The steady states that these starts reach, each once with its starts, and the starts that failed.
+    """Find the steady states that these starts reach, each once with its starts; also return the failed starts.
 
-    Raises as `attractors` does.
+    Raises the same exceptions as `attractors`.
     """
     starts = [Start(scene, origin.state, number) for number, origin in enumerate(origins)]
     results = _settled(starts, stop, progress)
@@ -136,7 +137,7 @@ def attractors_from(scene: Scene, origins: list[Origin], stop: Stop | None = Non
 
 
 def _counted(result: SteadyState, before: int) -> SteadyState:
-    """A result whose periods run include those `before` its start."""
+    """The result, with the number of periods `before` its start added to `periods_run`."""
     return replace(result, regime=replace(result.regime, periods_run=before + result.regime.periods_run))
 
 
@@ -152,7 +153,7 @@ def _settled(starts: list[Start], stop: Stop | None,
 
 
 def _beside(group: list[Candidate], stop: Stop | None) -> Iterator[Start]:
-    """New starts near the orbit for all results on an unstable orbit."""
+    """Yield a new start near the orbit for each result on an unstable orbit."""
     orbit = group[0].orbit
     assert orbit is not None
     u, v = orbit.state.displacement, orbit.state.velocity
@@ -163,14 +164,14 @@ def _beside(group: list[Candidate], stop: Stop | None) -> Iterator[Start]:
 
 
 def _later(group: list[Candidate], stop: Stop | None) -> Iterator[Start]:
-    """New starts for all results of a group, where each motion is after `_LATER_PERIODS`."""
+    """Yield a new start for each result of a group: the motion's state after `_LATER_PERIODS`."""
     for member in group:
         result = member.result
         yield Start(result.scene, _run_on(result.scene, result.state, _LATER_PERIODS, stop)[0], result.number)
 
 
 def _locks(candidate: Candidate, stop: Stop | None) -> bool:
-    """Whether a motion that does not repeat comes to an orbit after all, within `_LATER_PERIODS`."""
+    """Whether a motion that does not repeat still reaches an orbit, within `_LATER_PERIODS`."""
     if candidate.result.regime.period is not None:
         return False
     _, strobes, _ = _run_on(candidate.result.scene, candidate.result.state, _LATER_PERIODS, stop)
@@ -179,9 +180,9 @@ def _locks(candidate: Candidate, stop: Stop | None) -> bool:
 
 
 def share(count: int, of: int) -> tuple[float | None, float | None]:
-    """A fraction and its standard error, by the plus-four rule (Agresti & Coull 1998), which is above 0 at 0 and at 1.
+    """A fraction and its standard error by the plus-four rule (Agresti & Coull 1998), positive even at 0 and 1.
 
-    Both are None where nothing was drawn.
+    Both are None if nothing was drawn.
     """
     if of == 0:
         return None, None
@@ -190,7 +191,7 @@ def share(count: int, of: int) -> tuple[float | None, float | None]:
 
 
 def share_interval(count: int, of: int) -> tuple[float, float] | None:
-    """The 95 % interval of a fraction (Wilson 1927), within 0 and 1; None where nothing was drawn."""
+    """The 95 % interval of a fraction (Wilson 1927), within 0 and 1; None if nothing was drawn."""
     from scipy.stats import binomtest  # imported late: only a search with random states needs it
 
     if of == 0:
@@ -225,7 +226,7 @@ def _swept(scene: Scene, factor: float, stop: Stop | None) -> State:
 
 
 def _run_on(scene: Scene, state: State, periods: int, stop: Stop | None) -> tuple[State, np.ndarray, float]:
-    """State after so many periods, scaled strobes on the way, the unit of velocity [m/s]."""
+    """The state after `periods` drive periods, the scaled strobes on the way, and the unit of velocity [m/s]."""
     engine = Engine(scene, following_setting(scene.cuts_tension), 1, stop=stop)
     engine.start(state)
     strobes, _ = engine.periods(periods)
@@ -233,12 +234,12 @@ def _run_on(scene: Scene, state: State, periods: int, stop: Stop | None) -> tupl
 
 
 def or_infinite(error: float | None) -> float:
-    """A stated error; infinity where none is stated, which is never the least."""
+    """A stated error, or infinity if no error is stated, so that it is never the least."""
     return math.inf if error is None else error
 
 
 def _attractor(group: list[Candidate], origins: list[Origin]) -> Attractor:
-    """The attractor of a group: forces with the least error, or in an irregular group the largest of any member."""
+    """The attractor of a group: forces with the least error, or for irregular motions the largest of any member."""
     best = min((member.result for member in group), key=lambda result: or_infinite(result.output_force_error))
     first, maxima = group[0], best.maxima
     if first.result.regime.period is None:
@@ -251,11 +252,11 @@ def _attractor(group: list[Candidate], origins: list[Origin]) -> Attractor:
 
 
 def _regime(regimes: list[Regime]) -> Regime:
-    """The regime of a group; of irregular motions with the mean of their Lyapunov exponents and its standard error.
+    """The regime of a group; for irregular motions, with the mean of their Lyapunov exponents and its standard error.
 
-    Where the members have different names, the rule of steady/regime_criteria.py decides by this mean. All members
-    share the bias of order 1/P of an exponent measured over P periods. Averaging does not reduce the bias, so the mean
-    is judged as if it had been measured over the shortest P, and whether it is neutral by the error of a single one.
+    If the members have different regimes, the rule of steady/regime_criteria.py decides by this mean. All members share
+    the bias of order 1/P of an exponent measured over P periods. Averaging does not reduce the bias, so the mean is
+    judged as if it had been measured over the shortest P, and its neutrality by the error of a single measurement.
     """
     known = [regime.lyapunov for regime in regimes if regime.lyapunov is not None]
     periods = min((regime.lyapunov_periods for regime in regimes if regime.lyapunov_periods is not None),

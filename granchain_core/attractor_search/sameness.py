@@ -1,6 +1,6 @@
 """Comparing results: whether two results are the same steady state.
 
-docs/parameter-map.md ("All attractors of one setting") has the rules and the reasons.
+docs/parameter-map.md ("All attractors of one setting") gives the rules and the reasons.
 """
 
 from __future__ import annotations
@@ -18,26 +18,26 @@ from ..scene import Scene
 from ..scene.state import State
 from ..steady.steady_state import SteadyState
 
-#: [attractors] Largest difference of states that one stated error explains. It is the largest error of the three
-#: forces, which stands in for that of the states and is infinite where a force is zero.
+#: [attractors] Largest difference between states that one stated error can explain. The largest error of the three
+#: forces is used for that of the states, but it is infinite where a force is zero.
 _LARGEST_DIFFERENCE = 1e-3
-#: [attractors] Error of an orbit that Newton's method has found, times 1 − |μ|: orbits that agree within the sum of
-#: both are the same.
+#: [attractors] Error of an orbit found by Newton's method, times 1 − |μ|: orbits that agree within the sum of their
+#: errors are the same.
 _ORBIT_DIFFERENCE = 1e-7
-#: [attractors] Least value that 1 − |μ| of an orbit counts as.
+#: [attractors] Least value that is used for 1 − |μ| of an orbit.
 _LEAST_CONTRACTION = 1e-3
-#: [attractors] A result is on an unstable orbit if its distance is at most this factor times its tolerance, plus the
-#: distance below. A motion that only passes such an orbit is farther away.
+#: [attractors] A result is on an unstable orbit if its distance is at most this factor times its tolerance, plus
+#: `_UNSTABLE_DISTANCE`. A motion that only passes such an orbit is farther away.
 _UNSTABLE_FACTOR = 10.0
-#: [attractors] Distance that is added, relative to the largest displacement or w.
+#: [attractors] Distance added to that limit, relative to the largest displacement or w.
 _UNSTABLE_DISTANCE = 1e-6
-#: [attractors] Sections are different if their distance exceeds the distance between neighbouring states of one section
-#: by this factor.
+#: [attractors] Sections are different if the distance between them exceeds that between neighbouring states of one
+#: section by this factor.
 _SECTION_FACTOR = 3.0
-#: [attractors] States in the section of a motion that is not periodic, and in the longer sections that are compared
-#: where these differ. They are taken after as many further periods.
+#: [attractors] Number of states in the section of a motion that is not periodic, and in the longer sections that are
+#: compared if these differ. The motion first runs for as many further periods.
 _STATES_OF_SECTION = (400, 1600, 6400)
-#: Tolerance for the section of an orbit that Newton's method has found.
+#: Setting for the section of an orbit found by Newton's method.
 _DOP853_SETTING = dop853_setting(1e-11)
 
 
@@ -45,7 +45,7 @@ _DOP853_SETTING = dop853_setting(1e-11)
 class Candidate:
     """A result that may be the same steady state as another, with its section (P, 2, N).
 
-    The section has the n strobes of a periodic orbit, or a record of strobes of another motion. `longer` holds longer
+    The section has the n strobes of a periodic orbit, or a record of strobes of any other motion. `longer` has longer
     records of a motion that is not periodic, by their number of states.
     """
 
@@ -58,9 +58,9 @@ class Candidate:
     def tolerance(self) -> float:
         """Error of the section's states, relative to the largest displacement or w.
 
-        It is the largest stated error of the three forces: the states are those of all beads, and the output force
-        depends on the last one alone. Without a stated error, None, it is 0: such a result is merged with an equal one
-        only. Periodic results all state an error; others are compared by their sections.
+        It is the largest stated error of the three forces, because the states are those of all beads, and the output
+        force depends on the last bead only. Without a stated error it is 0: such a result is merged only with an equal
+        one. All periodic results have stated errors; others are compared by their sections.
         """
         if self.orbit is not None:
             return _ORBIT_DIFFERENCE / max(_LEAST_CONTRACTION, 1.0 - min(1.0, float(np.abs(self.orbit.multipliers[0]))))
@@ -68,7 +68,7 @@ class Candidate:
         return 0.0 if errors is None else min(_LARGEST_DIFFERENCE, float(np.max(errors)))
 
     def section_of(self, states: int) -> np.ndarray:
-        """The section with so many states of a motion that is not periodic; the shortest is `section`."""
+        """The section with `states` states of a motion that is not periodic; the shortest is `section`."""
         if states == _STATES_OF_SECTION[0]:
             return self.section
         if states not in self.longer:
@@ -82,14 +82,14 @@ class Candidate:
 
 
 def with_section(result: SteadyState) -> Candidate:
-    """A result with the section of its motion."""
+    """Add the section of its motion to a result."""
     period = result.regime.period
     return Candidate(result, _strobes(result.scene, result.state, period, _setting(result)) if period
                  else _section(result, _STATES_OF_SECTION[0]))
 
 
 def _setting(result: SteadyState) -> MethodSetting:
-    """The setting that takes the section of a result."""
+    """The setting with which the section of a result is computed."""
     return following_setting(result.scene.cuts_tension)
 
 
@@ -113,10 +113,10 @@ def _strobes(scene: Scene, state: State, periods: int, setting: MethodSetting) -
 
 
 def merged(results: list[Candidate]) -> list[list[Candidate]]:
-    """Results grouped by attractor; the first result of a group represents the group.
+    """Group results by attractor; the first result of a group represents the group.
 
     Each is compared with the first of every group, so the order of the results may matter: rest, up, down, random,
-    then those that were run on.
+    then those that were continued.
     """
     groups: list[list[Candidate]] = []
     for candidate in results:
@@ -137,7 +137,7 @@ def _join(groups: list[list[Candidate]], new: list[Candidate]) -> None:
 
 
 def _polished(candidate: Candidate) -> Candidate:
-    """The result on its converged orbit, if Newton's method ends on the orbit where it began."""
+    """The result on its converged orbit, if Newton's method ends on the orbit at which it started."""
     period = candidate.result.regime.period
     if period is None or candidate.orbit is not None:
         return candidate
@@ -145,11 +145,11 @@ def _polished(candidate: Candidate) -> Candidate:
         orbit = periodic_orbit(candidate.result.scene, period, candidate.result.state)
         section = _strobes(orbit.scene, orbit.state, period, _DOP853_SETTING)
         shortest = least_period_of(orbit)
-        if shortest < period:  # in the batch a slow approach with alternating sign looked like twice the period
+        if shortest < period:  # a slow, alternating approach looked like twice the period in the batch
             orbit = periodic_orbit(candidate.result.scene, shortest, orbit.state)
     except (BadInput, ComputationError):  # a scene that cuts tension has no converged orbits
         return candidate
-    # states are known less well than forces; a motion this near to a stable orbit has settled on it
+    # states are known less accurately than forces; a motion this near to a stable orbit has settled on it
     most = _LARGEST_DIFFERENCE if orbit.stable else _UNSTABLE_FACTOR * candidate.tolerance + _UNSTABLE_DISTANCE
     if _distance(section, candidate.section) > most:
         return candidate
@@ -179,23 +179,23 @@ def _scale(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def _distance(a: np.ndarray, b: np.ndarray) -> float:
-    """Largest relative difference of two orbits of n strobes (n, 2, N) under the best shift by whole periods."""
+    """Largest relative difference between two orbits of n strobes (n, 2, N), with the best shift by whole periods."""
     scale = _scale(a, b)
     return min(float(np.abs((a - np.roll(b, shift, axis=0)) / scale).max()) for shift in range(len(a)))
 
 
 def _to_nearest(a: np.ndarray, b: np.ndarray, scale: np.ndarray) -> float:
-    """Median relative distance of the states of a section (P, 2, N) to the nearest of another; `scale` (1, 2, 1)."""
+    """Median relative distance from the states of a section (P, 2, N) to the nearest of another; `scale` (1, 2, 1)."""
     return _to_neighbour(a, b, scale, 1)
 
 
 def _own(section: np.ndarray, scale: np.ndarray) -> float:
-    """Median relative distance of the states of a section to the nearest other one."""
+    """Median relative distance from the states of a section to the nearest other one."""
     return _to_neighbour(section, section, scale, 2)  # the first is the state itself
 
 
 def _to_neighbour(a: np.ndarray, b: np.ndarray, scale: np.ndarray, which: int) -> float:
-    """Median relative distance of the states of a section to their `which`-th nearest of another."""
+    """Median relative distance from the states of a section to their `which`-th nearest of another."""
     from scipy.spatial import KDTree
 
     states, others = ((section / scale).reshape(len(section), -1) for section in (a, b))

@@ -1,4 +1,5 @@
-"""Bifurcation curves over two knobs: folds, period doublings, Neimark–Sacker points, from a point or parameter map."""
+"""Bifurcation curves over two knobs (folds, period doublings, Neimark–Sacker points), from a point or a parameter map.
+"""
 
 from .continuation import CURVE_ENDS, follow_curve, points_of_curve
 from .in_map import BifurcationCurve, bifurcation_curves

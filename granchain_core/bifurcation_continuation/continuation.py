@@ -1,8 +1,8 @@
 """Bifurcation curves in the plane of two knobs: loci of folds, period doublings and Neimark–Sacker points.
 
 The curves bound regions of stability only where no other multiplier is outside the unit circle. Each point is found at
-a fixed second knob y, on the orbit's branch over the first knob x (point.py). From one y to the next the curve is
-extrapolated, with steps that are halved where that fails.
+a fixed value of the second knob y, on the orbit's branch over the first knob x (point.py). From one y to the next, the
+curve is extrapolated, and a step that fails is halved.
 
 Source: Kuznetsov 2004, chapter 10.
 """
@@ -23,14 +23,14 @@ from .point import BifurcationPoint, KnobBranch, bifurcation_point, nearest_poin
 
 #: Smallest fraction of the way to the next y that is tried as one step.
 _LEAST_FRACTION = 1.0 / 32.0
-# Both limits are chosen, not measured: a step beyond them is refused and halved, down to `_LEAST_FRACTION`. So smaller
-# limits cost time, and with larger ones a point of a neighbouring curve may be taken for one of this curve.
+# Both limits are chosen, not measured: a step beyond them is rejected and halved, down to `_LEAST_FRACTION`. So smaller
+# limits cost time, and with larger ones a point of a neighbouring curve may be mistaken for one of this curve.
 #: Largest change of the critical multiplier's angle in one step [rad].
 _LARGEST_TURN = 0.15
 #: Largest relative change of the first knob in one step.
 _LARGEST_JUMP = 0.25
 
-#: Why a curve ends: the last value asked for, and the three ways in which it is lost, in words.
+#: Why a curve ends: it has reached the last requested value, or is lost in one of three ways.
 REACHED, BRANCH_LOST, MULTIPLIER_LOST, ANOTHER_CURVE = CURVE_ENDS = (
     "reached", "branch lost", "multiplier lost", "another curve")
 END_WORDS = {
@@ -44,11 +44,11 @@ END_WORDS = {
 def points_of_curve(scene: Scene, kind: str, state: State | np.ndarray, values: Iterable[float], period: int = 1,
                     x: str = "f", y: str = "A0", stop: Stop | None = None,
                     on_point: Callable[[BifurcationPoint], None] | None = None) -> list[BifurcationPoint]:
-    """The curve of `kind` through the point near the orbit `state` of `scene`, at the `values` of knob y.
+    """Continue the curve of `kind` through the point near the orbit `state` of `scene`, to the `values` of knob y.
 
-    The curve is followed to both sides of the scene's own y. It ends where the branch or the critical multiplier is
+    The curve is continued to both sides of the scene's own y. It ends where the branch or the critical multiplier is
     lost; values beyond its ends have no point. The points are in ascending y and include the point at the scene's own
-    y. Raises `BadInput`, `Cancelled`, and `ComputationError` where there is no such point at the scene's y.
+    y. Raises `BadInput`, `Cancelled`, and `ComputationError` if there is no such point at the scene's y.
     """
     return follow_curve(scene, kind, state, values, period, x, y, stop, on_point)[0]
 
@@ -57,7 +57,7 @@ def follow_curve(scene: Scene, kind: str, state: State | np.ndarray, values: Ite
                  x: str = "f", y: str = "A0", stop: Stop | None = None,
                  on_point: Callable[[BifurcationPoint], None] | None = None
                  ) -> tuple[list[BifurcationPoint], str, str]:
-    """`points_of_curve`, and the reasons of `CURVE_ENDS` why the curve ends at its least and at its largest y."""
+    """Like `points_of_curve`; also return why the curve ends at its least and at its largest y, from `CURVE_ENDS`."""
     first = bifurcation_point(scene, kind, state, period, x, y, stop)
     wanted = sorted({float(QUANTITIES[y].check(value)) for value in values} - {first.y})
     listed = [first]
@@ -83,7 +83,7 @@ def follow_curve(scene: Scene, kind: str, state: State | np.ndarray, values: Ite
 
 def _follow(scene: Scene, kind: str, points: list[BifurcationPoint], value: float, period: int, x: str, y: str,
             stop: Stop | None) -> BifurcationPoint | str:
-    """The curve's point at y = `value`, by smaller steps where one is too large; the reason where the curve ends."""
+    """The curve's point at y = `value`, by smaller steps if one is too large; the reason if the curve ends."""
     last_two, part = points[-2:], 1.0
     distance = abs(value - last_two[-1].y)
     while last_two[-1].y != value:
@@ -117,7 +117,7 @@ def _stepped(scene: Scene, kind: str, last_two: list[BifurcationPoint], end: flo
 def _inwards(branch: KnobBranch, state: np.ndarray) -> np.ndarray:
     """The direction (2N + 1,) of state and knob along which a branch passes its fold, from the fold's state (2N,).
 
-    It is the null vector of the map's derivative less one; the knob does not change along it.
+    It is the null vector of the map's derivative minus the identity; the knob does not change along it.
     """
     flow, _ = branch.map(np.append(state, 1.0))
     _, _, rows = np.linalg.svd(flow.derivative - np.eye(len(state)))
@@ -125,10 +125,11 @@ def _inwards(branch: KnobBranch, state: np.ndarray) -> np.ndarray:
 
 
 def _extrapolated(last_two: list[BifurcationPoint], y: float, x_knob: str, y_knob: str) -> tuple[float, np.ndarray]:
-    """Knob x and state at y: on the line through the last two points; from one alone by f ∝ A0^{1/4}, else unchanged.
+    """Knob x and state at y, on the line through the last two points, or from a single point.
 
-    (A0, f) → (s A0, s^{1/4} f) leaves the scaled orbit unchanged where D and k go along, and nearly where they do not.
-    The line is one in logarithms, but on the way to or from a knob that is 0.
+    A single point gives f ∝ A0^{1/4} if the knobs are f and A0: (A0, f) → (s A0, s^{1/4} f) leaves the scaled orbit
+    unchanged if D and k are scaled too, and almost unchanged if they are not. For other knobs, it gives its own x. The
+    line is in logarithms, except to or from a knob value of 0.
     """
     if len(last_two) == 1:
         power = {("f", "A0"): RATE_POWER, ("A0", "f"): 1.0 / RATE_POWER}.get((x_knob, y_knob), 0.0)
@@ -142,6 +143,6 @@ def _extrapolated(last_two: list[BifurcationPoint], y: float, x_knob: str, y_kno
 
 
 def _continues(before: BifurcationPoint, after: BifurcationPoint) -> bool:
-    """Whether the critical multiplier and the first knob continue smoothly: else the point is on another curve."""
+    """Whether the critical multiplier and the first knob continue smoothly; otherwise the point is on another curve."""
     turned = abs(abs(np.angle(after.multiplier)) - abs(np.angle(before.multiplier)))
     return bool(turned <= _LARGEST_TURN and abs(after.x / before.x - 1.0) <= _LARGEST_JUMP)

@@ -1,11 +1,11 @@
-"""Bifurcation curves in a map: found between neighbouring cells and continued through its rows.
+"""Bifurcation curves in a parameter map: found between neighbouring cells and continued through its rows.
 
-A pair of neighbouring cells determines what is searched between them: periods n and 2n a period doubling, a periodic
-and a quasi-periodic cell a Neimark–Sacker point. Beside a chaotic cell all three kinds are tried in turn, since a
-cascade or a subcritical bifurcation may lie within one cell; beside a period that is another multiple of n a period
-doubling, then a fold; else the fold at which an orbit ends. An unsettled or failed cell says nothing. The orbit of the
-periodic cell is continued towards its neighbour; the search for the point starts where a multiplier is nearest to its
-critical value.
+The regimes of two neighbouring cells determine which bifurcation is sought between them. Between periods n and 2n it is
+a period doubling; between a periodic and a quasi-periodic cell, a Neimark–Sacker point. Next to a chaotic cell, all
+three kinds are tried in turn, since a cascade or a subcritical bifurcation may lie within one cell. Next to another
+multiple of n, it is a period doubling, then a fold; in all other cases, the fold at which an orbit ends. An unsettled
+or failed cell gives no information. The orbit of the periodic cell is continued towards its neighbour; the search for
+the point starts where a multiplier is nearest to its critical value.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ from ..scene.quantities import QUANTITIES
 from .continuation import END_WORDS, REACHED, follow_curve
 from .point import BifurcationPoint, bifurcation_point
 
-#: Steps in which an orbit is carried from its cell to the neighbour.
+#: Number of steps in which an orbit is continued from its cell to the neighbour.
 _STEPS = 6
-#: A point this many cells outside the pair of cells between which it was sought belongs to another curve.
+#: A point more than this many cells outside the pair between which it was sought is on another curve.
 _CELLS_OUTSIDE = 1.0
 #: Curves closer than this many cells are the same.
 _CELLS_APART = 0.5
@@ -41,12 +41,12 @@ class BifurcationCurve:
     kind : str
         "fold", "period_doubling" or "neimark_sacker".
     period : int
-        Period of the orbits on it in drive periods; those of twice the period begin at a period doubling.
+        Period, in drive periods, of the orbits on it; at a period doubling, orbits of twice this period begin.
     points : list of BifurcationPoint
-        In ascending y: `x` and `y`, the knobs in SI, `multiplier`, the critical one, and `state`, the orbit's scaled
-        displacements and w at phase 0.
+        In ascending y. `x` and `y` are the knobs in SI, `multiplier` is the critical one, and `state` the orbit's
+        scaled displacements and w at phase 0.
     ended_low, ended_high : str
-        Why the curve ends at its least and at its largest y, one of `CURVE_ENDS`: "reached", the last value asked for;
+        Why the curve ends at its least and at its largest y, one of `CURVE_ENDS`: "reached", the last requested value;
         "branch lost", as at a turning point in y; "multiplier lost"; "another curve", a jump; "" if not known.
 
     Examples
@@ -78,7 +78,8 @@ class BifurcationCurve:
 
 @dataclass(frozen=True)
 class _Pair:
-    """Two neighbouring cells of one row: the periodic one, the other, and the kinds to try between them, in order."""
+    """Two neighbouring cells of one row: the periodic one, the other one, and the kinds to try between them, in order.
+    """
 
     inside: int
     outside: int
@@ -89,10 +90,10 @@ class _Pair:
 def bifurcation_curves(parameter_map: ParameterMap, rows: Iterable[int] | None = None,
                        values: Iterable[float] | None = None, stop: Stop | None = None,
                        on_curve: Callable[[BifurcationCurve], None] | None = None) -> list[BifurcationCurve]:
-    """The bifurcation curves in a parameter map: folds, period doublings and Neimark–Sacker points over its two knobs.
+    """Find bifurcation curves in a parameter map: folds, period doublings, Neimark–Sacker points over its two knobs.
 
-    Between neighbouring cells of a row that are not alike the bifurcation is found, and then continued in y. Curves
-    that cannot be followed are left out: two neighbours from rest may be on two attractors with no bifurcation between
+    Between neighbouring cells of a row that differ, the bifurcation is found and then continued in y. Curves that
+    cannot be continued are left out: two neighbours from rest may be on two attractors with no bifurcation between
     them (docs/parameter-map.md, "Bifurcation curves").
 
     Parameters
@@ -100,9 +101,9 @@ def bifurcation_curves(parameter_map: ParameterMap, rows: Iterable[int] | None =
     parameter_map : ParameterMap
         The parameter map.
     rows : iterable of int, optional
-        The rows in which neighbours are compared, from 0; the middle one if not given.
+        The rows in which neighbours are compared, counted from 0; by default the middle one.
     values : iterable of float, optional
-        The values of y at which the curves have points, in SI; those of the map's rows if not given.
+        The values of y at which the curves have points, in SI; by default those of the map's rows.
     stop : Stop, optional
         Ends the computation when another thread sets it.
     on_curve : callable, optional
@@ -111,7 +112,7 @@ def bifurcation_curves(parameter_map: ParameterMap, rows: Iterable[int] | None =
     Returns
     -------
     list of BifurcationCurve
-        In the order in which they were found.
+        The curves, in the order in which they were found.
 
     Raises
     ------
@@ -152,7 +153,7 @@ def bifurcation_curves(parameter_map: ParameterMap, rows: Iterable[int] | None =
 
 
 def _pairs(parameter_map: ParameterMap, row: int) -> Iterator[_Pair]:
-    """Neighbouring cells of a row, the first periodic, the second not or with another period."""
+    """Yield pairs of neighbouring cells of a row, the first periodic, the second not or with another period."""
     width = parameter_map.grid.shape[1]
     regimes, periods = parameter_map.cells["regime"], parameter_map.cells["period"]
     names = np.array(CELL_REGIMES)[regimes]
@@ -168,7 +169,7 @@ def _pairs(parameter_map: ParameterMap, row: int) -> Iterator[_Pair]:
 
 
 def _kinds(period: int, neighbour_period: int, regime: str) -> tuple[str, ...]:
-    """Kinds to try between an orbit of `period` and a neighbour of this regime and period, 0 where it has none."""
+    """Kinds to try between an orbit of `period` and a neighbour with this regime and period; 0 means no period."""
     if regime in ("unsettled", "failed") or period == 2 * neighbour_period:
         return ()
     if regime == "quasi-periodic":
@@ -181,7 +182,7 @@ def _kinds(period: int, neighbour_period: int, regime: str) -> tuple[str, ...]:
 
 
 def _between(parameter_map: ParameterMap, pair: _Pair, stop: Stop | None) -> tuple[str, BifurcationPoint | None]:
-    """The first of the pair's kinds that is found between its cells, and the point; None where there is none."""
+    """The first of the pair's kinds that is found between its cells, and the point; None if none is found."""
     point = None
     for kind in pair.kinds:
         point = _point_between(parameter_map, pair, kind, stop)
@@ -191,7 +192,7 @@ def _between(parameter_map: ParameterMap, pair: _Pair, stop: Stop | None) -> tup
 
 
 def _point_between(parameter_map: ParameterMap, pair: _Pair, kind: str, stop: Stop | None) -> BifurcationPoint | None:
-    """The point of this kind, sought from the orbit nearest to its condition; None where there is none."""
+    """The point of this kind, sought from the orbit nearest to its condition; None if none is found."""
     grid = parameter_map.grid
     columns = [number % grid.shape[1] for number in (pair.inside, pair.outside)]
     a, b = (grid.x.values[column] for column in columns)
@@ -226,7 +227,7 @@ def _away(orbit: Orbit, kind: str) -> float:
 
 def _lies_on(parameter_map: ParameterMap, point: BifurcationPoint, kind: str, period: int,
              curve: BifurcationCurve) -> bool:
-    """Whether a point is on a curve found before; beyond the curve's ends it is not."""
+    """Whether a point is on a curve found earlier; False beyond the curve's ends."""
     rows = [known.y for known in curve.points]
     if (curve.kind, curve.period) != (kind, period) or not rows[0] <= point.y <= rows[-1]:
         return False

@@ -4,11 +4,11 @@
     period_doubling  μ = −1
     neimark_sacker   |μ| = 1, μ not real
 
-The orbit's branch over the knob x is a curve in (state, x) with arclength s, on which Newton's method solves
-map(state, x) = state bordered by the arclength condition, so that folds need no special treatment; the root of the
+The orbit's branch over the knob x is a curve in (state, x) with arclength s. On it, Newton's method solves
+map(state, x) = state bordered by the arclength condition, so that folds need no special treatment. The root of the
 condition along s is found by secants.
 
-docs/parameter-map.md says why Newton's method is that of a single orbit (orbits/damped_newton.py), not that of
+docs/parameter-map.md explains why Newton's method is that of a single orbit (orbits/damped_newton.py), not that of
 orbits/branch.
 
 Source: Kuznetsov 2004, chapter 10.
@@ -30,7 +30,7 @@ from ..parameter_maps.grid import KNOBS
 from ..scene import Scene
 from ..scene.state import State
 
-#: Distance from its condition at which the critical multiplier meets it: the error of a multiplier.
+#: Distance from its condition within which the critical multiplier meets it: the error of a multiplier.
 _CONDITION_ERROR = MULTIPLIER_ERROR
 #: Relative change of a knob for its difference quotient; the map is smooth to 1e-12.
 _DIFFERENCE = 1e-6
@@ -38,9 +38,9 @@ _DIFFERENCE = 1e-6
 _FIRST_ARC = 1e-3
 #: Longest secant step, in units of the last step.
 _LONGEST_SECANT = 6.0
-#: Secant steps at most.
+#: Maximum number of secant steps.
 _MOST_SECANTS = 14
-#: Halvings of a step at most, where the branch is lost.
+#: Maximum number of sizes tried for a step, each half of the previous one, where the branch is lost.
 _MOST_HALVINGS = 3
 #: Angle from +1 or −1 below which a critical pair is not distinguished from a real multiplier [rad].
 _REAL_ANGLE = 1e-7
@@ -60,7 +60,7 @@ class BifurcationPoint:
 class KnobBranch:
     """Orbits of `periods` drive periods over the knob x; a point is X = (scaled state, x / unit), (2N + 1,).
 
-    `near` is the critical multiplier of the point before, where there is one.
+    `near` is the critical multiplier of the previous point, if there is one.
     """
 
     scene: Scene
@@ -71,7 +71,7 @@ class KnobBranch:
     near: complex | None = None
 
     def at(self, ratio: float) -> Scene:
-        """The scene at a point's last entry, x / unit."""
+        """The scene at `ratio`, a point's last entry x / unit."""
         return self.scene.evolve(**{self.knob: float(ratio) * self.unit})
 
     def map(self, X: np.ndarray) -> tuple[Flow, float]:
@@ -83,15 +83,15 @@ class KnobBranch:
         return flow, stroboscopic_map.residual(flow.end, X[:-1])
 
     def slope(self, X: np.ndarray) -> np.ndarray:
-        """Derivative of the map's end by the knob, (2N,)."""
+        """Derivative (2N,) of the map's end with respect to x / unit."""
         ends = [StroboscopicMap(self.at(X[-1] * (1.0 + sign * _DIFFERENCE)), self.periods, self.stop).end(X[:-1])
                 for sign in (1.0, -1.0)]
         return np.asarray((ends[0] - ends[1]) / (2.0 * _DIFFERENCE * X[-1]))
 
     def solve(self, guess: np.ndarray, direction: np.ndarray, slope: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The orbit on the plane through `guess` across `direction`, with the map's derivative there.
+        """Find the orbit in the plane through `guess` perpendicular to `direction`, and the map's derivative there.
 
-        `slope` may be that of a point near by: it only steers the iterations.
+        `slope` may be that of a nearby point: it only steers the iterations.
         """
         def step(X: np.ndarray, flow: Flow) -> np.ndarray:
             off = np.append(flow.end - X[:-1], direction @ (X - guess))
@@ -115,10 +115,11 @@ def _bordered(derivative: np.ndarray, slope: np.ndarray, border: np.ndarray) -> 
 
 
 def critical(derivative: np.ndarray, kind: str, near: complex | None = None) -> tuple[float, complex]:
-    """A smooth function that is 0 where `kind` is met, and the multiplier nearest to meeting it.
+    """A smooth function that is 0 where the condition of `kind` is met, and the multiplier nearest to meeting it.
 
-    Π(μ − 1) for a fold and Π(μ + 1) for a period doubling, which stay smooth where pairs become real; |μ| − 1 of
-    the critical pair for Neimark–Sacker, which is the one nearest to `near`, else to the unit circle.
+    The function is Π(μ − 1) for a fold and Π(μ + 1) for a period doubling, which remain smooth where pairs become real.
+    For a Neimark–Sacker point it is |μ| − 1 of the critical pair: the one nearest to `near`, if given, otherwise to the
+    unit circle.
     """
     multipliers = np.linalg.eigvals(derivative)
     if kind != "neimark_sacker":
@@ -134,17 +135,17 @@ def critical(derivative: np.ndarray, kind: str, near: complex | None = None) -> 
 
 
 def _met(multiplier: complex, kind: str) -> bool:
-    """Whether a critical multiplier is where it has to be."""
+    """Whether a critical multiplier meets the condition of `kind`."""
     away = abs(multiplier) - 1.0 if kind == "neimark_sacker" else multiplier - (1.0 if kind == "fold" else -1.0)
     return abs(away) <= _CONDITION_ERROR
 
 
 def bifurcation_point(scene: Scene, kind: str, state: State | np.ndarray, period: int = 1, x: str = "f", y: str = "A0",
                       stop: Stop | None = None) -> BifurcationPoint:
-    """The point of `kind` on the branch over knob x nearest to an orbit through `state`.
+    """Find the point of `kind` on the branch over knob x that is nearest to the orbit through `state`.
 
-    `state` is at phase 0, in SI or scaled (2N,) of displacements, then w. Raises `BadInput`, and `ComputationError`
-    where there is none near.
+    `state` is at phase 0, in SI or as a scaled array (2N,) of displacements, then w. Raises `BadInput`, and
+    `ComputationError` if there is no such point near.
     """
     _check(scene, kind, x, y)
     branch = KnobBranch(scene, x, value_of(scene, x), period, stop)
@@ -156,7 +157,7 @@ def bifurcation_point(scene: Scene, kind: str, state: State | np.ndarray, period
 
 
 def value_of(scene: Scene, knob: str) -> float:
-    """The number that a knob stands at; of the wall, which may be named, its stiffness factor."""
+    """The numerical value of a knob; for the wall, which may be given by name, its stiffness factor."""
     return scene.wall_factor if knob == "wall" else float(scene.knobs[knob])
 
 
@@ -167,13 +168,13 @@ def _check(scene: Scene, kind: str, x: str, y: str) -> None:
         if knob not in KNOBS:
             raise unknown_name("knob of a bifurcation curve", knob, KNOBS)
         if not value_of(scene, knob) > 0.0:
-            raise BadInput(f"A bifurcation curve over {knob} begins at a value above 0; give the scene one.")
+            raise BadInput(f"A bifurcation curve over {knob} must begin at a value above 0; set {knob} in the scene.")
     if x == y:
-        raise BadInput(f"Both knobs are {x}; give two distinct ones.")
+        raise BadInput(f"Both knobs are {x}; give two different ones.")
 
 
 def nearest_point(branch: KnobBranch, kind: str, guess: np.ndarray, along: np.ndarray, y: str) -> BifurcationPoint:
-    """The point of the branch at which the condition is met, by secants from a guess (2N + 1,) in direction `along`."""
+    """Find the branch's point at which the condition is met, by secants from a guess (2N + 1,) along `along`."""
     try:
         slope = branch.slope(guess)
         before, derivative = branch.solve(guess, along, slope)
@@ -195,7 +196,7 @@ def nearest_point(branch: KnobBranch, kind: str, guess: np.ndarray, along: np.nd
 
 def _advanced(branch: KnobBranch, kind: str, before: np.ndarray, step: np.ndarray,
               slope: np.ndarray) -> tuple[np.ndarray, float, complex]:
-    """The point of the branch one step further, with its condition; a step that fails is halved."""
+    """The branch's point one step further, its condition and multiplier; a step that fails is halved."""
     shorter = step
     for _ in range(_MOST_HALVINGS):
         try:

@@ -1,4 +1,4 @@
-"""Fits of parameters to measured data: misfit, search, profile likelihood, verdict; a measured series over a run."""
+"""Fits of parameters to measured data: misfit, search, profile likelihood and verdict; overlays of series on runs."""
 
 from .beginning import Beginning, settled_beginning
 from .curve_target import CurveTarget

@@ -1,8 +1,8 @@
 """The start of a record that does not begin at rest: a state of the settled motion, at the drive phase of the record.
 
 Equation   v(t) = A0 ω cos(ωt + φ) by least squares over the record: φ is the drive phase at its first sample, and
-           A0 sin φ the displacement of the driver there
-Note       The velocity does not tell in which of its n drive periods a motion of period n begins; the measured forces
+           A0 sin φ is the displacement of the driver there
+Note       The velocity does not show in which of its n drive periods a motion of period n begins; the measured forces
            do, by the least sum of squares.
 """
 
@@ -26,20 +26,19 @@ from ..scene.state import State
 from ..steady.settling.settle import settle
 from .trains import Train
 
-#: Samples of the settled motion in a drive period, between which the state is interpolated.
+#: Samples per drive period of the settled motion, between which the state is interpolated.
 _SAMPLES = 2048
-#: Part of a measured velocity, in root mean square, that may be no sine of the scene's frequency.
+#: Largest fraction of the measured signal, in root mean square, that may deviate from a sine of the scene's frequency.
 _NO_SINE = 0.1
-#: Relative difference between the measured amplitude of the drive and the scene's above which a sentence states it.
+#: Relative difference between the record's drive amplitude and the scene's above which a sentence reports it.
 _OTHER_AMPLITUDE = 0.02
-#: First sample over the largest one from which a record counts as begun in motion.
+#: Ratio of the first sample to the largest one above which a record counts as beginning in motion.
 _IN_MOTION = 0.05
 
 
 @dataclass(frozen=True, eq=False)
 class Beginning:
-    """The state of the chain and the displacement of the driver [m] at a record's first sample, and how they are known.
-    """
+    """The state of the chain and the driver's displacement [m] at a record's first sample; `words` say their origin."""
 
     state: State
     displacement: float
@@ -48,7 +47,7 @@ class Beginning:
 
 def settled_beginning(scene: Scene, series: Series, sensors: Sensors | None = None,
                       stop: Stop | None = None) -> Beginning:
-    """The settled motion of a scene at the phase at which a record of its drive begins.
+    """Compute the settled motion of a scene at the drive phase at which a record begins.
 
     Parameters
     ----------
@@ -57,14 +56,14 @@ def settled_beginning(scene: Scene, series: Series, sensors: Sensors | None = No
     series : Series
         A series with the velocity or the displacement of the driver.
     sensors : Sensors, optional
-        The sensors of the measured forces; perfect ones if not given.
+        The sensors of the measured forces; by default perfect ones.
     stop : Stop, optional
         Ends the computation when another thread sets it.
 
     Raises
     ------
     BadInput
-        No drive, neither velocity nor displacement, a drive that is no sine of the scene's frequency, or a settled
+        No drive, neither velocity nor displacement, a drive that is not a sine of the scene's frequency, or a settled
         motion that is not periodic.
     Cancelled
         `stop` was set.
@@ -73,8 +72,8 @@ def settled_beginning(scene: Scene, series: Series, sensors: Sensors | None = No
     phase, amplitude = _drive_phase(scene, series)
     settled = settle(scene, samples=_SAMPLES, stop=stop)
     if settled.regime.name != "periodic":
-        raise BadInput(f"The settled motion of {scene.name} is {settled.regime.name}: it has no state that belongs to "
-                       "a drive phase. Start at rest, or in the state of a recorded run.")
+        raise BadInput(f"The settled motion of {scene.name} is {settled.regime.name}: a drive phase does not determine "
+                       "its state. Start at rest, or in the state of a recorded run.")
     run, periods = settled.run, settled.regime.period or 1
     begins = [(phase + turn) / scene.f for turn in range(periods)]
     best = int(np.argmin(_squares(series, run, begins, sensors or Sensors()))) if periods > 1 else 0
@@ -84,10 +83,10 @@ def settled_beginning(scene: Scene, series: Series, sensors: Sensors | None = No
     words = f"the settled motion at drive phase {phase:.4f}"
     if periods > 1:
         known = any(getattr(series, name) is not None for name in FORCES)
-        words += f" of drive period {best + 1} of {periods}{'' if known else ', of which no force tells the right one'}"
+        words += f" of drive period {best + 1} of {periods}{'' if known else ', chosen without a measured force'}"
     if abs(amplitude / scene.drive_amplitude - 1.0) > _OTHER_AMPLITUDE:
         words += (f"; the record's drive has the amplitude {amplitude:.4g} m and the scene's has "
-                  f"{scene.drive_amplitude:.4g} m, so this motion is another one")
+                  f"{scene.drive_amplitude:.4g} m, so this is a different motion")
     return Beginning(state, scene.drive_amplitude * math.sin(2.0 * math.pi * phase), words)
 
 
@@ -102,8 +101,8 @@ def _drive_phase(scene: Scene, series: Series) -> tuple[float, float]:
     solved = np.linalg.lstsq(waves, values, rcond=None)[0]
     left = float(np.std(values - waves @ solved)) / (float(np.std(values)) or 1.0)
     if not left <= _NO_SINE:
-        raise BadInput(f"The {name} is no sine of f = {scene.f:g} Hz: {100.0 * left:.3g} % of it is something else, so "
-                       "its phase is not known; start at rest, or set the scene's f to that of the record.")
+        raise BadInput(f"The {name} is not a sine of f = {scene.f:g} Hz: {100.0 * left:.3g} % of it is something else, "
+                       "so its phase is not known; start at rest, or set the scene's f to that of the record.")
     cosine, sine = float(solved[0]), float(solved[1])
     size = math.hypot(cosine, sine)
     angle = math.atan2(-sine, cosine) if name == "velocity" else math.atan2(cosine, sine)
@@ -111,7 +110,7 @@ def _drive_phase(scene: Scene, series: Series) -> tuple[float, float]:
 
 
 def _squares(series: Series, run: Run, begins: list[float], sensors: Sensors) -> list[float]:
-    """For each beginning [s] on the orbit, the sum of squares by which its forces differ from the measured ones."""
+    """For each beginning [s] on the orbit, the sum of squared differences between its forces and the measured ones."""
     time, squares = series.time - series.time[0], [0.0] * len(begins)
     width = float(np.median(np.diff(time)))
     for name in FORCES:
@@ -125,7 +124,7 @@ def _squares(series: Series, run: Run, begins: list[float], sensors: Sensors) ->
 
 
 def in_motion(series: Series, rest_force: float) -> str:
-    """A sentence if the first sample shows that the chain moves already; empty if it does not.
+    """A sentence if the first sample shows that the chain is already moving; empty if it does not.
 
     `rest_force` is the force of the contacts at rest, the scene's F0 [N].
     """

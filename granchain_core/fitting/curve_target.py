@@ -16,9 +16,9 @@ from .evaluation import ASSUMED, FAILED, Compared, Evaluation, refuse_stopped, r
 
 #: [fit] Relative standard deviation of the largest force of a motion that is not periodic.
 SCATTER = 0.2
-#: [fit] Forces below this fraction of the largest have the absolute error of a force of this fraction.
+#: [fit] Forces below this fraction of the largest have the same absolute error as a force of this fraction.
 _SMALLEST = 1e-3
-#: [fit] Least relative scatter of repeats that is believed. Closer agreement may be chance.
+#: [fit] Least relative scatter of repeats that is accepted. Closer agreement may be due to chance.
 _LEAST_SCATTER = 1e-4
 
 
@@ -26,7 +26,7 @@ _LEAST_SCATTER = 1e-4
 class CurveTarget(Compared):
     """A measured curve: largest output force over the frequency, `elastic` for its elastic part.
 
-    `error` is a standard deviation as a fraction of each force, used where the measurement has none of its own.
+    `error` is a standard deviation as a fraction of each force, used if the measurement has no errors of its own.
     """
 
     measured: Measured
@@ -43,13 +43,13 @@ class CurveTarget(Compared):
 
     @property
     def sigma(self) -> np.ndarray:
-        """Standard deviation of every force [N]: stated, given, from repeats (pooled, relative), or assumed."""
+        """Standard deviation of every force [N]: measured, given, from repeats (pooled, relative), or assumed."""
         known = self._known_sigma
         return np.full(len(self.measured.force), ASSUMED * self.measured.force.max()) if known is None else known
 
     @property
     def sigma_known(self) -> bool:
-        """Whether the standard deviations are more than assumed."""
+        """Whether the standard deviations are known, not only assumed."""
         return self._known_sigma is not None
 
     @property
@@ -86,7 +86,7 @@ class CurveTarget(Compared):
         return f"at {self.frequencies[datum]:g} Hz"
 
     def evaluate(self, scene: Scene, amplitude: Amplitude | None, stop: Stop | None) -> Evaluation:
-        """Residuals (F,) at the measured frequencies, in standard deviations; the model's forces (F,) [N] from a curve.
+        """Compute the curve's residuals (F,) at the measured frequencies, in standard deviations, and forces (F,) [N].
 
         Raises `Cancelled`.
         """

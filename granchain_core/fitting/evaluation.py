@@ -1,8 +1,8 @@
 """Common parts of all targets of a fit: residuals with the model's values, and the origin of errors.
 
 A residual is a difference over its standard deviation. A motion that is not periodic has no steady maximum and no
-train that comes back: for it the model predicts a distribution only, so the variance is enlarged by the model's own,
-and 2 ln of the enlargement is added to χ², as in a normal likelihood; else chaos, which predicts nothing, would win.
+repeating force train: the model only predicts a distribution, so the variance is enlarged by that of the model, and
+2 ln of the enlargement is added to χ², as in a normal likelihood. Otherwise chaos, which predicts nothing, would win.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from ..steady.curve.curve import Curve
 
 #: [fit] Residual of a point whose computation failed, in standard deviations.
 FAILED = 20.0
-#: [fit] Standard deviation where neither errors nor repeats are known, as a fraction of the largest force. The misfit
-#: is then scaled so that it has the size of its degrees of freedom.
+#: [fit] Standard deviation if neither errors nor repeats are known, as a fraction of the largest force. The misfit is
+#: then scaled so that it equals its degrees of freedom.
 ASSUMED = 0.05
 
 
@@ -29,8 +29,8 @@ class Evaluation:
 
     `log_variance` is Σ 2 ln(σ'/σ) over the data whose standard deviation σ' is enlarged: on a curve by the stated
     numerical error of a periodic motion and by a fifth of the force of any other, in a series by the standard deviation
-    of the waveform of a motion that is not periodic. It belongs to the likelihood, and not to χ². `regimes` are
-    "periodic3", "chaotic" and so on. `model` is the model's value for each datum, for pictures: forces [N], frequencies
+    of the waveform of a motion that is not periodic. It is part of the likelihood, but not of χ². `regimes` are
+    "periodic3", "chaotic" and so on. `model` is the model's value for each datum, for figures: forces [N], frequencies
     [Hz].
     """
 
@@ -42,7 +42,7 @@ class Evaluation:
 
 
 class Compared:
-    """Common part of most targets: smooth residuals; errors that are given, or estimated from the fit."""
+    """Base of most targets: residuals are smooth, and errors are given or estimated from the fit."""
 
     @property
     def smooth(self) -> bool:
@@ -51,12 +51,12 @@ class Compared:
 
     @property
     def error_freedom(self) -> int | None:
-        """Degrees of freedom with which repeats tell the standard deviation; None where they do not."""
+        """Degrees of freedom of a standard deviation estimated from repeats; None if it is not."""
         return None
 
 
 def regime_and_period(regime: Regime) -> str:
-    """A regime as the JSON and the files of a fit write it: "periodic3", "chaotic"."""
+    """A regime as spelled in the JSON and files of a fit: "periodic3", "chaotic"."""
     return f"{regime.name}{regime.period or ''}"
 
 

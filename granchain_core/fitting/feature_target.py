@@ -21,8 +21,8 @@ from .evaluation import Compared, Evaluation, refuse_stopped
 class FeatureTarget(Compared):
     """Frequencies of peaks and valleys, each with the same standard deviation [Hz], sought on a grid [Hz].
 
-    A model's extremum counts where it stands out (`steady/curve/resonance.py`) and it and both its neighbours on the
-    grid are periodic; a parabola through the three gives its frequency.
+    An extremum of the model counts if it stands out (`steady/curve/resonance.py`) and if the motions there and at both
+    neighbours on the grid are periodic; a parabola through the three points gives its frequency.
     """
 
     features: Sequence[Feature]
@@ -42,17 +42,18 @@ class FeatureTarget(Compared):
 
     @property
     def smooth(self) -> bool:
-        """Extrema come and go."""
+        """False, because extrema appear and disappear."""
         return False
 
     def where(self, datum: int) -> str:
-        """Which extremum a datum is, in words."""
+        """The frequency of a datum, in words."""
         return f"at {self.frequencies[datum]:g} Hz"
 
     def evaluate(self, scene: Scene, amplitude: Amplitude | None, stop: Stop | None) -> Evaluation:
-        """Residuals (F,): distances to the nearest extremum of each feature's kind, in standard deviations.
+        """Compute residuals (F,): distances to the nearest extremum of each feature's kind, in standard deviations.
 
-        The model's values (F,) are the frequencies of these extrema [Hz], NaN where there is none. Raises `Cancelled`.
+        The model's values (F,) are the frequencies of these extrema [Hz], NaN where there is no such extremum. Raises
+        `Cancelled`.
         """
         curve = resonance_curve(scene, self.grid, self.start, stop=stop, amplitude=amplitude)
         refuse_stopped(stop, len(curve.points) == len(self.grid))

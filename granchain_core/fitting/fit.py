@@ -18,9 +18,10 @@ from .result import Fit
 from .search import STEP, Problem, Target, descend, search
 from .verdict import probability_of, scale_degrees_of_freedom, verdict_of, verdict_sentence
 
-#: [fit] Most parameters. Every one has a profile, for which all others are searched again and again.
+#: [fit] Maximum number of parameters. Each one has a profile, for which all others are searched again and again.
 MOST_FREE = 30
-#: [fit] Most computations of the profiles. Each but the first begins at a better point that a profile found.
+#: [fit] Maximum number of times the profiles are computed. Each time but the first starts at a better point that a
+#: profile found.
 _MOST_PROFILE_ROUNDS = 4
 
 
@@ -32,14 +33,14 @@ def fit(scene: Scene, target: Target, free: Sequence[Free], initial_points: int 
     Parameters
     ----------
     scene : Scene
-        The chain; parameters that are not free stay as they are.
+        The chain; parameters that are not free keep their values.
     target : CurveTarget, SeriesTarget, RecordsTarget or FeatureTarget
-        What is compared.
+        The measurement, with the rule by which it is compared.
     free : sequence of Free
         Parameters with bounds and, if there are any, priors.
     initial_points : int
-        Number of points within the bounds at which the misfit is computed first; 0 means 32, 64 or 128 for up to 2,
-        3 or more parameters.
+        Number of points within the bounds at which the misfit is computed first; 0 means 32 for up to two parameters,
+        64 for three and 128 for more.
     intervals : bool
         Whether profile likelihoods and their 95 % intervals are computed.
     stop : Stop, optional
@@ -47,7 +48,7 @@ def fit(scene: Scene, target: Target, free: Sequence[Free], initial_points: int 
     progress : callable, optional
         Called with the number of sets of parameters evaluated.
     scheduler : distributed.Client, optional
-        Its workers evaluate the initial points and the derivatives, a set of parameters at a time.
+        Its workers evaluate the initial points and the derivatives, one set of parameters at a time.
     design : int, optional
         `initial_points` under its former name.
 
@@ -59,7 +60,7 @@ def fit(scene: Scene, target: Target, free: Sequence[Free], initial_points: int 
     Raises
     ------
     BadInput
-        No parameter, too many, one twice, or fewer data than parameters.
+        No parameter, too many, a repeated one, or fewer data than parameters.
     Cancelled
         `stop` was set.
 
@@ -93,7 +94,7 @@ def _check(scene: Scene, free: Sequence[Free]) -> None:
         raise BadInput(f"A fit has 1 to {MOST_FREE} different parameters, of k and kappa only one; not "
                        f"{', '.join(names) or 'none'}.")
     if "kappa" in names and any(parameter.at is not None for parameter in free):
-        raise BadInput("kappa = k/(K√A0) has no one value where each frequency has its own A0; fit k instead.")
+        raise BadInput("kappa = k/(K√A0) has no single value if each frequency has its own A0; fit k instead.")
 
 
 def _count_data(problem: Problem) -> int:
@@ -102,12 +103,13 @@ def _count_data(problem: Problem) -> int:
     data = (len(problem.evaluate(np.full(count, 0.5)).residuals)
             + sum(parameter.prior is not None for parameter in problem.free))
     if data < count:
-        raise BadInput(f"{data} data and priors do not determine {count} parameters; give priors or fewer of them.")
+        raise BadInput(f"{data} data and priors do not determine {count} parameters; give more priors or fewer "
+                       "parameters.")
     return data
 
 
 def _usual_initial_points(parameters: int) -> int:
-    """Number of initial points for so many parameters."""
+    """Default number of initial points for a number of parameters."""
     return 32 if parameters <= 2 else 64 if parameters == 3 else 128
 
 
@@ -115,7 +117,7 @@ def _profiles(problem: Problem, best: np.ndarray, degrees_of_freedom: int,
               intervals: bool) -> tuple[np.ndarray, tuple[Profile, ...], float]:
     """The best point, the profile of each parameter if `intervals` are wanted, and the unit of the misfit.
 
-    Where a profile finds a better point than `best`, the parameters are searched from there, and profiles begin again.
+    If a profile finds a better point than `best`, all parameters are searched from there, and the profiles start again.
     """
     target = problem.target
     for number in range(1, _MOST_PROFILE_ROUNDS + 1):
@@ -146,6 +148,6 @@ def _result(problem: Problem, best: np.ndarray, profiles: tuple[Profile, ...], d
 
 
 def _correlation(problem: Problem, best: np.ndarray) -> np.ndarray | None:
-    """The correlation of the estimates where slopes describe the misfit: inside the bounds, for smooth residuals."""
+    """The correlation of the estimates if slopes describe the misfit: inside the bounds, for smooth residuals."""
     inside = best.min() > STEP and best.max() < 1.0 - STEP
     return problem.correlation(best) if problem.target.smooth and inside else None

@@ -10,28 +10,29 @@ from scipy.stats import chi2, f
 
 from .search import Problem, descend
 
-#: [fit] Part of repetitions in which an interval holds the truth.
+#: [fit] Confidence level: the fraction of repetitions in which an interval contains the true value.
 LEVEL = 0.95
-#: [fit] Most steps towards each end of an interval.
+#: [fit] Maximum number of steps towards each end of an interval.
 _MOST_STEPS = 8
-#: [fit] Most evaluations of a descent on the way to an end of an interval.
+#: [fit] Maximum number of evaluations of a descent on the way to an end of an interval.
 _DESCENT_CALLS = 6
-#: [fit] Distance of √Δχ² from its limit at which the end of an interval is found, relative to the limit.
+#: [fit] Distance of √Δχ² from its limit at which the end of an interval counts as found, relative to the limit.
 _ROOT_TOLERANCE = 0.03
-#: [fit] A misfit lower than the least so far by this, in its unit, is another minimum.
+#: [fit] A misfit that is lower than the least so far by more than this, in its unit, is another minimum.
 _BETTER_BY = 0.3
-#: [fit] First distance from the best value at which an end is sought where χ² has no curvature, as a part of the range.
+#: [fit] First distance from the best value at which an end is sought if χ² has no curvature, as a fraction of the
+#: range.
 _FLAT_REACH = 0.25
-#: [fit] Distance of two values of a parameter below which they are the same, as a fraction of the range.
+#: [fit] Distance below which two values of a parameter are the same, as a fraction of the range.
 _SAME_VALUE = 1e-9
-#: [fit] By how much farther than the secant's root an end is sought while no value outside is known.
+#: [fit] Factor by which an end is sought beyond the secant's root while no value outside the interval is known.
 _OVERSHOOT = 1.2
-#: [fit] Least part of the bracket that a step of the secant leaves on either side.
+#: [fit] Least fraction of the bracket that a secant step leaves on either side.
 _LEAST_PART = 0.1
 
 
 class BetterMinimum(Exception):
-    """A profile found a point x with a smaller misfit than the best one; the search goes on from there."""
+    """A profile found a point x with a smaller misfit than the best one; the search continues from there."""
 
     def __init__(self, x: np.ndarray) -> None:
         super().__init__("a smaller misfit")
@@ -40,10 +41,10 @@ class BetterMinimum(Exception):
 
 @dataclass(frozen=True)
 class Profile:
-    """The profile of one parameter: values and least misfits above the minimum; the interval, and which ends are open.
+    """The profile of one parameter: values, rises of the least misfit; the interval, and which of its ends are open.
 
-    At an open end the misfit is not yet too large: the end is a bound, and the data do not limit the parameter there,
-    or it is the farthest value that was tried.
+    At an open end, the misfit has not reached its limit: the end is a bound, and the data do not limit the parameter
+    there, or it is the farthest value that was tried.
     """
 
     values: tuple[float, ...]
@@ -57,17 +58,17 @@ class Profile:
 def limit(scale: float = 1.0, degrees_of_freedom: int | None = None) -> float:
     """Rise of the misfit at the ends of an interval for one parameter.
 
-    Where the errors are known it is that of χ² with one degree of freedom. Where their variance is estimated, from
-    repeats or as `scale` from the fit, with so many `degrees_of_freedom`, the rise in its unit has the distribution F.
+    If the errors are known, the rise is that of χ² with one degree of freedom. If their variance is estimated with
+    `degrees_of_freedom`, from repeats or as `scale` from the fit, the rise in its unit has an F distribution.
     """
     return float(chi2.ppf(LEVEL, 1) if degrees_of_freedom is None else f.ppf(LEVEL, 1, degrees_of_freedom)) * scale
 
 
 def profile(problem: Problem, best: np.ndarray, j: int, scale: float, degrees_of_freedom: int | None,
             last: bool) -> Profile:
-    """The profile of parameter j; `scale` and `degrees_of_freedom` are those of `limit`.
+    """Compute the profile of parameter j; `scale` and `degrees_of_freedom` are those of `limit`.
 
-    Raises `BetterMinimum` where it finds a point that is better than `best`, unless it is the `last` try.
+    Raises `BetterMinimum` if it finds a point that is better than `best`, unless this is the `last` attempt.
     """
     top, lowest = math.sqrt(limit(scale, degrees_of_freedom)), -math.inf if last else -_BETTER_BY * scale
     ridge, reach = _ridge(problem, best, j, top)
@@ -83,7 +84,7 @@ def profile(problem: Problem, best: np.ndarray, j: int, scale: float, degrees_of
 def _ridge(problem: Problem, best: np.ndarray, j: int, top: float) -> tuple[np.ndarray, float]:
     """The direction (P,) in which χ² rises least with parameter j, and the change of j by which √Δχ² rises to `top`.
 
-    Both are those of the parabola at the best point.
+    Both follow from the parabola at the best point.
     """
     others = _others(best, j)
     curvature = problem.curvature(best)
@@ -102,10 +103,10 @@ def _others(best: np.ndarray, j: int) -> list[int]:
 
 def _end(problem: Problem, best: np.ndarray, j: int, ridge: np.ndarray, reach: float, top: float, lowest: float,
          rises: dict[float, float]) -> tuple[float, bool]:
-    """The end of the interval on the side of `reach`, where √Δχ² crosses its limit, by secants; and whether it is open.
+    """Find the end of the interval on the side of `reach`, where √Δχ² crosses its limit, and whether the end is open.
 
-    The first point is `reach` away from the best one. `rises` gets the rise of the misfit at each value. Raises
-    `BetterMinimum` where the misfit falls below the least by more than −`lowest`.
+    The first point is `reach` away from the best one; secants lead to the next. The rise of the misfit at each value is
+    added to `rises`. Raises `BetterMinimum` if the misfit falls below the least by more than −`lowest`.
     """
     least_misfit, others, sign = problem.misfit(best), _others(best, j), math.copysign(1.0, reach)
     bound = 1.0 if sign > 0.0 else 0.0
@@ -140,5 +141,5 @@ def _end(problem: Problem, best: np.ndarray, j: int, ridge: np.ndarray, reach: f
             part = (top - root_inside) / (root_outside - root_inside)
             trial = inside + min(max(part, _LEAST_PART), 1.0 - _LEAST_PART) * (outside - inside)
     if math.isnan(outside):
-        return inside, True  # the limit was never crossed: how far the interval goes on is not known
+        return inside, True  # the limit was never crossed: how far the interval extends is not known
     return inside + (top - root_inside) / (root_outside - root_inside) * (outside - inside), False

@@ -1,9 +1,9 @@
-"""A measured series over a periodic motion of the model: the shift in time, and the remaining difference.
+"""A measured series overlaid on a periodic motion of the model: the shift in time, and the remaining difference.
 
 Equation   late = argmin_s Σ_t (F_model(t + s) − F_measured(t))²,   rms_i = √⟨(F_model,i(t + late) − F_measured,i(t))²⟩
-Note       The start of a recording is not known, so it is moved to where the squares of all its forces are least; the
-           model's force is the mean over the series' sampling interval or, where the bandwidth of the sensors is
-           known, the force after their low-pass, as in a fit (trains.py).
+Note       The start of a recording is not known, so the series is shifted to where the sum of squares of all its forces
+           is least. The model's force is the mean over the series' sampling interval or, if the bandwidth of the
+           sensors is known, the force after their low-pass, as in a fit (trains.py).
 """
 
 from __future__ import annotations
@@ -25,12 +25,13 @@ _PERFECT = Sensors()
 
 @dataclass(frozen=True, eq=False)
 class Overlay:
-    """A series beside a run, in SI.
+    """A series overlaid on a run, in SI.
 
-    `time` (T,) is that of the run, so that the series begins less than an orbit before the run does; `forces` are the
-    measured ones by name, `rms` the differences from the model [N], None of a motion that does not repeat, which the
-    series is not moved to. `sensors` are those whose low-pass the model's forces have passed. `displacement` is the
-    shaker's less its mean, because a sensor's zero is arbitrary, None where it was not measured.
+    `time` (T,) is the run's time, shifted so that the series begins less than one orbit before the run. `forces` are
+    the measured ones by name, and `rms` their differences from the model [N]; `rms` is None for a motion that does not
+    repeat, and the series is then not shifted. `sensors` are those whose low-pass the model's forces have passed.
+    `displacement` is that of the shaker minus its mean, because a sensor's zero is arbitrary; None if it was not
+    measured.
     """
 
     time: np.ndarray
@@ -43,14 +44,14 @@ class Overlay:
     def sentence(self) -> str:
         """The shift of the series and the differences, in words."""
         if self.rms is None:
-            return "The present motion does not repeat: the series is drawn from its own start, and no misfit is given."
+            return "The current motion does not repeat: the series is drawn from its own start, and no misfit is given."
         left = " and ".join(f"{rms:.3g} N for the {name.replace('_', ' ')}" for name, rms in self.rms.items())
         low_pass = f" after a low-pass of {self.sensors.bandwidth:g} Hz" if self.sensors.filters else ""
-        return f"Shifted in time to the least sum of squares; rms difference from the model{low_pass} {left}."
+        return f"Shifted in time to the least sum of squares; rms difference from the model{low_pass}: {left}."
 
 
 def overlay(series: Series, run: Run, sensors: Sensors = _PERFECT) -> Overlay | None:
-    """The series over the run's orbit, whose forces pass the low-pass of `sensors`; None if no force was measured."""
+    """Overlay a series on the run's orbit, with its forces after the low-pass of `sensors`; None if it has no force."""
     forces = {name: values for name in _FORCES if (values := getattr(series, name)) is not None}
     if not forces:
         return None

@@ -14,8 +14,8 @@ from ..inputs.text import number_in
 from ..scene import Amplitude, Bead, Scene
 from ..scene.quantities import QUANTITIES
 
-#: Parameters that can be fitted, with their units. K is the contact stiffness; it is changed by Young's modulus of all
-#: beads.
+#: Parameters that can be fitted, with their units. K is the contact stiffness; it is varied through the Young's modulus
+#: of all beads.
 UNITS = {name: "N/m^{3/2}" if name == "K" else QUANTITIES[name].unit
          for name in ("A0", "k", "kappa", "D", "K", "F0", "wall")}
 
@@ -24,9 +24,9 @@ UNITS = {name: "N/m^{3/2}" if name == "K" else QUANTITIES[name].unit
 class Free:
     """A parameter to be fitted.
 
-    `name` is one of `UNITS`, or A0@f for the drive amplitude at one measured frequency [Hz]. Between `low` and `high`
-    it is searched on a logarithmic scale where both are above 0. `prior` has mean and standard deviation of what is
-    known besides the data.
+    `name` is one of `UNITS`, or A0@f for the drive amplitude at one measured frequency [Hz]. It is searched between
+    `low` and `high`, on a logarithmic scale if both are above 0. `prior` is the mean and standard deviation known from
+    sources other than the data.
     """
 
     name: str
@@ -50,12 +50,12 @@ class Free:
 
     @property
     def knob(self) -> str:
-        """The knob without its frequency."""
+        """The name of the knob, without the frequency."""
         return self.name.partition("@")[0]
 
     @property
     def at(self) -> float | None:
-        """The frequency [Hz] of an amplitude that holds at one frequency only."""
+        """The frequency [Hz] of an amplitude that applies at one frequency only; otherwise None."""
         return number_in(self.name.partition("@")[2])
 
     @property
@@ -71,7 +71,7 @@ class Free:
 
 
 def free_of(text: str, prior: str | None = None) -> Free:
-    """A parameter from words: NAME=low:high, and mean:sd of its prior. Raises `BadInput`."""
+    """A parameter from the text NAME=low:high, with its prior from NAME=mean:sd. Raises `BadInput`."""
     name, _, bounds = text.partition("=")
     return Free(name, *_two(f"--free {text!r}", bounds, "NAME=low:high"),
                 None if prior is None else _two(f"--prior {prior!r}", prior.partition("=")[2], "NAME=mean:sd"))
@@ -85,7 +85,7 @@ def _two(what: str, text: str, form: str) -> tuple[float, float]:
 
 
 def per_frequency(free: Sequence[Free], frequencies: Sequence[float] | np.ndarray) -> list[Free]:
-    """The free parameters with one A0 for each frequency in place of the constant one."""
+    """The free parameters with one A0 for each frequency instead of the constant one."""
     listed: list[Free] = []
     for parameter in free:
         if parameter.name == "A0":
@@ -97,7 +97,7 @@ def per_frequency(free: Sequence[Free], frequencies: Sequence[float] | np.ndarra
 
 def with_values(scene: Scene, free: Sequence[Free],
                 values: Sequence[float] | np.ndarray) -> tuple[Scene, Amplitude | None]:
-    """The scene with these values, and the drive amplitude over the frequency where there is one for each."""
+    """The scene with these values, and the drive amplitude over the frequency if each frequency has its own."""
     given = list(zip(free, values, strict=True))
     changes = {parameter.knob: float(value) for parameter, value in given if parameter.at is None}
     stiffness = changes.pop("K", None)
@@ -110,7 +110,7 @@ def with_values(scene: Scene, free: Sequence[Free],
 
 
 def stiffened(scene: Scene, factor: float) -> Scene:
-    """The scene with contacts `factor` times as stiff; what is stated in N/m stays."""
+    """The scene with contacts `factor` times as stiff; springs to the ground [N/m] are unchanged."""
     def harder(bead: Bead) -> Bead:
         return replace(bead, young=bead.young * factor)
 

@@ -16,9 +16,9 @@ from .series_target import SeriesTarget
 
 @dataclass(frozen=True, eq=False)
 class RecordsTarget(Compared):
-    """Measured series at several drive frequencies; all parameters are common to them but an A0@f.
+    """Measured series at several drive frequencies; all parameters except A0@f are common to them.
 
-    `records` are series that have a `frequency` each. Either all of them have an error or none.
+    Each of the `records` has a `frequency`. Either all of them have an error or none has.
     """
 
     records: tuple[SeriesTarget, ...]
@@ -30,11 +30,12 @@ class RecordsTarget(Compared):
             if record.frequency is None:
                 raise BadInput(f"Record {number} of {len(self.records)} has no drive frequency; give each its own.")
         if len({record.sigma_known for record in self.records}) > 1:
-            raise BadInput("Some of the records have an error and some have none; give all of them one, or none.")
+            raise BadInput("Some of the records have an error and some do not; give an error for all of them, or for "
+                           "none.")
 
     @property
     def frequencies(self) -> np.ndarray:
-        """The drive frequencies [Hz], ascending, each once."""
+        """The distinct drive frequencies [Hz], ascending."""
         return np.unique([record.frequency for record in self.records if record.frequency is not None])
 
     @property
@@ -48,7 +49,7 @@ class RecordsTarget(Compared):
         return [len(record.channels) * len(record.time) for record in self.records]
 
     def where(self, datum: int) -> str:
-        """Which record, force and time a datum is, in words."""
+        """The record, force and time of a datum, in words."""
         for record, size in zip(self.records, self.sizes, strict=True):
             if datum < size:
                 return f"{record.where(datum)} of the record at {record.frequency:g} Hz"
@@ -56,7 +57,7 @@ class RecordsTarget(Compared):
         raise IndexError(datum)
 
     def evaluate(self, scene: Scene, amplitude: Amplitude | None, stop: Stop | None) -> Evaluation:
-        """Residuals of all records, one after another, in standard deviations; the model's forces [N].
+        """Compute the residuals of all records, one after another, in standard deviations, and the model's forces [N].
 
         Raises `Cancelled`.
         """
@@ -67,7 +68,7 @@ class RecordsTarget(Compared):
                           np.concatenate([evaluation.model for evaluation in evaluations]))
 
     def parts(self, evaluation: Evaluation) -> Iterator[tuple[SeriesTarget, slice, str]]:
-        """Each record with the place of its data in the evaluation, and the model's regime there."""
+        """Yield each record with the slice of its data in the evaluation, and the model's regime there."""
         begin = 0
         for record, size, regime in zip(self.records, self.sizes, evaluation.regimes, strict=True):
             yield record, slice(begin, begin + size), regime

@@ -1,4 +1,4 @@
-"""The result of a fit: best values with their intervals, misfit and verdict; as tables and as plain data."""
+"""The result of a fit: best values with their intervals, misfit and verdict, also as tables and plain data."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ class Fit(Labelled):
     scene : Scene
         The scene with the best values.
     amplitude : Amplitude or None
-        The drive amplitude over the frequency, where one was fitted for each.
+        The drive amplitude over the frequency, if one was fitted for each frequency.
     free : tuple of Free
-        What was fitted, with bounds and priors.
+        The fitted parameters, with bounds and priors.
     best : numpy.ndarray, shape (p,)
         Values with the least misfit.
     profiles : tuple of Profile
-        For each parameter its profile and its 95 % interval; empty if none was asked for.
+        The profile and 95 % interval of each parameter; empty if they were not requested.
     misfit : float
         The least −2 ln likelihood up to a constant: χ² plus the logarithms of enlarged variances.
     data : int
@@ -45,7 +45,7 @@ class Fit(Labelled):
     degrees_of_freedom : int
         Number of data and priors minus number of parameters.
     probability : float or None
-        Probability of a χ² at least as large if the model were true; None where the data's errors are not known.
+        Probability of a χ² at least as large if the model were true; None if the data's errors are not known.
     verdict : str
         "can", "cannot" or "not known".
     sentence : str
@@ -53,17 +53,17 @@ class Fit(Labelled):
     evaluation : Evaluation
         Residuals and model values at the best values.
     landscape : tuple of numpy.ndarray
-        Values (n, p) and misfits (n,) of everything that was evaluated.
+        Values (n, p) and misfits (n,) of all evaluations.
     target : CurveTarget, SeriesTarget, RecordsTarget or FeatureTarget
-        What was compared.
+        The measurement, with the rule by which it was compared.
     scale : float
-        Unit of the misfit: 1, or χ² per degree of freedom where the data's errors are not known.
+        Unit of the misfit: 1, or χ² per degree of freedom if the data's errors are not known.
     wall_s : float
         Wall-clock time [s].
     correlation : numpy.ndarray, shape (p, p), or None
-        Correlation of the estimates, from the residuals' slopes at the best values: near ±1 the data determine a
-        combination of two parameters better than either. NaN where a parameter changes nothing; None for features,
-        whose residuals are not smooth, and where the best values stand at a bound.
+        Correlation of the estimates, from the residuals' slopes at the best values: near ±1, the data determine a
+        combination of two parameters better than either. NaN if a parameter has no effect; None for features, whose
+        residuals are not smooth, and if the best values are at a bound.
 
     Examples
     --------
@@ -97,7 +97,7 @@ class Fit(Labelled):
 
     @property
     def varied(self) -> tuple[str, ...]:
-        """The frequency, unless a series at the scene's own was fitted, and the drive amplitude where it follows."""
+        """The frequency, unless a series at the scene's own was fitted, and the drive amplitude if it follows f."""
         own = isinstance(self.target, SeriesTarget) and self.target.frequency is None
         return (() if own else ("f",)) + (() if self.amplitude is None else ("A0",))
 
@@ -108,7 +108,7 @@ class Fit(Labelled):
                 *profiles, landscape_table(self.free, self.landscape))
 
     def attributes(self) -> dict[str, Attribute]:
-        """Misfit and verdict, and where they come from."""
+        """Misfit, verdict and provenance."""
         extra: dict[str, Attribute] = {} if self.amplitude is None else {
             "amplitude": json.dumps(self.amplitude.to_json())}
         if self.correlation is not None:
@@ -164,6 +164,6 @@ class Fit(Labelled):
             "correlation": self._correlation_rows()})
 
     def _correlation_rows(self) -> list[list[float | None]] | None:
-        """The correlation as plain data; None in place of NaN."""
+        """The correlation as plain data, with None instead of NaN."""
         return None if self.correlation is None else [
             [float(value) if np.isfinite(value) else None for value in row] for row in self.correlation]

@@ -1,14 +1,15 @@
 """Minimising a misfit that is smooth within a regime and jumps between regimes.
 
-A Sobol sequence (scipy.stats.qmc) covers the bounds: no slope leads from one regime to the next, so every regime must
-be sampled. From the best points SciPy's `least_squares` descends, a trust-region method that keeps to bounds
-(Branch, Coleman & Li 1999): it uses that χ² is a sum of squares, needs some ten times fewer curves than a method that
-does not, and refuses a step over a jump that makes χ² larger. Where the regimes differ around the point where it stops,
-or residuals are not smooth at all (frequencies of peaks), Nelder and Mead's simplex, which uses no slopes, goes on.
+A Sobol sequence (scipy.stats.qmc) samples the range between the bounds: no slope leads from one regime to the next, so
+every regime must be sampled. From the best points, SciPy's `least_squares` descends, a trust-region method with bounds
+(Branch, Coleman & Li 1999). It exploits that χ² is a sum of squares, needs about a tenth of the curves that a general
+method would, and rejects a step over a jump that makes χ² larger. Where the regimes differ around the point at which it
+stops, or residuals are not smooth at all (frequencies of peaks), Nelder and Mead's simplex, which uses no slopes,
+continues.
 
-The misfit has a term that is no sum of squares, L = Σ ln(σ'²/σ²) of enlarged variances. The descent has √L as one more
-residual: its square is L, so the gradient is right. But the slope L'/(2√L) is unbounded at L = 0, and its part of JᵀJ
-is not the curvature of L. So the curvature for correlations and profiles is computed without this residual.
+The misfit has a term that is not a sum of squares, L = Σ ln(σ'²/σ²) of enlarged variances. The descent has √L as an
+additional residual: its square is L, so the gradient is right. But the slope L'/(2√L) is unbounded at L = 0, and its
+contribution to JᵀJ is not the curvature of L. So the curvature for correlations and profiles is computed without it.
 """
 
 from __future__ import annotations
@@ -34,42 +35,42 @@ from .series_target import SeriesTarget
 Target = CurveTarget | SeriesTarget | RecordsTarget | FeatureTarget
 # Lengths are fractions of the range between a parameter's bounds. All but `STEP` are chosen, not measured: they decide
 # how many evaluations a search takes, and whether it finds the best regime, but not where the minimum is.
-#: [fit] Step of derivatives. It is above the noise of a curve's points (1e-5) and below a peak's width.
+#: [fit] Step of the difference quotients. It is above the noise of a curve's points (1e-5) and below a peak's width.
 STEP = 2e-3
-#: [fit] Initial points from which the search descends in a round.
+#: [fit] Number of initial points from which the search descends in one round.
 _STARTS = 3
-#: [fit] Most evaluations of a descent from one of these points.
+#: [fit] Maximum number of evaluations of a descent from one of these points.
 _DESCENT_CALLS = 20
-#: [fit] Most evaluations of the simplex for every parameter.
+#: [fit] Maximum number of evaluations of the simplex, per parameter.
 _SIMPLEX_CALLS = 40
-#: [fit] Least distance of two starts in a parameter, as a fraction of the range between its bounds.
+#: [fit] Least distance between two starts in some parameter, as a fraction of the range between its bounds.
 _APART_BY = 0.1
-#: [fit] Most rounds of the search, each with twice as many initial points.
+#: [fit] Maximum number of rounds of the search, each with twice as many initial points.
 _MOST_ROUNDS = 3
 #: [fit] Distance of the initial points from the bounds.
 _MARGIN = 0.02
-#: [fit] Distance from the bounds at which a descent begins: `least_squares` starts inside them only.
+#: [fit] Distance from the bounds at which a descent begins: `least_squares` can only start inside them.
 _INSIDE = 1e-6
-#: [fit] Unit of length in `least_squares` (`x_scale`), from which the size of its first step follows.
+#: [fit] Unit of length in `least_squares` (`x_scale`), which sets the size of its first step.
 _LENGTH_SCALE = 0.1
 #: [fit] Relative change of the point, or of the misfit, at which a descent ends: the noise of a curve's points.
 _DESCENT_TOLERANCE = 1e-5
-#: [fit] Size of the first simplex where a descent has stopped between regimes: it goes on near the point.
+#: [fit] Size of the first simplex where a descent has stopped between regimes: the search continues near the point.
 _NEAR_SIMPLEX = 0.02
 #: [fit] Size of the first simplex where slopes are not used at all.
 _FIRST_SIMPLEX = 0.1
-#: [fit] Size of the simplex at which its search ends, a twentieth of `STEP`.
+#: [fit] Size of the simplex at which its search ends: a twentieth of `STEP`.
 _LAST_SIMPLEX = 1e-4
-#: [fit] Range of the simplex's misfits at which its search ends. It is far below the rise of 3.84 at an interval's end.
+#: [fit] Range of misfits in the simplex at which its search ends. It is far below the rise of 3.84 at an interval end.
 _LAST_RANGE = 1e-3
 
 
 @dataclass(eq=False)
 class Problem:
-    """Misfit of a target over the unit cube of the free parameters; all that was evaluated is kept.
+    """Misfit of a target over the unit cube of the free parameters; all evaluations are kept.
 
     A point x (P,) has a number from 0 to 1 for each of the P parameters in `free`. `points` and `misfits` are those
-    that were evaluated, in that order; `tell` is called with their number after each; `scheduler` is a Dask client or
+    that were evaluated, in order, and `tell` is called with their number after each. `scheduler` is a Dask client or
     None.
     """
 
@@ -84,17 +85,17 @@ class Problem:
     _known: dict[bytes, Evaluation] = field(default_factory=dict)
 
     def ahead(self, points: Sequence[np.ndarray]) -> None:
-        """Evaluate points that will be asked for, all at once by the workers of the scheduler; without one, nothing."""
+        """Evaluate in parallel, with the scheduler's workers, points that will be needed; do nothing without one."""
         new = {key: x for x in map(_inside, points) if (key := x.tobytes()) not in self._known}
         if self.scheduler is None or len(new) < 2:
             return
         tasks = [(self.target, *with_values(self.scene, self.free, self.values(x))) for x in new.values()]
         evaluations = dict(results(self.scheduler, evaluated, tasks, self.stop))
-        for number, x in enumerate(new.values()):  # in the order of the points, whichever was ready first
+        for number, x in enumerate(new.values()):  # in the order of the points, not of completion
             self._keep(x, evaluations[number])
 
     def evaluate(self, x: np.ndarray) -> Evaluation:
-        """The target's evaluation at x (P,), whose numbers are clipped to the cube. Raises `Cancelled`."""
+        """Evaluate the target at x (P,), clipped to the cube, or return the known evaluation. Raises `Cancelled`."""
         x = _inside(x)
         key = x.tobytes()
         if key not in self._known:
@@ -119,12 +120,12 @@ class Problem:
                          in zip(self.free, self.values(np.clip(x, 0, 1)), strict=True) if parameter.prior])
 
     def residuals(self, x: np.ndarray) -> np.ndarray:
-        """Residuals (R + 1,) at x: of the data, of the priors, and last the root of the logarithms of the variances."""
+        """Residuals (R + 1,) at x: of the data, of the priors, and lastly the root of the variances' logarithms."""
         evaluation = self.evaluate(x)
         return np.concatenate([evaluation.residuals, self.priors(x), [np.sqrt(max(evaluation.log_variance, 0.0))]])
 
     def misfit(self, x: np.ndarray) -> float:
-        """The quantity that is minimised: χ² and the logarithms of the variances, −2 ln L up to a constant."""
+        """The quantity to be minimised: χ² plus the logarithms of the variances, −2 ln L up to a constant."""
         return self._misfit(self.evaluate(x), np.clip(x, 0.0, 1.0))
 
     def chi_squared(self, x: np.ndarray) -> float:
@@ -135,9 +136,9 @@ class Problem:
         return float((evaluation.residuals**2).sum() + (self.priors(x) ** 2).sum() + evaluation.log_variance)
 
     def jacobian(self, x: np.ndarray, moving: Sequence[int]) -> np.ndarray:
-        """Derivatives (R + 1, M) of the residuals by the M parameters `moving`, given by number.
+        """Derivatives (R + 1, M) of the residuals with respect to the M parameters with the numbers `moving`.
 
-        They are differences over `STEP` of the cube, to the side that stays within the bounds.
+        They are differences over `STEP` of the cube, towards the side that is within the bounds.
         """
         beside = [_beside(x, j) for j in moving]
         self.ahead([x, *beside])
@@ -146,7 +147,7 @@ class Problem:
                          for j, neighbour in zip(moving, beside, strict=True)], axis=1)
 
     def curvature(self, x: np.ndarray) -> np.ndarray:
-        """JᵀJ (P, P) of the residuals of data and priors: half the second derivatives of χ², by Gauss and Newton.
+        """JᵀJ (P, P) of the residuals of data and priors: half the second derivatives of χ², after Gauss and Newton.
 
         The logarithms of enlarged variances are left out: JᵀJ of their root is not their curvature.
         """
@@ -154,25 +155,25 @@ class Problem:
         return np.asarray(slopes.T @ slopes)
 
     def correlation(self, x: np.ndarray) -> np.ndarray:
-        """Correlation (P, P) of the estimates at a minimum, from the inverse of `curvature`; NaN where it has none.
+        """Correlation (P, P) of the estimates at a minimum, from the inverse of `curvature`; NaN if it is singular.
 
-        It describes the parabola by which χ² rises from its minimum, and ends where the regime does.
+        It describes the parabola with which χ² rises from its minimum, and is valid only as far as the regime extends.
         """
         curvature = self.curvature(x)
-        if np.linalg.matrix_rank(curvature) < len(x):  # a parameter that changes nothing, or two that do the same
+        if np.linalg.matrix_rank(curvature) < len(x):  # a parameter has no effect, or two have the same
             return np.full(curvature.shape, np.nan)
         covariance = np.linalg.inv(curvature)
         deviation = np.sqrt(np.diag(covariance))
         return np.asarray(covariance / np.outer(deviation, deviation))
 
     def jumps_beside(self, x: np.ndarray) -> bool:
-        """Whether a regime changes within a step of derivatives."""
+        """Whether a regime changes within `STEP` of x."""
         here = self.evaluate(x).regimes
         return any(self.evaluate(_beside(x, j)).regimes != here for j in range(len(x)))
 
 
 def evaluated(target: Target, scene: Scene, amplitude: Amplitude | None) -> Evaluation:
-    """The residuals of one set of parameters: the work of a scheduler's worker."""
+    """Evaluate one set of parameters: the task of a scheduler's worker."""
     return target.evaluate(scene, amplitude, None)
 
 
@@ -181,14 +182,14 @@ def _inside(x: np.ndarray) -> np.ndarray:
 
 
 def _beside(x: np.ndarray, j: int) -> np.ndarray:
-    """A step of derivatives away in parameter j, to the side that stays within the bounds."""
+    """The point `STEP` away from x in parameter j, towards the side that is within the bounds."""
     neighbour = np.array(x, dtype=float)
     neighbour[j] += STEP if x[j] + STEP <= 1.0 else -STEP
     return neighbour
 
 
 def descend(problem: Problem, x: np.ndarray, moving: Sequence[int], most: int = _DESCENT_CALLS) -> np.ndarray:
-    """The point to which `least_squares` goes from x when only the parameters `moving` may change."""
+    """Descend from x by `least_squares`, changing only the parameters `moving`; return the best point."""
     moving = list(moving)
     if not moving:
         return x
@@ -208,7 +209,7 @@ def descend(problem: Problem, x: np.ndarray, moving: Sequence[int], most: int = 
 
 
 def descend_by_simplex(problem: Problem, x: np.ndarray, size: float) -> np.ndarray:
-    """The point to which Nelder and Mead's simplex goes from x, where it is of `size`."""
+    """Descend from x by Nelder and Mead's simplex of initial `size`; return the best point."""
     count = len(x)
     corners = np.vstack([x, *(x + (size if x[j] + size <= 1.0 else -size) * np.eye(count)[j]
                                   for j in range(count))])
@@ -220,10 +221,10 @@ def descend_by_simplex(problem: Problem, x: np.ndarray, size: float) -> np.ndarr
 
 
 def search(problem: Problem, initial_points: int, enough: Callable[[np.ndarray], bool]) -> np.ndarray:
-    """The best point: initial points over the bounds, descents from the best, a simplex where regimes change.
+    """Find the best point: initial points within the bounds, descents from the best, a simplex where regimes change.
 
-    Where the best point is not good `enough`, the number of initial points is doubled, `_MOST_ROUNDS` rounds at most: a
-    valley that was missed must not be a verdict on the model.
+    If the best point is not good `enough`, the number of initial points is doubled, in at most `_MOST_ROUNDS` rounds: a
+    missed valley must not lead to a verdict against the model.
     """
     count = len(problem.free)
     size = max(1, (initial_points - 1).bit_length())
@@ -244,7 +245,7 @@ def search(problem: Problem, initial_points: int, enough: Callable[[np.ndarray],
 
 
 def _inner_points(points: np.ndarray, spacing: float) -> np.ndarray:
-    """Points of [0, 1)ⁿ moved by half their spacing, cyclically, and away from the bounds by `_MARGIN`."""
+    """Points of [0, 1)ⁿ shifted cyclically by half their spacing, and kept away from the bounds by `_MARGIN`."""
     return np.asarray(_MARGIN + (1.0 - 2.0 * _MARGIN) * ((points + 0.5 * spacing) % 1.0))
 
 

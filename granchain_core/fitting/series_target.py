@@ -1,4 +1,4 @@
-"""Target of a fit: a measured series of the forces over time."""
+"""Target of a fit: a measured series of forces over time."""
 
 from __future__ import annotations
 
@@ -18,22 +18,22 @@ from ..steady.settling.settle import settle
 from .evaluation import ASSUMED, FAILED, Compared, Evaluation, regime_and_period
 from .trains import Train, moved
 
-#: [fit] Samples of a model's train in a drive period.
+#: [fit] Samples per drive period of the model's force train.
 _TRAIN = 768
-#: [fit] Most samples of a model's train in a drive period, for sensors with a bandwidth.
+#: [fit] Maximum number of samples per drive period of the model's force train, for sensors with a bandwidth.
 _MOST_TRAIN = 8192
-#: [fit] Most samples of a series that are compared; a longer one is thinned out evenly.
+#: [fit] Maximum number of samples of a series that are compared; a longer series is thinned out evenly.
 _COMPARED = 4000
 
 
 @dataclass(frozen=True, eq=False)
 class SeriesTarget(Compared):
-    """A measured series: the forces over time, each the mean over its interval.
+    """A measured series: the forces over time, each sample the mean over its interval.
 
-    `error` is the standard deviation of the forces [N], `frequency` that of the drive [Hz], by default the scene's.
-    With the `bandwidth` of the force sensors [Hz] the model's forces pass the sensors' low-pass, and each sample is the
-    value at its time. The start of the recording is not known: for each set of parameters the model's trains are moved
-    to where the sum of squares is least.
+    `error` is the standard deviation of the forces [N], and `frequency` the drive frequency [Hz], by default the
+    scene's. If the `bandwidth` of the force sensors [Hz] is given, the model's forces pass the sensors' low-pass, and
+    each sample is the value at its time. The start of the recording is not known: for each set of parameters, the
+    model's force trains are shifted to where the sum of squares is least.
     """
 
     series: Series
@@ -42,7 +42,7 @@ class SeriesTarget(Compared):
     bandwidth: float = math.inf
 
     def __post_init__(self) -> None:
-        Sensors(bandwidth=self.bandwidth)  # refuses what is no bandwidth
+        Sensors(bandwidth=self.bandwidth)  # refuses an invalid bandwidth
         if not self.channels:
             raise BadInput("The series has neither an input force nor an output force; there is nothing to fit.")
         if self.frequency is not None:
@@ -55,7 +55,7 @@ class SeriesTarget(Compared):
 
     @property
     def channels(self) -> dict[str, np.ndarray]:
-        """The measured forces by name, (T,) each [N], thinned out where the series is long."""
+        """The measured forces by name, (T,) each [N], thinned out if the series is long."""
         both = {"input_force": self.series.input_force, "output_force": self.series.output_force}
         return {name: values[self._kept] for name, values in both.items() if values is not None}
 
@@ -79,22 +79,22 @@ class SeriesTarget(Compared):
         return np.zeros(0)
 
     def where(self, datum: int) -> str:
-        """Which force a datum is, and when it was measured, in words."""
+        """The force and the time of a datum, in words."""
         channel, sample = divmod(datum, len(self.time))
         return f"in the {list(self.channels)[channel].replace('_', ' ')} at {self.time[sample]:.6g} s"
 
     def driven(self, scene: Scene, amplitude: Amplitude | None) -> Scene:
-        """The scene at the series' drive frequency, with that frequency's amplitude where each has its own."""
+        """The scene at the series' drive frequency, with that frequency's amplitude if each frequency has its own."""
         scene = scene if self.frequency is None else scene.evolve(f=self.frequency)
         return scene if amplitude is None else scene.evolve(A0=amplitude.at(scene.f))
 
     def _samples(self, f: float) -> int:
-        """Samples of the model in a drive period: more where the sensors are fast."""
+        """Samples of the model per drive period: more if the sensors are fast."""
         wanted = SAMPLES_PER_BANDWIDTH * self.bandwidth / f if self.sensors.filters else 0.0
         return math.ceil(min(max(_TRAIN, wanted), _MOST_TRAIN))
 
     def evaluate(self, scene: Scene, amplitude: Amplitude | None, stop: Stop | None) -> Evaluation:
-        """Residuals (C·T,) of every sample, one channel after another, in standard deviations; the model's forces [N].
+        """Compute the residuals (C·T,) of all samples, channel by channel, in standard deviations, and the forces [N].
 
         Raises `Cancelled`.
         """
@@ -121,7 +121,7 @@ class SeriesTarget(Compared):
                           np.concatenate(list(models.values())))
 
     def _recorded(self, run: Run) -> dict[str, np.ndarray]:
-        """The forces of a periodic motion as the sensors record them, (T,) each [N], moved to the measured ones."""
+        """The forces of a periodic motion as the sensors record them, (T,) each [N], shifted to the measured ones."""
         time, measured = self.time, self.channels
         trains = {name: Train.of(run, name) for name in measured}
         width = float(np.median(np.diff(self.series.time)))

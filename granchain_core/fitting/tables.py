@@ -18,7 +18,7 @@ from .series_target import SeriesTarget
 
 
 def parameter_table(free: Sequence[Free], best: np.ndarray, profiles: Sequence[Profile]) -> Table:
-    """A row for each parameter; their units differ, so `unit` is a column."""
+    """One row per parameter; the units differ, so `unit` is a column."""
     along = ("parameter",)
     columns = {
         "best": Column(best, along, "", "value with the least misfit, in `unit`"),
@@ -32,13 +32,13 @@ def parameter_table(free: Sequence[Free], best: np.ndarray, profiles: Sequence[P
                                   f"{'lower' if end == 'low' else 'upper'} end of the 95 % interval, in `unit`")
             columns[f"open_{end}"] = Column(
                 np.array([getattr(profile, f"open_{end}") for profile in profiles], dtype=np.int8), along, "1",
-                "1 where the interval goes on beyond that end: it is a bound, or the farthest value that was tried")
+                "1 if the interval continues beyond that end, which is a bound or the farthest value that was tried")
     return Table("parameters", axis("parameter", np.array([parameter.name for parameter in free], dtype=object), "",
                                     "name of the parameter"), columns)
 
 
 def data_table(target: Target, evaluation: Evaluation) -> Table:
-    """A row for each datum: the measured value, the model's, and the residual."""
+    """One row per datum: the measured value, the model's, and the residual."""
     along, count = ("datum",), len(evaluation.residuals)
     unit = "Hz" if isinstance(target, FeatureTarget) else "N"
     columns = {"residual": Column(evaluation.residuals, along, "1", "model − measured, in standard deviations"),
@@ -56,7 +56,7 @@ def data_table(target: Target, evaluation: Evaluation) -> Table:
 
 
 def _samples(records: Sequence[SeriesTarget]) -> dict[str, Column]:
-    """The measured samples of one record after another, with the drive frequencies of records that have their own."""
+    """The measured samples, record by record, with the drive frequencies of records that have their own."""
     along = ("datum",)
     forces = [values for record in records for values in record.channels.values()]
     names = [name for record in records for name, values in record.channels.items() for _ in values]
@@ -71,7 +71,7 @@ def _samples(records: Sequence[SeriesTarget]) -> dict[str, Column]:
 
 
 def profile_table(free: Sequence[Free], profiles: Sequence[Profile]) -> Table:
-    """The profiles of all parameters below each other."""
+    """The profiles of all parameters, one below the other."""
     names = [parameter.name for parameter, profile in zip(free, profiles, strict=True) for _ in profile.values]
     values = [value for profile in profiles for value in profile.values]
     rises = [rise for profile in profiles for rise in profile.rises]

@@ -1,10 +1,10 @@
 """The model's force as a sensor samples it, with jumps at their exact times.
 
-Where the sensor's bandwidth is known, it is the force after the sensor's low-pass (experiment/sensors.py), at the time
-of each sample: continuous, and as late as the sensor makes it. Where it is not known, it is the mean over each sampling
-interval, because a force that jumps between two samples makes a misfit that jumps with the parameters, while its mean
-over an interval moves smoothly. That mean is no model of a recorder: a filter against aliasing is no mean over an
-interval, and it delays the force.
+If the sensor's bandwidth is known, this is the force after the sensor's low-pass (experiment/sensors.py), at the time
+of each sample: continuous, and delayed as by the sensor. If it is not known, this is the mean over each sampling
+interval: a force that jumps between two samples would make a misfit that jumps with the parameters, whereas its mean
+over an interval changes smoothly. The mean is not a model of a recorder, whose anti-aliasing filter is not a mean over
+an interval and delays the force.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from scipy.optimize import minimize_scalar
 from ..experiment.sensors import Sensors
 from ..results.run import Run
 
-#: Half the range around the best shift of the coarse search in which the best shift is sought, in steps of the coarse
-#: search: the neighbours are one step away.
+#: Half the range around the coarse search's best shift in which the exact one is sought, in steps of the coarse search:
+#: the neighbours are one step away.
 _AROUND = 1.5
 #: Accuracy of the best shift, in the same steps.
 _FINE = 1e-4
@@ -37,7 +37,7 @@ class Train:
 
     @classmethod
     def of(cls, run: Run, name: str) -> Train:
-        """The input or output force of a recorded orbit; a jump is two nodes at one time.
+        """Make a train of the input or output force of a recorded orbit; a jump is two nodes at one time.
 
         The force jumps up where the contact closes, and from a pull to zero where it opens.
         """
@@ -61,7 +61,7 @@ class Train:
         return np.asarray((self._integral(time + 0.5 * width) - self._integral(time - 0.5 * width)) / width)
 
     def recorded(self, time: np.ndarray, width: float, sensors: Sensors) -> np.ndarray:
-        """Recorded values at `time` [s]: the force after a low-pass, or means over `width` [s] where there is none."""
+        """Recorded values at `time` [s]: the force after the low-pass, or means over `width` [s] if there is none."""
         if sensors.filters:
             return sensors.passed(self.time, self.force, time, periodic=True)
         return self.mean_over(time, width)
@@ -79,10 +79,11 @@ class Train:
 def _releases(run: Run, contact: int) -> tuple[np.ndarray, np.ndarray]:
     """Times from the run's start [s] at which an end contact opens, and the forces just before [N].
 
-    Roots of the cubic through its overlap and the rate of it at the samples. None for a law whose force has no jump.
+    The times are roots of the cubic through the overlap and its rate at the samples. Both arrays are empty for a law
+    whose force does not jump.
     """
     scene = run.scene
-    if not scene.forces_jump or scene.cuts_tension:  # a cut ends the pull before the contact opens
+    if not scene.forces_jump or scene.cuts_tension:  # with cut tension, the pull ends before the contact opens
         return np.zeros(0), np.zeros(0)
     omega = 2.0 * np.pi * scene.f
     driver = scene.drive_amplitude * omega * np.cos(omega * run.time)
@@ -96,7 +97,7 @@ def _releases(run: Run, contact: int) -> tuple[np.ndarray, np.ndarray]:
 
 def moved(time: np.ndarray, measured: dict[str, np.ndarray], trains: dict[str, Train], width: float, count: int,
           sensors: Sensors = _PERFECT) -> float:
-    """By how much the trains are moved [s] for the least sum of squares: all shifts at once, then the best exactly."""
+    """Find the shift of the trains [s] with the least sum of squares, first on a grid of all shifts, then exactly."""
     length = next(iter(trains.values())).length
     bins = np.floor(np.mod(time, length) / length * count).astype(int) % count
     score = np.zeros(count)

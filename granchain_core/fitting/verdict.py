@@ -10,24 +10,24 @@ from .search import Problem, Target
 
 #: [fit] The verdict is *cannot* if the probability of a χ² as large, were the model true, is below this.
 CANNOT = 0.01
-#: [fit] A best value within this part of its range from a bound is said to be at the bound.
+#: [fit] A best value nearer to a bound than this fraction of its range counts as at the bound.
 _AT_A_BOUND = 1e-3
 
 
 def degrees_of_freedom_of_verdict(problem: Problem, data: int) -> int:
-    """Data less parameters; of features each datum counts, as an extremum need not follow every parameter."""
+    """Data minus parameters; for features all data count, because an extremum need not depend on every parameter."""
     return data if isinstance(problem.target, FeatureTarget) else data - len(problem.free)
 
 
 def scale_degrees_of_freedom(target: Target, degrees_of_freedom: int) -> int | None:
-    """Degrees of freedom with which the size of the data's errors is known; None where it is known exactly."""
+    """Degrees of freedom of the estimated size of the data's errors; None if it is known exactly."""
     return target.error_freedom if target.sigma_known else degrees_of_freedom
 
 
 def probability_of(problem: Problem, x: np.ndarray, data: int) -> float | None:
     """Probability of a χ² at least as large as that at x (P,) if the model were true.
 
-    None where no errors are known, or nothing is left free.
+    None if no errors are known, or if no degree of freedom is left.
     """
     degrees_of_freedom = degrees_of_freedom_of_verdict(problem, data)
     if not problem.target.sigma_known or degrees_of_freedom == 0:
@@ -39,7 +39,7 @@ def probability_of(problem: Problem, x: np.ndarray, data: int) -> float | None:
 
 
 def verdict_of(probability: float | None) -> str:
-    """The verdict by the probability of a χ² as large: "can", "cannot", or "not known" where that is None."""
+    """The verdict from the probability of a χ² as large: "can", "cannot", or "not known" if that is None."""
     return "not known" if probability is None else "can" if probability >= CANNOT else "cannot"
 
 
@@ -47,7 +47,7 @@ def verdict_sentence(problem: Problem, best: np.ndarray, data: int) -> str:
     """The verdict with its evidence."""
     probability = probability_of(problem, best, data)
     if probability is None:
-        return ("The errors of the data are not known, so there is no verdict. Intervals hold if the model fits."
+        return ("The errors of the data are not known, so there is no verdict. Intervals are valid if the model fits."
                 if not problem.target.sigma_known else "There are as many parameters as data: any model would fit.")
     numbers = (f"χ² = {problem.chi_squared(best):.4g} for {degrees_of_freedom_of_verdict(problem, data)} degrees of "
                f"freedom, probability {probability:.2g}")

@@ -1,6 +1,6 @@
-"""Curves and series of a model with known parameters and normal noise, marked as virtual, to test fits with.
+"""Curves and series of a model with known parameters and normal noise, marked as virtual, for testing fits.
 
-granchain_core/virtual_experiment simulates sensors and writes files.
+granchain_core/virtual_experiment also simulates sensors and writes files.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ from ..steady.curve.resonance_curve import resonance_curve
 from ..steady.settling.settle import settle
 from .trains import Train
 
-#: Samples of the model for one of a series.
+#: Samples of the model per sample of a series.
 _FINER = 16
 
 
 def virtual_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, error: float,
                   random: np.random.Generator) -> Measured:
-    """The model's curve with normal noise, a part `error` of each force."""
+    """Compute the model's curve and add normal noise, a fraction `error` of each force."""
     curve = resonance_curve(scene, frequencies)
     exact = curve.column("max_output_force")
     force = np.maximum(exact * (1.0 + error * random.standard_normal(len(exact))), 1e-12)
@@ -32,7 +32,7 @@ def virtual_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, error
 
 
 def virtual_series(scene: Scene, periods: int, samples: int, error: float, random: np.random.Generator) -> Series:
-    """The model's forces over `periods` drive periods, begun at any phase, with normal noise of `error` [N]."""
+    """Compute the model's forces over `periods` drive periods from a random phase; add normal noise of `error` [N]."""
     motion = settle(scene, samples=_FINER * samples).run
     time = np.arange(periods * samples) / (samples * scene.f)
     begun, width = random.random() * float(motion.time[-1] - motion.time[0]), 1.0 / (samples * scene.f)

@@ -1,4 +1,5 @@
-"""Observers, models (3) and (4) of the paper: chains driven by a measured force; a chain with its observer (twin)."""
+"""Observers, models (3) and (4) of the paper: chains driven by a measured force, and a chain with its observer (twin).
+"""
 
 from .observation import Observation, Residual
 from .observe import observe

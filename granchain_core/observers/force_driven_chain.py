@@ -28,5 +28,5 @@ class ForceDrivenChain(ChainInPieces):
         super().__init__(scaled, record.time, pieces, overlap, stop, counts)
 
     def driven_by(self, record: ForceRecord) -> ForceDrivenChain:
-        """The chain under another record; both count their steps together."""
+        """The chain driven by another record; both count their steps together."""
         return ForceDrivenChain(self.scaled.scene, record, self._stop, self.counts)

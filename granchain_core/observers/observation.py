@@ -18,12 +18,12 @@ from .record import ForceRecord
 
 #: Difference of a computed output force from the measured one.
 Residual = Misfit
-#: The numbers of a residual that JSON and files have.
+#: The numbers of a residual that are written to JSON and files.
 _WRITTEN = ("rms", "largest", "relative")
 
 
 def written(difference: Misfit | None) -> dict[str, float | None] | None:
-    """A residual as JSON and files have it; None where nothing was measured."""
+    """A residual as written to JSON and files; None if nothing was measured."""
     return None if difference is None else {name: getattr(difference, name) for name in _WRITTEN}
 
 
@@ -38,24 +38,24 @@ class Observation(RecordedMotion):
     record : ForceRecord
         The measured force on bead 1.
     displacement, velocity : numpy.ndarray, shape (T, N)
-        Of every bead: displacement from its rest position [m], and velocity [m/s].
+        Displacement of every bead from its rest position [m], and its velocity [m/s].
     force : numpy.ndarray, shape (T, N + 1)
         Forces of the contacts [N]; column 0 is the input.
     max_output_force, max_output_force_elastic : float
         Largest force on the wall and its elastic part [N].
     force_errors : ForceErrors
-        Relative errors of these two, by steps and interpolation (docs/observers.md). None is stated of the largest
-        input force, which is a sample.
+        Relative errors of these two, due to steps and interpolation (docs/observers.md). The largest input force has no
+        stated error, because it is a sample.
     integration_error, interpolation_error : float
-        Relative errors of the displacements by the steps and by the interpolation between samples; their sum
+        Relative errors of the displacements due to the steps and to the interpolation between samples; their sum
         is `displacement_error`, also called `error_estimate` (docs/result-files.md, "Which name is which error").
     status : str
-        "done" if `displacement_error` is at most the accuracy asked for, else "accuracy-not-reached".
+        "done" if `displacement_error` is at most the requested accuracy, otherwise "accuracy-not-reached".
     cost : Cost
         Computing time, steps and evaluations.
     residual, residual_elastic : Residual or None
-        Difference from the measured output force, of the total and of the elastic force: `rms`, `largest` [N],
-        `relative` (None if the measured force is 0 throughout), and the others of a `Misfit`.
+        Difference of the total and of the elastic force from the measured output force: `rms`, `largest` [N],
+        `relative` (None if the measured force is 0 throughout), and the other attributes of a `Misfit`.
 
     Examples
     --------
@@ -98,7 +98,7 @@ class Observation(RecordedMotion):
         return self.integration_error + self.interpolation_error
 
     def tables(self) -> tuple[Table, ...]:
-        """One table, `observation`, laid out as a run's is, so that one reader reads both."""
+        """One table, `observation`, with the layout of a run's, so that one reader can read both."""
         axes = {**time_axis(self.time, "time as in the measured force"), **bead_axis(self.scene.N),
                 **contact_axis(self.scene.N)}
         columns = motion_columns(self)
@@ -109,7 +109,7 @@ class Observation(RecordedMotion):
         return (Table("observation", axes, columns),)
 
     def attributes(self) -> dict[str, Attribute]:
-        """Status, largest forces, errors, how the input was read, residuals, cost, and where it comes from."""
+        """Status, largest forces, errors, how the input was read, residuals, cost and provenance."""
         residuals: dict[str, Attribute] = {
             name: json.dumps(written(difference)) for name in ("residual", "residual_elastic")
             if (difference := getattr(self, name)) is not None}
@@ -120,7 +120,7 @@ class Observation(RecordedMotion):
                 **dict(zip(RUN_ERRORS, self.force_errors.row, strict=True))}
 
     def summary(self) -> list[str]:
-        """Largest forces, errors, and the difference from what was measured."""
+        """Largest forces, errors, and the difference from the measurement."""
         duration, status = self.time[-1] - self.time[0], self.status.replace("-", " ")
         sentences = [f"{len(self.time)} samples over {duration:.4g} s; {status}", *force_sentences(self)[:2],
                      f"relative error of displacements {self.integration_error:.1e} by steps, "
@@ -131,5 +131,5 @@ class Observation(RecordedMotion):
 
 
 def residual(computed: np.ndarray, measured: np.ndarray | None) -> Residual | None:
-    """Difference of `computed` from `measured`; None where nothing was measured."""
+    """Difference of `computed` from `measured`; None if nothing was measured."""
     return None if measured is None else Misfit.of(computed, measured)

@@ -3,9 +3,9 @@
     m ü_1 = F_in(t) − F_1 − k u_1,   wall and foundation as the scene has them
 
 The motion is computed with steps that are halved until the stated integration error is small enough, by the rules of
-`run` (integrate/stated.py), and once more from every second sample. `IRREGULAR` times the difference from that is
-stated as the interpolation error. Where a contact's dashpot makes the force jump, it is of the order of the spacing and
-depends on the place of the jump in it, so that one halving may gain little.
+`run` (integrate/stated.py). It is computed once more from every second sample: `IRREGULAR` times the difference is
+stated as the interpolation error. Where a contact's dashpot makes the force jump, this error is of the order of the
+sampling interval and depends on the place of the jump in it, so that halving the interval may gain little.
 """
 
 from __future__ import annotations
@@ -36,40 +36,40 @@ from .record import ForceRecord, force_record, prepared
 def observe(scene: Scene, time: object, force: object = None, output: object = None, start: State | None = None,
             offset: float | str = 0.0, gap: str = "refuse", stop: Stop | None = None,
             progress: Callable[[float], None] | None = None, bandwidth: float = math.inf) -> Observation:
-    """The observer of model (3), Zhang et al. 2016: the chain without driver, a given force on its first bead.
+    """Compute the observer of model (3), Zhang et al. 2016: the chain without driver, a given force on its first bead.
 
-    Steps are halved until the error by the steps is at most the accuracy asked for. A further computation from every
-    second sample gives the interpolation error (docs/observers.md).
+    Steps are halved until the error due to the steps is at most the requested accuracy. A further computation from
+    every second sample gives the interpolation error (docs/observers.md).
 
     Parameters
     ----------
     scene : Scene
         The chain; its driver is left out.
     time : array_like, shape (T,), or ForceRecord
-        Times of the samples [s], ascending; or a record that was read from a file.
+        Times of the samples [s], ascending, or a record that was read from a file.
     force : array_like, shape (T,)
         Force on bead 1 [N].
     output : array_like, shape (T,), optional
-        Measured output force at the same times [N], to compare with.
+        Measured output force at the same times [N], for comparison.
     start : State, optional
-        Where the chain begins; at rest if not given.
+        Where the chain starts; by default at rest.
     offset : float or "median"
-        Subtracted from the force [N].
+        Offset that is subtracted from the force [N].
     gap : str
         Treatment of a gap in the record: "refuse", "zero" or "interpolate".
     stop : Stop, optional
         Ends the computation when another thread sets it.
     progress : callable, optional
-        Called with the fraction that is done, 0 to 1.
+        Called with the completed fraction, 0 to 1.
     bandwidth : float
         Bandwidth of the force sensors [Hz]. The computed output force passes their low-pass before it is compared, and
-        a record may be sampled as slowly as their shortest pulse allows. The given force is applied as it is.
+        a record may be sampled as slowly as their shortest pulse allows. The given force is applied unchanged.
 
     Returns
     -------
     Observation
-        The motion at every sample. Its `status` is "done", or "accuracy-not-reached" where samples are too far apart
-        for the accuracy asked for, or where the observer magnifies every error.
+        The motion at every sample. Its `status` is "done", or "accuracy-not-reached" if samples are too far apart for
+        the requested accuracy, or if the observer magnifies every error.
 
     Raises
     ------
@@ -106,7 +106,7 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
 
 
 def _interpolation_errors(chain: ForceDrivenChain, record: ForceRecord, begin: State, finest: Refined) -> np.ndarray:
-    """Relative errors (4,) of displacements and largest forces by the interpolation between the record's samples.
+    """Relative errors (4,) of displacements and largest forces due to the interpolation between the record's samples.
 
     They follow from the difference between the `finest` motion and one from every second sample.
     """
@@ -120,7 +120,7 @@ def _interpolation_errors(chain: ForceDrivenChain, record: ForceRecord, begin: S
 
 def _observation(chain: ForceDrivenChain, record: ForceRecord, sensors: Sensors, finest: Refined,
                  interpolation: np.ndarray, spent: Stopwatch) -> Observation:
-    """The result in SI; `interpolation` are the relative errors (4,) by the interpolation."""
+    """The result in SI; `interpolation` are the relative errors (4,) due to the interpolation."""
     scene, scales, motion = chain.scaled.scene, chain.scaled.scales, finest.samples
     displacement, forces = scales.displacements(motion.displacement), scales.forces(motion.force)
     forces[:, 0] = record.force

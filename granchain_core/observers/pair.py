@@ -1,7 +1,7 @@
 """A pair: a chain and its observer in one integration, a drive–response pair. Model (4), Zhang et al. 2016.
 
-The observer is a second chain of the same beads and the same wall whose first bead feels F_in, the force of the first
-chain's driver contact, in place of a contact of its own. Bodies of the pair are those of the chain, 0..N+1, then the
+The observer is a second chain with the same beads and the same wall. Its first bead feels F_in, the force of the first
+chain's driver contact, instead of a contact of its own. The bodies of the pair are those of the chain, 0..N+1, then the
 observer's beads and its wall; contact N+1, between the chain's wall and the observer's first bead, carries F_in.
 """
 
@@ -25,7 +25,7 @@ from ..scene.state import State
 
 
 def scale_pair(scene: Scene) -> ScaledChain:
-    """Scaled arrays and slots of a chain with its observer.
+    """Scale a chain with its observer: arrays and slots of both.
 
     The contact that carries F_in has no overlap of its own: its bodies are BODY_FAR_AWAY apart, and its stiffness is 0.
     """
@@ -41,10 +41,10 @@ def scale_pair(scene: Scene) -> ScaledChain:
 
 
 class Pair:
-    """A chain and its observer, carried through time together at `samples` samples a period by dop853.
+    """A chain and its observer, integrated together by dop853 with `samples` samples per period.
 
-    Both go through the same arithmetic, so an observer that starts in its chain's state stays in it, to rounding: the
-    compiler may sum the terms of a bead in another order than those of the observer's bead.
+    Both go through the same arithmetic, so an observer that starts in its chain's state remains in it, up to rounding:
+    the compiler may sum the terms of a bead in another order than those of the observer's bead.
     """
 
     def __init__(self, scene: Scene, samples: int, stop: Stop | None = None) -> None:
@@ -53,14 +53,14 @@ class Pair:
                              scaled=scale_pair(scene))
 
     def start(self, chain: State, observer: State) -> None:
-        """Put both into their states; the phase is the chain's."""
+        """Start both from their states, at the chain's phase."""
         def both(name: str) -> np.ndarray:
             return np.concatenate([getattr(chain, name), [0.0], getattr(observer, name)])
 
         self.engine.start(State(both("displacement"), both("velocity"), chain.phase))
 
     def difference(self, rows: Samples) -> np.ndarray:
-        """Observer minus chain of recorded samples (T, 2N): displacements, then velocities, in scaled units."""
+        """Observer minus chain at recorded samples (T, 2N): displacements, then velocities, in scaled units."""
         n = self.scene.N
         return np.hstack([row[:, n + 1 :] - row[:, :n] for row in (rows.displacement, rows.velocity)])
 

@@ -1,7 +1,7 @@
-"""A measured force from a file: a table that granchain_core/experiment reads, or HDF5 as granchain writes it.
+"""A measured force from a file: a table that granchain_core/experiment reads, or HDF5 written by granchain.
 
-Here a table needs no header: its columns then are time, force and, if there is one, output force. A column without a
-unit is in seconds or newtons, or in the unit that the caller names.
+Here a table needs no header: its columns are then time, force and, if there is a third, output force. A column without
+a unit is in seconds or newtons, or in the unit that the caller gives.
 """
 
 from __future__ import annotations
@@ -21,22 +21,22 @@ from ..results.recorded_motion import motion_units
 from ..scene.state import State
 from .record import ForceRecord, checked
 
-#: Endings of the names of HDF5 files, whose beginning may be damaged.
+#: Suffixes of HDF5 files, which are recognised by them even if their beginning is damaged.
 _HDF5 = (".h5", ".hdf5")
 
 
 def read_force(path: str | Path, time_unit: str | None = None, force_unit: str | None = None,
                answers: Answers | None = None) -> ForceRecord:
-    """The force in a table or an HDF5 file; units for a table whose header names none.
+    """Read the force from a table or an HDF5 file; the units are for a table whose header gives none.
 
-    `answers` are what a person says about a table. Raises `Unclear` for what has to be asked, and `BadInput` naming the
-    line.
+    `answers` are the user's answers to questions about the table. Raises `Unclear` with a question that has to be
+    asked, and `BadInput` naming the line.
     """
     path = Path(path)
     content = content_of(path)
     if content.startswith(SIGNATURE[:4]) or path.suffix in _HDF5:
         if time_unit is not None or force_unit is not None:
-            raise BadInput(f"{path.name} is an HDF5 file, whose units are s and N; they are chosen for CSV only.")
+            raise BadInput(f"{path.name} is an HDF5 file, whose units are s and N; units can be chosen for CSV only.")
         return checked(_from_hdf5(path))
     try:
         return read_force_csv(content, time_unit, force_unit, answers)
@@ -48,7 +48,7 @@ def read_force(path: str | Path, time_unit: str | None = None, force_unit: str |
 
 def read_force_csv(text: str | bytes, time_unit: str | None = None, force_unit: str | None = None,
                    answers: Answers | None = None) -> ForceRecord:
-    """The force in the text of a table. Raises as `read_force` does."""
+    """Read the force from the text of a table. Raises the same exceptions as `read_force`."""
     units = {"time": _unit("time", time_unit), **dict.fromkeys(("input_force", "output_force"),
                                                                _unit("force", force_unit))}
     insisted = (*(("time",) if time_unit else ()), *(("input_force", "output_force") if force_unit else ()))
@@ -69,7 +69,7 @@ def read_force_csv(text: str | bytes, time_unit: str | None = None, force_unit: 
 
 
 def _unit(dimension: str, unit: str | None) -> str:
-    """The unit that is asked for, or the SI unit."""
+    """The symbol of the requested unit, or of the SI unit."""
     known = UNITS[dimension]
     symbol = next(iter(known)) if unit is None else unit_named(unit)
     if symbol not in known:
@@ -82,7 +82,7 @@ def _described(record: ForceRecord, units: str) -> ForceRecord:
     output = "with" if record.output is not None else "no"
     return replace(record, understood=(
         f"{len(record.time)} samples from {record.time[0]:.6g} to {record.time[-1]:.6g} s, "
-        f"{round(1.0 / record.spacing):d} a second, force {record.force.min():.4g} to {record.force.max():.4g} N, "
+        f"{round(1.0 / record.spacing):d} per second, force {record.force.min():.4g} to {record.force.max():.4g} N, "
         f"{output} output force; {units}"))
 
 
@@ -102,7 +102,7 @@ def _from_hdf5(path: Path) -> ForceRecord:
 
 
 def _group(file: File) -> str:
-    """The group that holds a force."""
+    """The group that contains a force."""
     for name in ("run", "observation"):
         if file.has(f"{name}/time") and file.has(f"{name}/input_force"):
             return name
@@ -111,7 +111,7 @@ def _group(file: File) -> str:
 
 
 def first_state(path: str | Path, beads: int) -> State:
-    """The first displacements and velocities in an HDF5 file of granchain, where an observer may start."""
+    """Read the first displacements and velocities from an HDF5 file of granchain, as the start of an observer."""
     with opened(path, "has no state to start from") as file:
         group = _group(file)
         shape = (*file.shape(f"{group}/time"), beads)

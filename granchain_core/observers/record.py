@@ -1,10 +1,10 @@
 """A measured force over time: checks, offset, gaps, and interpolation between samples.
 
-Between the samples the force is a monotone cubic (Fritsch & Carlson 1980, slopes of Fritsch & Butland 1984, as in
-scipy's PchipInterpolator): it passes through every sample, nowhere beyond its two neighbours, so that a force that is
-never negative stays so, and where two neighbours are zero it is zero. Its error is of order 2 to 3 in the spacing where
-the force is smooth. Around the jump that a linear dashpot makes when its contact closes the force has an error of order
-1/2 in root mean square (tests/observers/test_sampling.py measures both), the motion one of order 1.
+Between the samples, the force is a monotone cubic (Fritsch & Carlson 1980, slopes of Fritsch & Butland 1984, as in
+SciPy's PchipInterpolator). It passes through every sample and never goes beyond the two neighbouring ones: a force that
+is never negative stays so, and between two zero samples it is zero. Its error is of order 2 to 3 in the spacing where
+the force is smooth. Around the jump that a linear dashpot makes when its contact closes, the error of the force is of
+order 1/2 in root mean square (tests/observers/test_sampling.py measures both), and that of the motion is of order 1.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ from ..inputs.text import number_in
 from ..scene import Scene
 from ..scene.hertz import HERTZ_DURATION, HERTZ_FORCE
 
-#: Fewest samples over the shortest pulse of this strength.
+#: Minimum number of samples over the shortest pulse with the record's largest force.
 PULSE_SAMPLES = 4
-#: A force whose smallest modulus is above this fraction of its largest may have a sensor's offset, and a note says so.
+#: A force whose smallest modulus is above this fraction of its largest may contain a sensor offset: a note says so.
 _NEAR_ZERO = 0.02
-#: Fewest samples in all.
+#: Minimum number of samples in total.
 FEWEST = 8
 _PERFECT = Sensors()
 #: Duration of a collision of two free beads of mass m with peak force F, over √(m/2) K^{−1/3} F^{−1/6}.
@@ -36,8 +36,8 @@ _HERTZ = HERTZ_DURATION * HERTZ_FORCE ** (1.0 / 6.0)
 class ForceRecord:
     """Samples of a force: time (T,) [s], force (T,) [N], measured output force (T,) [N] or None.
 
-    `place` names the place of a sample in its source, "Line 7" or "Sample 6", for messages; `understood` describes how
-    it was read and treated; `put_in` are the indices of samples that were put into gaps.
+    `place` names the place of a sample in its source for messages, "Line 7" or "Sample 6". `understood` describes how
+    the record was read, and `notes` how it was treated. `put_in` are the indices of samples inserted into gaps.
     """
 
     time: np.ndarray
@@ -50,15 +50,15 @@ class ForceRecord:
 
     @property
     def spacing(self) -> float:
-        """The usual time between samples [s]."""
+        """The usual (median) time between samples [s]."""
         return float(np.median(np.diff(self.time)))
 
     def thinned(self) -> tuple[ForceRecord, np.ndarray, np.ndarray]:
-        """The record of a sensor half as fast, and the indices of its measured samples here and in it.
+        """The record of a sensor half as fast, and the indices of its measured samples in this record and in that one.
 
-        It has every second measured sample, the first and the last among them. The zero force in gaps begins and ends
-        beside the samples that are left, at twice the distance: the force falls to it half as fast, whichever sample
-        was the last before a gap.
+        It has every second measured sample, including the first and the last. The zero force in gaps begins and ends
+        next to the remaining samples, at twice the distance: the force falls to it half as fast, whichever sample was
+        the last before a gap.
         """
         measured = np.delete(np.arange(len(self.time)), self.put_in)
         kept = np.unique(np.append(measured[::2], measured[-1]))
@@ -69,13 +69,13 @@ class ForceRecord:
 
     def cubics(self) -> np.ndarray:
         """Coefficients (T − 1, 4) of the force in every interval, constant term first, in N and s."""
-        from scipy.interpolate import PchipInterpolator  # a quarter of a second, which only observers pay
+        from scipy.interpolate import PchipInterpolator  # takes a quarter of a second to load, so only here
 
         return np.ascontiguousarray(PchipInterpolator(self.time, self.force).c[::-1].T)
 
 
 def force_record(time: object, force: object, output: object = None) -> ForceRecord:
-    """A record from arrays in SI, or `BadInput` naming the first sample that cannot be used."""
+    """Make a record from arrays in SI. Raises `BadInput` naming the first sample that cannot be used."""
     arrays = [_array(name, values) for name, values in (("time", time), ("force", force))]
     given = None if output is None else _array("output", output)
     lengths = {len(a) for a in (*arrays, *(() if given is None else (given,)))}
@@ -89,14 +89,14 @@ def _array(name: str, values: object) -> np.ndarray:
     try:
         array = np.array(values, dtype=float)
     except (TypeError, ValueError):
-        raise BadInput(f"{name} must be numbers in one row, one a sample.") from None
+        raise BadInput(f"{name} must be numbers in one row, one per sample.") from None
     if array.ndim != 1:
         raise BadInput(f"{name} must be numbers in one row; its shape is {array.shape}.")
     return array
 
 
 def checked(record: ForceRecord) -> ForceRecord:
-    """The record itself if every number is finite and times ascend."""
+    """Check that every number is finite and times ascend; return the record itself. Raises `BadInput`."""
     if len(record.time) < FEWEST:
         raise BadInput(f"There are {len(record.time)} samples of the force; at least {FEWEST} are needed.")
     for name in ("time", "force", "output"):
@@ -109,17 +109,17 @@ def checked(record: ForceRecord) -> ForceRecord:
     if (steps <= 0.0).any():
         at = int(np.flatnonzero(steps <= 0.0)[0]) + 1
         raise BadInput(f"{record.place(at)}: time {record.time[at]:.9g} s does not come after "
-                       f"{record.time[at - 1]:.9g} s of the sample before; "
+                       f"{record.time[at - 1]:.9g} s of the previous sample; "
                        "samples must be in order of time, each time once.")
     return record
 
 
 def prepared(record: ForceRecord, scene: Scene, offset: float | str = 0.0, gap: str = "refuse",
              sensors: Sensors = _PERFECT) -> ForceRecord:
-    """The force that is applied: offset subtracted if asked, gaps as chosen, its sampling fine enough for `scene`.
+    """Prepare the force to be applied: subtract the offset, treat gaps, and check the sampling for `scene`.
 
-    `offset` is a force in N, or "median" for the median of all samples, which is the sensor's zero where the driver is
-    out of contact more than half of the time. Raises `BadInput` naming the sample.
+    `offset` is a force in N, or "median" for the median of all samples, which is the sensor's zero if the driver is out
+    of contact for more than half of the time. Raises `BadInput` naming the sample.
     """
     notes = []
     zero = _offset(record, offset)
@@ -148,7 +148,7 @@ def _offset(record: ForceRecord, offset: float | str) -> float:
 
 
 def _bridged(record: ForceRecord, gap: str, notes: list[str]) -> ForceRecord:
-    """Samples with their gaps treated; zero force ends one usual spacing beside a gap's two neighbours."""
+    """The samples with their gaps treated; zero force begins and ends one usual spacing from a gap's neighbours."""
     gaps = Gaps.of(record.time, record.place)
     treated = gaps.treated(gap, "a smooth curve across it", "force")
     if not treated:
@@ -158,13 +158,13 @@ def _bridged(record: ForceRecord, gap: str, notes: list[str]) -> ForceRecord:
         return record
     if record.output is not None:
         raise BadInput(f"{gaps.where}: a gap in a record with an output force can only be interpolated, since there is "
-                       "no output force for samples that are put in.")
+                       "no output force for inserted samples.")
     time, force, put_in = with_zeros(record.time, record.force, gaps.before, gaps.usual)
     return ForceRecord(time, force, None, record.place, record.understood, put_in=put_in)
 
 
 def shortest_pulse(scene: Scene, force: float) -> float:
-    """Duration of a collision of two of the chain's lightest beads whose peak is `force` [s]: no pulse is shorter."""
+    """Duration [s] of a collision of two of the chain's lightest beads with peak `force` [N]: no pulse is shorter."""
     reduced = 0.5 * float(scene.masses().min())
     stiffest = float(scene.contact_stiffness().max())
     return float(_HERTZ * np.sqrt(reduced) * stiffest ** (-1.0 / 3.0) * force ** (-1.0 / 6.0))
@@ -181,4 +181,4 @@ def _check_sampling(record: ForceRecord, scene: Scene, sensors: Sensors) -> None
         raise BadInput(f"{record.place(worst)}: a pulse of {largest:.3g} N may be as short as "
                        f"{PULSE_SAMPLES * allowed:.3g} s in this chain{through}, and samples {record.spacing:.3g} s "
                        f"apart would miss it; the nearest valid spacing is {allowed:.3g} s "
-                       f"({1.0 / allowed:.4g} samples a second).")
+                       f"({1.0 / allowed:.4g} samples per second).")

@@ -1,9 +1,9 @@
-"""Stability of an observer over a knob: its largest multiplier, and where that crosses 1.
+"""Stability of an observer over a knob: its largest multiplier, and where its modulus crosses 1.
 
-The orbit is followed from value to value, each Newton iteration starting from the orbit before; where that ends, the
-steady state from rest is tried. A crossing is narrowed down by bisection, again on orbits and not on the interpolated
-curve. Where an orbit could not be reached from the one before, a change of stability is a jump to another branch, which
-has no threshold.
+The orbit is continued from value to value, each Newton iteration starting from the previous orbit. Where that fails,
+the steady state from rest is tried. A crossing is narrowed down by bisection, again on orbits and not on an
+interpolated curve. If an orbit could not be reached from the previous one, a change of stability is a jump to another
+branch and has no threshold.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ from ..scene import Scene
 
 #: A crossing is located to this fraction of the distance between the two neighbouring values.
 LOCATED = 1e-3
-#: Most values of one scan.
+#: Maximum number of values in one scan.
 MOST_VALUES = 2000
 
 
 @dataclass(frozen=True)
 class ObserverPoint:
-    """One value of the knob: largest observer multiplier and the chain's own; NaN where no orbit was found."""
+    """One value of the knob: the leading multipliers of observer and chain; NaN if no orbit was found."""
 
     value: float
     observer: complex
@@ -43,9 +43,10 @@ class ObserverPoint:
 
 @dataclass(frozen=True)
 class Threshold:
-    """The observer's stability changes between `low` and `high`; `gains`: it becomes stable as the value rises.
+    """A change of the observer's stability between `low` and `high`; with `gains`, it becomes stable at larger values.
 
-    Among the `jumps` of an `ObserverStability` the orbits at both values are on two branches, and nothing crosses.
+    Among the `jumps` of an `ObserverStability`, the orbits at the two values are on different branches, and nothing
+    crosses.
     """
 
     low: float
@@ -57,7 +58,7 @@ class Threshold:
 class ObserverStability:
     """Points in the order of the values, and every crossing of |μ| = 1 between neighbours on one branch.
 
-    `jumps` are the neighbours of unlike stability whose orbits are not on one branch, as far as Newton's method tells.
+    `jumps` are neighbours that differ in stability but are not on one branch, as far as Newton's method shows.
     """
 
     scene: Scene
@@ -67,18 +68,19 @@ class ObserverStability:
     jumps: tuple[Threshold, ...] = ()
 
     def column(self, name: str) -> np.ndarray:
-        """One attribute of all points."""
+        """One attribute of all points as an array."""
         return np.array([getattr(p, name) for p in self.points])
 
 
 def observer_stability(scene: Scene, knob: str, values: Sequence[float], period: int | None = None,
                        stop: Stop | None = None) -> ObserverStability:
-    """Largest observer multiplier of `scene` with `knob`, one of `CONTINUOUS`, at each of `values`.
+    """Compute the observer's largest multiplier at each of the `values` of `knob`, one of `CONTINUOUS`.
 
-    `period` of the orbit in drive periods; else that of the steady state at the first value. Raises `BadInput`.
+    `period` is that of the orbit in drive periods; by default, that of the steady state at the first value. Raises
+    `BadInput`.
     """
     if knob not in CONTINUOUS:
-        raise BadInput(f"Observer stability cannot be followed over {knob!r}; possible: {', '.join(CONTINUOUS)}.")
+        raise BadInput(f"Observer stability cannot be computed over {knob!r}; possible: {', '.join(CONTINUOUS)}.")
     if not 1 <= len(values) <= MOST_VALUES:
         raise BadInput(f"{len(values)} values are outside 1 to {MOST_VALUES}; the nearest valid number is "
                        f"{min(max(len(values), 1), MOST_VALUES)}.")
@@ -92,7 +94,7 @@ def observer_stability(scene: Scene, knob: str, values: Sequence[float], period:
         orbit = _continued(chain, before, stop)
         continued.append(orbit is not None)
         failure = ""
-        if orbit is None:  # the orbit before has ended or is too far away, or there was none
+        if orbit is None:  # the previous orbit has ended or is too far away, or there was none
             orbit, failure = _from_rest(chain, period, stop)
         orbits.append(orbit)
         points.append(_point(float(value), orbit, failure))
@@ -109,7 +111,7 @@ def observer_stability(scene: Scene, knob: str, values: Sequence[float], period:
 
 
 def _continued(scene: Scene, before: Orbit | None, stop: Stop | None) -> Orbit | None:
-    """The orbit that Newton's method reaches from the one before; None where there is none."""
+    """The orbit that Newton's method reaches from the previous one; None if it reaches none."""
     if before is None:
         return None
     try:
@@ -119,7 +121,7 @@ def _continued(scene: Scene, before: Orbit | None, stop: Stop | None) -> Orbit |
 
 
 def _from_rest(scene: Scene, period: int | None, stop: Stop | None) -> tuple[Orbit | None, str]:
-    """The orbit reached from rest, else none and why."""
+    """The orbit reached from rest and "", or None and the reason."""
     try:
         return periodic_orbit(scene, period, observer=True, stop=stop), ""
     except ComputationError as problem:
@@ -134,7 +136,7 @@ def _point(value: float, orbit: Orbit | None, failure: str) -> ObserverPoint:
 
 def _locate(scene: Scene, knob: str, a: ObserverPoint, b: ObserverPoint, orbit: Orbit,
             stop: Stop | None) -> Threshold:
-    """Bisection of a crossing, the orbit followed to every middle."""
+    """Locate a crossing by bisection, continuing the orbit to every midpoint."""
     low, high, stable_at_low = a.value, b.value, a.observer_largest < 1.0
     while abs(high - low) > LOCATED * abs(b.value - a.value):
         middle = 0.5 * (low + high)
@@ -149,5 +151,5 @@ def _locate(scene: Scene, knob: str, a: ObserverPoint, b: ObserverPoint, orbit: 
 
 
 def _between(a: ObserverPoint, b: ObserverPoint, low: float, high: float) -> Threshold:
-    """The change of stability between two neighbours, known to lie between two values."""
+    """The change of stability between two neighbours, known to lie between the values `low` and `high`."""
     return Threshold(min(low, high), max(low, high), (a.observer_largest < 1.0) != (b.value > a.value))

@@ -1,11 +1,11 @@
-"""A twin: a drive–response pair of a chain and its observer. Do they synchronise? Model (4), Zhang et al. 2016.
+"""A twin: a drive–response pair of a chain and its observer, which may synchronise. Model (4), Zhang et al. 2016.
 
 The chain drives the observer, a copy that starts from a slightly different state, by its input force alone.
 
-The distance between observer and chain, in scaled units |(Δu/A0, Δv/(A0 φ))|, changes by the observer's leading
-multiplier every period of the orbit as long as it is small. Here it is followed in time without linearisation, and
-the multiplier is obtained from it: successive differences obey d_{k+1} = a d_k where one real multiplier leads, and
-d_{k+2} = a d_{k+1} + b d_k where two do, which then solve z² = a z + b.
+The distance between observer and chain, in scaled units |(Δu/A0, Δv/(A0 φ))|, is multiplied by the modulus of the
+observer's leading multiplier in every period of the orbit, as long as it is small. Here it is computed over time
+without linearisation, and the multiplier is obtained from it: successive differences obey d_{k+1} = a d_k if one real
+multiplier leads, and d_{k+2} = a d_{k+1} + b d_k if two do, which then solve z² = a z + b.
 """
 
 from __future__ import annotations
@@ -28,22 +28,22 @@ from ..steady.settling.advance import run_until_settled
 from .drift import departure_words, is_drift, share_of_translation
 from .pair import Pair
 
-#: Largest distance, in scaled units, at which the difference of two motions still grows linearly.
+#: Largest distance, in scaled units, at which the difference between two motions is still linear.
 LINEAR = 0.03
-#: Smallest distance that the fit of the multipliers uses: below it rounding is a part of the distance.
+#: Smallest distance that the fit of the multipliers uses: rounding is a notable fraction of smaller ones.
 LEAST_DISTANCE = 1e-11
-#: The observer is in step, and is followed no further, once all entries of the difference are below this for a period.
-#: A tenth of `LEAST_DISTANCE`, so that no distance of the fit is missing.
+#: The observer is in step, and the computation ends, once all entries of the difference are below this for a period.
+#: It is a tenth of `LEAST_DISTANCE`, so that the fit misses no distance.
 SYNCHRONISED = 1e-12
-#: Most drive periods of a twin: a minute or so.
+#: Maximum number of drive periods of a twin: about a minute.
 MOST_TWIN_PERIODS = 20_000
 #: Fraction of the usable periods after which fast multipliers count as decayed.
 _TRANSIENT = 1.0 / 3.0
-#: Fewest strobes from which a rate is taken.
+#: Minimum number of strobes from which a rate is computed.
 _FEWEST = 4
-#: Standard errors within which a rate is not distinguished from 1 where no multiplier is known.
+#: Number of standard errors within which a rate is not distinguished from 1 if no multiplier is known.
 _UNCERTAIN = 3.0
-#: Part of the differences that a fit by one multiplier may leave unexplained before two are fitted.
+#: Fraction of the differences that a fit with one multiplier may leave unexplained before two are fitted.
 _ONE_IS_ENOUGH = 0.03
 
 
@@ -56,27 +56,27 @@ class Twin:
     scene : Scene
         The chain.
     orbit : Orbit or None
-        The orbit that the chain starts on; None where it is not periodic, or cuts tension.
+        The orbit on which the chain starts; None if its motion is not periodic, or if it cuts tension.
     period : int
-        Drive periods between two strobes: that of the chain's motion, 1 where it is not periodic.
+        Drive periods between two strobes: the period of the chain's motion, or 1 if it is not periodic.
     time : numpy.ndarray, shape (T,)
-        From 0 on [s].
+        Times from 0 on [s].
     chain, observer : numpy.ndarray, shape (T, N)
         Displacements of the beads [m].
     input_force, output_force, observer_output_force : numpy.ndarray, shape (T,)
-        Force of the driver on both chains, of the chain and of the observer on their walls [N].
+        Force of the driver on both chains, of the chain on its wall, and of the observer on its wall [N].
     distance : numpy.ndarray, shape (T,)
-        Of observer and chain, in scaled units.
+        Distance between observer and chain, in scaled units.
     strobe_distance : numpy.ndarray, shape (strobes,)
         The same at every strobe.
     window : tuple of int
-        First strobe of those with a linear distance, and one past the last.
+        First strobe with a linear distance, and one past the last.
     rate : float or None
-        Factor by which the distance grows or shrinks from strobe to strobe; None where too few were linear.
+        Factor by which the distance grows or shrinks from strobe to strobe; None if too few strobes were linear.
     measured : tuple of complex
-        One or two leading multipliers fitted to the differences; empty where too few strobes were linear.
+        One or two leading multipliers fitted to the differences; empty if too few strobes were linear.
     translation : float
-        Share of one shift of all beads in the last linear difference, 0 to 1.
+        Share of a common shift of all beads in the last linear difference, 0 to 1.
     cost : Cost
         Computing time, steps and evaluations.
     rate_error : float or None
@@ -103,7 +103,7 @@ class Twin:
 
     @property
     def leading(self) -> complex | None:
-        """The leading observer multiplier of the orbit, what `measured` is to be compared with."""
+        """The leading observer multiplier of the orbit, for comparison with `measured`; None if it is not known."""
         return None if self.orbit is None else self.orbit.leading_observer_multiplier
 
     @property
@@ -115,14 +115,14 @@ class Twin:
 
     @property
     def offset(self) -> np.ndarray:
-        """Mean displacement of the observer's beads less that of the chain's (T,) [m]."""
+        """Mean displacement of the observer's beads minus that of the chain's (T,) [m]."""
         return (self.observer - self.chain).mean(axis=1)
 
     @property
     def in_step(self) -> bool:
-        """Whether the observer began apart from its chain and has been in step with it, to rounding, for a period."""
+        """Whether the observer started apart from its chain and is in step with it, to rounding, in the last period."""
         samples = round(self.scene.period / (self.time[1] - self.time[0]))
-        rounding = SYNCHRONISED * np.sqrt(2.0 * self.scene.N)  # that of one number, in a distance of 2N of them
+        rounding = SYNCHRONISED * np.sqrt(2.0 * self.scene.N)  # of one entry, in a distance of 2N entries
         return bool(self.distance[0] > LEAST_DISTANCE and self.distance[-samples:].max() < rounding)
 
     @property
@@ -131,7 +131,7 @@ class Twin:
         if self.rate is None:
             unstable = self.leading is not None and abs(self.leading) > 1.0
             return "synchronises" if self.in_step and not unstable else "neither yet"
-        if self._contradicted or self._uncertain:  # what the multiplier says will be seen later
+        if self._contradicted or self._uncertain:  # the multiplier's effect will show later
             return "neither yet"
         if self.rate <= 1.0:
             return "synchronises"
@@ -139,14 +139,14 @@ class Twin:
 
     @property
     def _contradicted(self) -> bool:
-        """Whether the distance grows though all multipliers are inside the circle, or shrinks though one is outside."""
+        """Whether the distance grows with all multipliers inside the unit circle, or shrinks with one outside."""
         if self.rate is None or self.leading is None:
             return False
         return abs(self.leading) < 1.0 if self.rate > 1.0 else abs(self.leading) > 1.0
 
     @property
     def _uncertain(self) -> bool:
-        """Whether neither a multiplier nor the rate itself says on which side of 1 it is."""
+        """Whether neither a multiplier nor the rate's own error shows on which side of 1 the rate is."""
         if self.rate is None or self.leading is not None or self.rate_error is None:
             return False
         return bool(abs(np.log(self.rate)) <= _UNCERTAIN * self.rate_error)
@@ -176,12 +176,12 @@ class Twin:
 
 def twin(scene: Scene, perturbation: float | State = 1e-6, periods: int = 60, samples: int = 48,
          stop: Stop | None = None) -> Twin:
-    """The drive–response pair of a chain and its observer over `periods` drive periods, or until they are in step.
+    """Integrate a chain and its observer, a drive–response pair, for `periods` drive periods or until they are in step.
 
-    `samples` is the number of samples per period. The chain starts on its settled orbit. `perturbation` is how far from
-    the chain the observer starts: a number moves all its beads at random (always the same) by that fraction of A0, root
-    mean square; a `State` is the observer's own start, such as `rest(scene)`. Raises `BadInput`, `ComputationError`,
-    `Cancelled`.
+    `samples` is the number of samples per period. The chain starts on its settled orbit. `perturbation` determines
+    where the observer starts: a number displaces all its beads from those of the chain at random (always in the same
+    way) by that fraction of A0, root mean square; a `State`, for example `rest(scene)`, is the observer's own start.
+    Raises `BadInput`, `ComputationError`, `Cancelled`.
     """
     require_scene(scene)
     periods = whole_number("periods =", periods, 1, MOST_TWIN_PERIODS)
@@ -214,7 +214,7 @@ def twin(scene: Scene, perturbation: float | State = 1e-6, periods: int = 60, sa
 
 
 def _follow(pair: Pair, periods: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Displacement and force of all bodies, and the observer's difference (T, 2N), to the end or to rounding."""
+    """Displacements and forces of the pair, and the observer's difference (T, 2N), to the end or down to rounding."""
     engine = pair.engine
     rows = engine.record(engine.samples)
     parts, difference = [rows], [pair.difference(rows)]
@@ -232,7 +232,7 @@ def _follow(pair: Pair, periods: int) -> tuple[np.ndarray, np.ndarray, np.ndarra
 
 
 def observer_start(scene: Scene, chain: State, perturbation: float | State) -> State:
-    """The observer's start: a given state, or the chain's displaced by a fraction of A0."""
+    """The observer's start: a given state, or the chain's state displaced by a fraction of A0."""
     if isinstance(perturbation, State):
         return replace(checked_start(scene, perturbation), phase=chain.phase)
     if not np.isfinite(perturbation):
@@ -243,7 +243,7 @@ def observer_start(scene: Scene, chain: State, perturbation: float | State) -> S
 
 
 def linear_window(distance: np.ndarray) -> tuple[int, int]:
-    """First strobe and one past the last of the longest run of linear distances, without its transient."""
+    """First strobe, and one past the last, of the longest run of linear distances, without its transient."""
     beyond = np.flatnonzero((distance > LINEAR) | (distance < LEAST_DISTANCE))
     edges = np.concatenate([[-1], beyond, [len(distance)]])
     longest = int(np.argmax(np.diff(edges)))
@@ -252,9 +252,9 @@ def linear_window(distance: np.ndarray) -> tuple[int, int]:
 
 
 def rate_of(strobes: np.ndarray) -> tuple[float | None, float | None]:
-    """Factor of the distance per strobe, and the standard error of its logarithm; None for both of too few strobes.
+    """Growth factor of the distance per strobe, and the standard error of its logarithm; both None for too few strobes.
 
-    `strobes` are successive differences (P, 2N). The logarithm of their length is fitted by a straight line.
+    `strobes` are successive differences (P, 2N). A straight line is fitted to the logarithm of their length.
     """
     if len(strobes) < _FEWEST:
         return None, None
@@ -263,9 +263,9 @@ def rate_of(strobes: np.ndarray) -> tuple[float | None, float | None]:
 
 
 def multipliers_of(strobes: np.ndarray) -> tuple[complex, ...]:
-    """One or two leading multipliers of successive differences (P, 2N), the larger first; none of too few.
+    """Fit one or two leading multipliers to successive differences (P, 2N), the larger first; none if these are few.
 
-    Where one real multiplier explains them no second one is fitted.
+    If one real multiplier explains the differences, no second one is fitted.
     """
     if len(strobes) < _FEWEST:
         return ()

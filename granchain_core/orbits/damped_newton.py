@@ -1,9 +1,9 @@
 """Damped Newton's method for a fixed point of the exact stroboscopic map, with its derivative at each step.
 
-It serves an orbit at given knobs (find_orbit.py), where z is the state, and a point of a bifurcation curve
-(bifurcation_continuation/point.py), where z is the state with a knob, in a plane across the branch. Branches
-(branch/newton.py) and settling chains (steady/settling/finite_difference_map.py) have methods of their own, because
-they save derivatives.
+It finds an orbit at given knobs (find_orbit.py), where z is the state, and a point of a bifurcation curve
+(bifurcation_continuation/point.py), where z is the state together with a knob, in a plane across the branch. Branches
+(branch/newton.py) and settling chains (steady/settling/finite_difference_map.py) have methods of their own, which need
+fewer derivatives.
 
 Source: Deuflhard 2004, Newton Methods for Nonlinear Problems, chapter 3.
 """
@@ -19,18 +19,15 @@ from ..errors import ComputationError
 from ..steady.residuals import ACCEPTED_RESIDUAL, RESIDUAL_GOAL
 from .stroboscopic_map import Flow
 
-#: Steps at most.
+#: Maximum number of steps.
 MOST_STEPS = 12
-#: Most sizes of a step that are tried, each half of the one before.
+#: Maximum number of sizes tried for one step, each half of the previous one.
 _MOST_SIZES = 6
 
 
 @dataclass(frozen=True, eq=False)
 class Iterated:
-    """The end of an iteration: the point z, the map from z with its derivative, and the residuals of all points.
-
-    It has `converged` where the last residual is accepted.
-    """
+    """The result of an iteration: the last point z, the flow from z with its derivative, and all residuals."""
 
     z: np.ndarray
     flow: Flow
@@ -38,16 +35,16 @@ class Iterated:
 
     @property
     def converged(self) -> bool:
-        """Whether the last residual is accepted."""
+        """Whether the last residual is at most `ACCEPTED_RESIDUAL`."""
         return self.residuals[-1] <= ACCEPTED_RESIDUAL
 
 
 def iterate(evaluate: Callable[[np.ndarray], tuple[Flow, float]], step: Callable[[np.ndarray, Flow], np.ndarray],
             z: np.ndarray) -> Iterated:
-    """Newton's steps from z down to `RESIDUAL_GOAL`, or until no step lowers the residual.
+    """Iterate Newton's method from z until the residual is at most `RESIDUAL_GOAL`, or no step lowers it.
 
-    `evaluate` returns the map from a point with its derivative, and the residual; where it raises `ComputationError`
-    the step is halved, as where the residual does not fall. `step` is Newton's step from a point.
+    `evaluate` returns the flow from a point, with its derivative, and the residual. The step is halved where `evaluate`
+    raises `ComputationError` or the residual does not fall. `step` returns the full Newton step from a point.
     """
     flow, residual = evaluate(z)
     residuals = [residual]
@@ -57,7 +54,7 @@ def iterate(evaluate: Callable[[np.ndarray], tuple[Flow, float]], step: Callable
             trial = z + full_step / 2**halving
             try:
                 after, residual = evaluate(trial)
-            except ComputationError:  # a state too far away to be followed: a shorter step is nearer
+            except ComputationError:  # the state is too far away for the flow: try a shorter step
                 continue
             if residual < residuals[-1]:
                 break

@@ -23,15 +23,15 @@ from .damped_newton import Iterated, iterate
 from .orbit import Orbit, liouville_if_known, sorted_multipliers
 from .stroboscopic_map import Flow, StroboscopicMap, refuse_cut
 
-#: Why an orbit has period 1 where a start was given.
-NO_PERIOD_GIVEN = "period 1 was taken, because a start was given without a period"
-#: Why an orbit has period 1 where it is sought near a motion.
-NO_PERIOD_OF_SEARCH = "period 1 was taken, because none was given"
+#: Why period 1 was assumed for an orbit that is sought from a given start.
+NO_PERIOD_GIVEN = "period 1 was assumed, because a start was given without a period"
+#: Why period 1 was assumed for an orbit that is sought near a motion.
+NO_PERIOD_OF_SEARCH = "period 1 was assumed, because none was given"
 
 
 def periodic_orbit(scene: Scene, period: int | None = None, start: State | None = None, observer: bool = False,
                    stop: Stop | None = None) -> Orbit:
-    """A periodic orbit, stable or not, by Newton's method.
+    """Find a periodic orbit, stable or not, by Newton's method.
 
     Its Floquet multipliers are the eigenvalues of the map's derivative, computed with the orbit (docs/orbits.md).
 
@@ -59,7 +59,7 @@ def periodic_orbit(scene: Scene, period: int | None = None, start: State | None 
     BadInput
         The period is out of range, or the scene cuts tension.
     ComputationError
-        Newton's method did not converge; the message has its residuals.
+        Newton's method did not converge; the message gives its residuals.
     Cancelled
         `stop` was set.
 
@@ -82,13 +82,13 @@ def periodic_orbit(scene: Scene, period: int | None = None, start: State | None 
 
 
 def _begin(scene: Scene, n: int | None, start: State | None, stop: Stop | None) -> tuple[int, State, str]:
-    """Period, state at phase 0 and note with which Newton's method begins; from rest the steady state is awaited."""
+    """Return the period, the state at phase 0 and the note for Newton's method; without `start`, settle from rest."""
     if start is not None:
         return n or 1, at_phase_0(scene, start, stop), "" if n else NO_PERIOD_GIVEN
     settling = run_until_settled(scene, None, stop)
     note = ""
     if n is None and settling.regime.period is None:
-        note = f"period 1 was taken, because the motion from rest is {_no_period(settling.regime)}"
+        note = f"period 1 was assumed, because the motion from rest is {_no_period(settling.regime)}"
     return n or settling.regime.period or 1, settling.engine.state, note
 
 
@@ -98,14 +98,14 @@ def _no_period(regime: Regime) -> str:
 
 
 def random_state(scene: Scene, seed: int) -> State:
-    """A random start: normally distributed displacements and velocities in units of A0 and A0·φ."""
+    """Draw a random start: normally distributed displacements and velocities in units of A0 and A0·φ."""
     scales = scales_of(scene)
     draw = np.random.default_rng(seed).standard_normal((2, scene.N))
     return State(scales.displacements(draw[0]), scales.velocities(draw[1]))
 
 
 def _iterate(stroboscopic_map: StroboscopicMap, x: np.ndarray) -> Iterated:
-    """Newton's method from the state x; raises `ComputationError` with the residuals if it does not converge."""
+    """Run Newton's method from the state x; raise `ComputationError` with the residuals if it does not converge."""
 
     def evaluate(state: np.ndarray) -> tuple[Flow, float]:
         flow = _flow(stroboscopic_map, state)
@@ -124,13 +124,13 @@ def _dense(x: np.ndarray) -> bool:
 
 
 def _flow(stroboscopic_map: StroboscopicMap, x: np.ndarray) -> Flow:
-    """The flow from x, with the derivative where it is computed as a whole."""
+    """The flow from x, with the full derivative unless the chain is long."""
     return stroboscopic_map(x) if _dense(x) else stroboscopic_map(x, directions=np.zeros((len(x), 0)))
 
 
 def _newton_step(stroboscopic_map: StroboscopicMap, x: np.ndarray, flow: Flow) -> np.ndarray:
     if not _dense(x):
-        from .krylov import newton_step  # scipy.sparse.linalg takes 0.2 s to load, which only long chains need
+        from .krylov import newton_step  # only long chains need scipy.sparse.linalg, which takes 0.2 s to load
 
         return newton_step(stroboscopic_map, x, flow.end)
     try:
@@ -141,7 +141,7 @@ def _newton_step(stroboscopic_map: StroboscopicMap, x: np.ndarray, flow: Flow) -
 
 
 def _orbit(scene: Scene, n: int, stroboscopic_map: StroboscopicMap, newton: Iterated, observer: bool) -> Orbit:
-    """The orbit at the fixed point that was found, with its multipliers."""
+    """The orbit at the fixed point that Newton's method found, with its multipliers."""
     x, flow = newton.z, newton.flow
     off = monodromy = observer_monodromy = None
     if _dense(x):

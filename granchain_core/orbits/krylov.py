@@ -2,7 +2,7 @@
 
 The derivative of a chain of a thousand beads has four million entries; its product with one direction costs little
 more than the motion. Disturbances shrink in almost all directions, so a Krylov space of a few dozen dimensions
-suffices. SciPy's part for it is imported when the first long chain comes.
+suffices. `scipy.sparse.linalg` is imported only when the first long chain needs it.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from .stroboscopic_map import StroboscopicMap
 if TYPE_CHECKING:
     from scipy.sparse.linalg import LinearOperator
 
-#: Multipliers computed for a long chain.
+#: Number of multipliers computed for a long chain.
 LEADING = 24
 #: Error of these multipliers, relative to the largest.
 _EIGENVALUE_ERROR = 1e-9
@@ -25,7 +25,7 @@ _EIGENVALUE_ERROR = 1e-9
 _GMRES_TOLERANCE = 1e-6
 #: Products with the derivative after which GMRES restarts.
 _PRODUCTS_TO_RESTART = 80
-#: Restarts at most.
+#: Maximum number of restarts.
 _MOST_RESTARTS = 5
 
 
@@ -41,9 +41,9 @@ def derivative_at(stroboscopic_map: StroboscopicMap, x: np.ndarray, observer: bo
 
 
 def newton_step(stroboscopic_map: StroboscopicMap, x: np.ndarray, end: np.ndarray) -> np.ndarray:
-    """The step d of Newton's method towards a fixed point: (M − I) d = x − end, by GMRES.
+    """Solve (M − I) d = x − end for the Newton step d towards a fixed point, by GMRES.
 
-    Raises `ComputationError` where it does not converge: the derivative then has a multiplier close to 1.
+    Raises `ComputationError` where GMRES does not converge: the derivative then has a multiplier close to 1.
     """
     from scipy.sparse.linalg import LinearOperator, gmres
 
@@ -59,7 +59,7 @@ def newton_step(stroboscopic_map: StroboscopicMap, x: np.ndarray, end: np.ndarra
 
 def leading_multipliers(stroboscopic_map: StroboscopicMap, x: np.ndarray, observer: bool = False,
                         count: int = LEADING) -> np.ndarray:
-    """The `count` multipliers of largest modulus at the fixed point x, largest first, by Arnoldi iteration.
+    """Compute the `count` multipliers of largest modulus at the fixed point x, largest first, by Arnoldi iteration.
 
     Raises `ComputationError` where they do not converge.
     """
@@ -69,15 +69,15 @@ def leading_multipliers(stroboscopic_map: StroboscopicMap, x: np.ndarray, observ
 
 def arnoldi(stroboscopic_map: StroboscopicMap, x: np.ndarray, count: int, observer: bool = False,
             vectors: bool = False) -> Any:
-    """The `count` multipliers of largest modulus at the fixed point x, in any order.
+    """Compute the `count` multipliers of largest modulus at the fixed point x, in any order.
 
-    With `vectors` a pair: the multipliers, and their eigenvectors (2N, count).
+    With `vectors`, returns a pair: the multipliers and their eigenvectors (2N, count).
 
     Raises `ComputationError` where they do not converge.
     """
     from scipy.sparse.linalg import ArpackNoConvergence, eigs
 
-    # the start is fixed, so that the same chain gives the same digits
+    # a fixed start, so that the same chain always gives the same digits
     start = np.random.default_rng(0).standard_normal(len(x))
     try:
         return eigs(derivative_at(stroboscopic_map, x, observer), k=count, which="LM", v0=start, tol=_EIGENVALUE_ERROR,

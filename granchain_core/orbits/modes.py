@@ -1,12 +1,13 @@
 """Floquet modes: eigenvectors of the monodromy matrix as motions of the chain over one orbit.
 
-A perturbation δx of an orbit of n drive periods obeys δx(n/f) = M δx(0). With M v = μ v it comes back as μ times
-itself, and in between it is the difference of two neighbouring motions, by dop853:
+A perturbation δx of an orbit of n drive periods obeys δx(n/f) = M δx(0). If it starts as an eigenvector v, with
+M v = μ v, it returns as μ times itself. In between it is computed as the difference of two neighbouring motions, by
+dop853:
 
     δu(t) = [u(t; x0 + ε v) − u(t; x0 − ε v)] / 2ε
 
 Its error has two parts: the method's noise (about 1e-13) over ε, and the shift of contact events, which grows with ε.
-At ε = 1e-5 about 1e-8 is left. The difference of δx(n/f) and μ δx(0) is measured for each mode (`closure`).
+At ε = 1e-5 the error is about 1e-8. The difference between δx(n/f) and μ δx(0) is measured for each mode (`closure`).
 """
 
 from __future__ import annotations
@@ -34,8 +35,8 @@ _FEWEST_EIGENPAIRS = 6
 class Mode:
     """One mode of an orbit: the real motion is Re(c · displacement) for any complex c.
 
-    `displacement` (n·samples + 1, N) is complex where the multiplier is, with 1 its largest modulus; `closure` is the
-    largest difference of δx(n/f) and μ δx(0), displacements and w, over the largest entry of δx(0).
+    `displacement` (n·samples + 1, N) is complex where the multiplier is, and its largest modulus is 1. `closure` is the
+    largest difference between δx(n/f) and μ δx(0), in displacements and w, relative to the largest entry of δx(0).
     """
 
     multiplier: complex
@@ -46,7 +47,9 @@ class Mode:
 
 
 def mode(orbit: Orbit, rank: int = 0, samples: int = 48, stop: Stop | None = None) -> Mode:
-    """The mode of the multiplier at place `rank` by modulus; of a complex pair the one with positive imaginary part.
+    """Compute the mode of the multiplier of this `rank` by modulus, 0 being the largest.
+
+    Of a complex pair, it is the mode of the multiplier with positive imaginary part.
 
     Raises `BadInput` for a rank beyond the last multiplier, `ComputationError`, `Cancelled`.
     """
@@ -69,7 +72,7 @@ def mode(orbit: Orbit, rank: int = 0, samples: int = 48, stop: Stop | None = Non
 
 def eigenpair(stroboscopic_map: StroboscopicMap, x: np.ndarray, rank: int,
               observer: bool = False) -> tuple[complex, np.ndarray]:
-    """The multiplier at place `rank` by modulus with its eigenvector; of a long chain by Arnoldi iteration.
+    """Compute the multiplier of this `rank` by modulus and its eigenvector; for a long chain by Arnoldi iteration.
 
     With `observer`, the multiplier and eigenvector of the observer of model (4), Zhang et al. 2016.
     """
@@ -83,9 +86,9 @@ def eigenpair(stroboscopic_map: StroboscopicMap, x: np.ndarray, rank: int,
 
 def _carried(orbit: Orbit, x: np.ndarray, direction: np.ndarray, size: float, samples: int,
              stop: Stop | None) -> tuple[np.ndarray, np.ndarray]:
-    """The perturbation that starts as `direction`: δu (n·samples + 1, N), and δx (2N,) at the end.
+    """The perturbation that starts as `direction`, as a central difference of two motions.
 
-    It is computed as a central difference of two motions.
+    Returns δu (n·samples + 1, N) along the orbit, and δx (2N,) at its end.
     """
     engine = Engine(orbit.scene, dop853_setting(TOLERANCE), samples, stop=stop)
     sides = []
@@ -98,7 +101,7 @@ def _carried(orbit: Orbit, x: np.ndarray, direction: np.ndarray, size: float, sa
 
 
 def orbit_section(orbit: Orbit, samples: int = 48, stop: Stop | None = None) -> Section:
-    """The n points of the orbit at every phase, by dop853, which stays on an unstable orbit for n periods."""
+    """Compute the orbit's n points at every phase by dop853, which stays on an unstable orbit for n periods."""
     stroboscopic_map = StroboscopicMap(orbit.scene, orbit.period, stop)
     engine = Engine(orbit.scene, dop853_setting(TOLERANCE), samples, stop=stop)
     engine.start_scaled(stroboscopic_map.inner(stroboscopic_map.engine.scaled.from_si(orbit.state)))

@@ -1,13 +1,14 @@
-"""Errors of Floquet multipliers, from a derivative with a looser tolerance.
+"""Errors of Floquet multipliers, from a derivative computed with a looser tolerance.
 
 Equation   Δμ_i = y_i* ΔM x_i / y_i* x_i to first order, with x_i and y_i the right and left eigenvectors of the map's
-           derivative M;   stated is the larger of 2 |Δμ_i| and a quarter of |y_i|ᵀ |ΔM| |x_i| / |y_i* x_i|
+           derivative M;   the stated error is the larger of 2 |Δμ_i| and a quarter of
+           |y_i|ᵀ |ΔM| |x_i| / |y_i* x_i|
 Source     Wilkinson 1965, The Algebraic Eigenvalue Problem, chapter 2
 Note       ΔM is measured: M minus the derivative of a map whose steps have ten times the tolerance, at that map's own
            fixed point. Its entries may cancel by chance in y* ΔM x, which is why their moduli count too. The rounding
-           of M is added. Beyond a grazing M varies as the root of the depth, so a shift of the orbit by the tolerance
-           changes it by the root of the tolerance: there ΔM is large (docs/orbits.md). Where two multipliers meet, y* x
-           goes to zero and the error grows beyond all bounds, as the multipliers' dependence on M does.
+           of M is added. Beyond a grazing, M varies as the root of the depth, so a shift of the orbit by the tolerance
+           changes M by the root of the tolerance: ΔM is large there (docs/orbits.md). Where two multipliers meet, y* x
+           goes to zero and the error grows without bound, as does the multipliers' sensitivity to M.
 """
 
 from __future__ import annotations
@@ -19,21 +20,21 @@ from ..scene import Scene
 from ..scene.state import State
 from .stroboscopic_map import TOLERANCE, StroboscopicMap
 
-#: Tolerance of the coarser map over the tolerance of the map.
+#: Tolerance of the coarser map relative to that of the map.
 _COARSER_FACTOR = 10.0
-#: Factor of caution on the change that is seen.
+#: Safety factor on the observed change.
 _CAUTION_FACTOR = 2.0
-#: Fraction of the bound that is stated at least: the bound was 15 to 80 times the change in the scenes that were
-#: examined (tests/orbits/test_multiplier_errors.py).
+#: The stated error is at least this fraction of the bound. In the scenes examined, the bound was 15 to 80 times the
+#: change (tests/orbits/test_multiplier_errors.py).
 _LEAST_FRACTION = 0.25
 
 
 def derivative_change(scene: Scene, period: int, state: State, derivative: np.ndarray,
                       observed: np.ndarray | None = None, tolerance: float = TOLERANCE,
                       stop: Stop | None = None) -> np.ndarray:
-    """Error ΔM (2N, 2N) of the map's derivative at its fixed point `state`, or of the observer's, `observed`.
+    """Error ΔM (2N, 2N) of the map's derivative at its fixed point `state`; with `observed`, of the observer's.
 
-    Infinite where the fixed point is not isolated, as at a fold.
+    It is infinite where the fixed point is not isolated, as at a fold.
     """
     coarse = StroboscopicMap(scene, period, stop, _COARSER_FACTOR * tolerance)
     x = coarse.inner(coarse.engine.scaled.from_si(state))
@@ -47,7 +48,7 @@ def derivative_change(scene: Scene, period: int, state: State, derivative: np.nd
 
 def errors_of(multipliers: np.ndarray, derivative: np.ndarray, change: np.ndarray) -> np.ndarray:
     """Errors (2N,) of the eigenvalues of a derivative with the error ΔM = `change`."""
-    from scipy.linalg import eig  # a sixth of a second, which only multipliers pay
+    from scipy.linalg import eig  # takes a sixth of a second to load, so only here
 
     values, left, right = eig(derivative, left=True, right=True)
     with np.errstate(divide="ignore", invalid="ignore"):

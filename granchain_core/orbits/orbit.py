@@ -3,7 +3,7 @@
 A fixed point of the n-period map is an orbit; its multipliers, the eigenvalues of the map's derivative, decide whether
 it is stable. A forced orbit has no trivial multiplier 1. The observer of model (4), Zhang et al. 2016, is a
 second chain driven by the first one's input force. Linearised about the first chain's motion, its tangents are those of
-the first chain without the driver's contact, so its multipliers come from the same orbit.
+the first chain without the driver's contact, so its multipliers follow from the same orbit.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from ..tables.words import multiplier_columns, state_columns
 from .multiplier_errors import derivative_change, errors_of
 from .stroboscopic_map import FLOW_METHOD
 
-#: Multipliers smaller than this part of the largest are rounding.
+#: Multipliers smaller than this fraction of the largest are rounding errors.
 ROUNDING = 1e-13
 
 
@@ -42,26 +42,26 @@ class Orbit(Labelled):
     state : State
         State of the orbit at drive phase 0.
     residual : float
-        Change of the state by the map, relative to displacements and w (`StroboscopicMap.residual`).
+        Change of the state under the map, relative to displacements and w (`StroboscopicMap.residual`).
     newton_residuals : tuple of float
         The residuals of all iterations.
     multipliers : numpy.ndarray of complex, shape (2N,)
-        Sorted by modulus, largest first; of more than 100 beads the leading ones only.
+        Sorted by modulus, largest first; for more than 100 beads, only the leading ones.
     liouville_error : float or None
         Difference between the logarithm of the multipliers' product and ∫ trace, relative to the latter where that is
-        above 1; None where not all multipliers are known or the smallest are rounding.
+        above 1; None where not all multipliers are known or the smallest are rounding errors.
     contact_events : numpy.ndarray, shape (events, 2)
-        Contact events along the orbit: contact + 1, negative where it opens, and the time over the drive period.
+        Contact events along the orbit: contact + 1, negative where it opens, and the time in drive periods.
     observer_multipliers : numpy.ndarray of complex or None
-        Those of the observer of model (4), where they were requested.
+        Multipliers of the observer of model (4); None unless they were requested.
     monodromy, observer_monodromy : numpy.ndarray or None, shape (2N, 2N)
-        Derivatives of the n-period map in scaled displacements, then w, whose eigenvalues the multipliers are; None
-        with more than 100 beads.
+        Derivatives of the n-period map with respect to scaled displacements, then w; their eigenvalues are the
+        multipliers. None with more than 100 beads.
     period_note : str
         Why period 1 was assumed, in words; empty if a period was given or found.
     distance_of_motion : float or None
-        Of an orbit sought near a motion (`orbit_near_motion`): its least distance from the motion's states at phase 0,
-        relative to the largest displacement and velocity in these. Else None.
+        For an orbit sought near a motion (`orbit_near_motion`): its least distance from the motion's states at phase 0,
+        relative to their largest displacement and velocity. Otherwise None.
 
     Examples
     --------
@@ -89,16 +89,13 @@ class Orbit(Labelled):
     def multiplier_errors(self) -> np.ndarray | None:
         """Absolute error of each multiplier (2N,); None with more than 100 beads.
 
-        The first access computes it (multiplier_errors.py), in the time of a Newton step.
+        It is computed on first access (multiplier_errors.py), which takes as long as a Newton step.
         """
         return self._errors()
 
     @functools.cached_property
     def observer_multiplier_errors(self) -> np.ndarray | None:
-        """Absolute error of each of the observer's multipliers (2N,).
-
-        None where they were not requested.
-        """
+        """Absolute error of each of the observer's multipliers (2N,); None where they were not requested."""
         return self._errors(observer=True)
 
     def find_errors(self, stop: Stop) -> None:
@@ -120,7 +117,7 @@ class Orbit(Labelled):
 
     @property
     def stability_certain(self) -> bool:
-        """Whether `stable` holds in spite of the errors; False if these are not known."""
+        """Whether `stable` is certain in spite of the errors; False if these are not known."""
         return _is_certain(self.multipliers, self.multiplier_errors)
 
     def stability_words(self) -> str:
@@ -128,21 +125,21 @@ class Orbit(Labelled):
         return _stability_words(self.multipliers, self.multiplier_errors)
 
     def observer_stability_words(self) -> str | None:
-        """The words for the observer; None where it was not requested."""
+        """Like `stability_words`, for the observer; None where it was not requested."""
         if self.observer_multipliers is None:
             return None
         return _stability_words(self.observer_multipliers, self.observer_multiplier_errors)
 
     @property
     def observer_stability_certain(self) -> bool | None:
-        """Whether `observer_stable` holds in spite of the errors; None where the observer was not requested."""
+        """Whether `observer_stable` is certain in spite of the errors; None where the observer was not requested."""
         if self.observer_multipliers is None:
             return None
         return _is_certain(self.observer_multipliers, self.observer_multiplier_errors)
 
     @property
     def leading_observer_multiplier(self) -> complex | None:
-        """The observer's multiplier with the largest modulus; None where they are not known."""
+        """The observer's multiplier with the largest modulus; None where its multipliers are not known."""
         return None if self.observer_multipliers is None else complex(self.observer_multipliers[0])
 
     @property
@@ -153,14 +150,14 @@ class Orbit(Labelled):
         return bool(np.abs(self.observer_multipliers).max() < 1.0)
 
     def tables(self) -> tuple[Table, ...]:
-        """`multipliers`, the observer's too where they are known; `state`; `newton`, the residuals of the search."""
+        """`multipliers`, with the observer's where known; `state`; `newton`, the residuals of the search."""
         columns = multiplier_columns(self.multipliers, ("rank",), self.multiplier_errors)
         if self.observer_multipliers is not None:
             errors = self.observer_multiplier_errors
             columns |= multiplier_columns(self.observer_multipliers, ("rank",), errors, "observer_")
         ranks = axis("rank", np.arange(len(self.multipliers)), "1", "place by modulus, 0 is the largest")
         residuals = Column(np.array(self.newton_residuals), ("iteration",), "1",
-                           "change of the state by the map, relative to the largest displacement and the largest w")
+                           "change of the state under the map, relative to the largest displacement and the largest w")
         return (Table("multipliers", ranks, columns),
                 Table("state", bead_axis(self.scene.N),
                       state_columns(self.state.displacement, self.state.velocity, ("bead",))),
@@ -168,7 +165,7 @@ class Orbit(Labelled):
                                      "evaluation of Newton's method"), {"residual": residuals}))
 
     def attributes(self) -> dict[str, Attribute]:
-        """Period, residual, stability, and the provenance."""
+        """Period, residual, stability and provenance."""
         values: dict[str, Attribute] = {
             **provenance(self.scene, FLOW_METHOD, None), "period": self.period, "residual": self.residual,
             "stable": int(self.stable), "liouville": or_nan(self.liouville_error)}
@@ -209,13 +206,13 @@ def _stability_words(multipliers: np.ndarray, errors: np.ndarray | None) -> str:
 
 
 def liouville_if_known(multipliers: np.ndarray, log_determinant: float) -> float | None:
-    """Error of Liouville's formula; None where the smallest multiplier is only rounding."""
+    """Error of Liouville's formula; None where the smallest multiplier is a rounding error."""
     sizes = np.abs(multipliers)
     return None if sizes.min() < ROUNDING * sizes.max() else liouville_error(multipliers, log_determinant)
 
 
 def liouville_error(multipliers: np.ndarray, log_determinant: float) -> float:
-    """Difference of ln |det| and ∫ trace, relative to the latter where that is above 1."""
+    """Difference between ln |det| and ∫ trace, relative to the latter where that is above 1."""
     with np.errstate(divide="ignore"):
         log_product = float(np.sum(np.log(np.abs(multipliers))))
     return abs(log_product - log_determinant) / max(1.0, abs(log_determinant))

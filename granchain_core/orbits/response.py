@@ -1,9 +1,9 @@
-"""The pulse ratio of a periodic orbit, from the orbit alone: strong pushes per drive period; of 1:1, in step or not.
+"""The pulse ratio of a periodic orbit, strong pushes per drive period, from the orbit alone; for 1:1, in step or not.
 
-*Resonance* is a word of the curve (steady/curve/resonance.py), whose rule may disagree with this one; docs/orbits.md
-has both rules and their thresholds. Source: Zhang et al. 2016, sections 2 and 3: in a 1:n resonance the driver gives
-one strong push every n periods, at the moment at which the pulse reflected by the wall comes back to it; in an
-anti-resonance pulses interfere destructively, and every period has one push, none much stronger than the others.
+*Resonance* is a term for curves (steady/curve/resonance.py), whose rule may disagree with this one; docs/orbits.md
+gives both rules and their thresholds. Source: Zhang et al. 2016, sections 2 and 3. In a 1:n resonance, the driver gives
+one strong push every n periods, at the moment at which the pulse reflected by the wall comes back to it. In an
+anti-resonance, pulses interfere destructively, and every period has one push, none much stronger than the others.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ from ..steady.curve.resonance import END_FRACTION, STOP_BAND_FRACTION, pushes
 from .orbit import Orbit
 
 #: [response] The reflected pulse of a 1:1 orbit is in step if bead 1, just before the strongest push, approaches the
-#: driver with this part of the drive's largest speed 2πf A0. No orbit of `rig` (20 to 160 Hz in steps of 1) changes its
-#: name from 0.2 to 1/3, three of 102 do at 0.4; of 261 of `sec2` (60 to 3000 Hz in steps of 10) one does at 0.3, three
-#: at 0.4, four at 0.25.
+#: driver with at least this fraction of the drive's largest speed 2πf A0. No orbit of `rig` (20 to 160 Hz in steps of
+#: 1) is classified differently with 0.2 to 1/3; with 0.4, three of 102 are. Of 261 orbits of `sec2` (60 to 3000 Hz in
+#: steps of 10), one is classified differently with 0.3, three with 0.4 and four with 0.25.
 RETURNS_IN_STEP = 1.0 / 3.0
-#: [no threshold] Samples a period: events are placed to about a degree of the drive.
+#: [no threshold] Samples per period: events are placed to about a degree of the drive.
 _SAMPLES = 480
 #: [no threshold] Tolerance of a step.
 _TOLERANCE = 1e-9
@@ -35,13 +35,14 @@ _TOLERANCE = 1e-9
 @with_former_names
 @dataclass(frozen=True)
 class Response:
-    """The pulse ratio: strong pushes of the driver per number of periods; of 1:1, whether it is in step; the evidence.
+    """The pulse ratio, `strong` pushes of the driver in `periods` drive periods, and the evidence.
 
-    `in_step` is whether the reflected pulse is in step with the driver. It is measured for 1:1 only: it is None for
-    every other ratio, and where little is transmitted. `contact_phase` and `peak_phase` are the drive's phases
-    [degrees] at which the strongest push begins and is strongest; the phase is 0 where the driver moves forward through
-    its middle, and `contact_phase` is None where driver and bead 1 never part. `returning` is relative to 2πf A0,
-    `transmission` is largest output over largest input force.
+    `in_step` tells whether the reflected pulse is in step with the driver. It is measured for 1:1 only: it is None for
+    every other ratio, and where little is transmitted. `contact_phase` and `peak_phase` are the drive phases
+    [degrees] at which the strongest push begins and is strongest. The phase is 0 where the driver moves forward through
+    its middle position, and `contact_phase` is None where driver and bead 1 never separate. `returning` is the speed of
+    bead 1 towards the driver just before the strongest push, relative to 2πf A0; `transmission` is the largest output
+    force over the largest input force.
     """
 
     strong: int
@@ -54,9 +55,9 @@ class Response:
 
     @property
     def little_transmitted(self) -> bool:
-        """Whether a smaller part of the input force arrives at the wall than `STOP_BAND_FRACTION`.
+        """Whether less than `STOP_BAND_FRACTION` of the input force arrives at the wall.
 
-        It is not called a stop band, which lies beyond the last peak of a curve: an orbit alone has no peaks.
+        This is not called a stop band, which lies beyond the last peak of a curve: a single orbit has no peaks.
         """
         return self.transmission < STOP_BAND_FRACTION
 
@@ -70,7 +71,7 @@ class Response:
 
 
 def response(orbit: Orbit) -> Response:
-    """The response of a periodic orbit."""
+    """Compute the pulse ratio of a periodic orbit, with its evidence."""
     run = recorded(orbit)
     counted = pushes(run)
     strong, periods = counted if counted is not None else (orbit.period, orbit.period)
@@ -96,7 +97,7 @@ def _begin(force: np.ndarray, peak: int) -> int | None:
 
 
 def recorded(orbit: Orbit) -> Run:
-    """The orbit as a run over its whole period."""
+    """Record the orbit as a run over its whole period."""
     engine = Engine(orbit.scene, dop853_setting(_TOLERANCE), _SAMPLES)
     engine.start(orbit.state)
     samples = engine.record(orbit.period * _SAMPLES)

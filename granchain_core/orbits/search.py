@@ -4,10 +4,10 @@ A chaotic or quasi-periodic motion passes near unstable periodic orbits. States 
 near an orbit of period n (Auerbach et al. 1987). An orbit that lost its stability at a period doubling or a
 Neimark–Sacker bifurcation lies inside the attractor that was born there. Newton's method on the stroboscopic map starts
 from the present state, from the mean of the section's states and from the closest returns. It may end on an orbit far
-from its start: the distance of the orbit from the motion is stated, and not limited.
+from its start: the distance between orbit and motion is reported, but not limited.
 
 The search of steady/settling/nearby_orbit.py has another purpose: it decides whether a motion settles on an orbit, and
-takes only orbits within a tenth of the motion.
+accepts only orbits within a tenth of the motion.
 """
 
 from __future__ import annotations
@@ -33,25 +33,25 @@ from .find_orbit import NO_PERIOD_OF_SEARCH, periodic_orbit
 from .orbit import Orbit
 from .stroboscopic_map import SAME_ORBIT_DISTANCE, StroboscopicMap, refuse_cut
 
-#: Closest returns from which Newton's method is started.
+#: Number of closest returns from which Newton's method is started.
 _STARTS = 4
-#: Fewest periods between two starts, so that each belongs to another passage near an orbit: in one passage several
-#: successive states return closely.
+#: Minimum number of periods between two starts, so that each is from a different passage near an orbit: several
+#: successive states of one passage return closely.
 _PERIODS_BETWEEN_STARTS = 5
-#: Periods of a settled motion near which an orbit is sought.
+#: Number of periods recorded of the settled motion near which an orbit is sought.
 _RECORDED_PERIODS = 400
-#: Distance between an orbit and a settled motion below which the motion follows the orbit.
+#: Distance between an orbit and a settled motion below which the orbit counts as the motion's own.
 OWN_ORBIT_DISTANCE = 1e-3
-#: States of the section whose mean is taken: a multiple of all short periods.
+#: Number of section states that are averaged: a multiple of all short periods.
 _STATES_OF_MEAN = 120
 
 
 def orbit_near_motion(scene: Scene, period: int | None = None, stop: Stop | None = None) -> Orbit:
-    """An unstable periodic orbit of `period` drive periods (1 by default) near the settled motion from rest.
+    """Find an unstable periodic orbit of `period` drive periods (1 by default) near the settled motion from rest.
 
     After it has settled, the motion is recorded for 400 periods, and `search_orbit` starts from this record.
-    `Orbit.distance_of_motion` is the least distance between motion and orbit. Raises as `search_orbit` does, and
-    `ComputationError` where the search ends on the orbit that the motion follows.
+    `Orbit.distance_of_motion` is the least distance between motion and orbit. Raises the exceptions of `search_orbit`,
+    and `ComputationError` where the search ends on the orbit that the motion follows.
     """
     require_scene(scene)
     n = whole_number("period", 1 if period is None else period, 1, LONGEST_LOCKED_PERIOD)
@@ -74,20 +74,20 @@ def refuse_own_orbit(orbit: Orbit, states: Iterable[State]) -> None:
 
 
 def distance_of_states(state: State, reference: State) -> float:
-    """Largest difference of two states over the largest displacement and velocity of the second."""
+    """Largest difference between two states, relative to the largest displacement and velocity of the second."""
     return max(float(np.abs(a - b).max() / max(1e-300, np.abs(b).max()))
                for a, b in ((state.displacement, reference.displacement), (state.velocity, reference.velocity)))
 
 
 def search_orbit(scene: Scene, period: int, start: State, strobes: np.ndarray,
                  stop: Stop | None = None) -> Orbit:
-    """An orbit of `period` drive periods, by Newton's method started near a motion.
+    """Find an orbit of `period` drive periods by Newton's method, started near a motion.
 
-    The starts are the state `start`, the mean of the section's states and its closest returns. The distance of the
-    orbit from the motion is stated as `Orbit.distance_of_motion`; it is not limited.
+    The starts are the state `start`, the mean of the section's states and its closest returns. The distance between
+    orbit and motion is reported as `Orbit.distance_of_motion`; it is not limited.
 
-    `strobes` (P, 2, N) are states of the motion at phase 0 in SI without the transient; P may be 0. If the orbit
-    repeats sooner than after `period` periods, it is returned with its least period. Raises `BadInput` for a period
+    `strobes` (P, 2, N) are states of the motion at phase 0 in SI, without the transient; P may be 0. If the orbit
+    repeats after fewer than `period` periods, it is returned with its least period. Raises `BadInput` for a period
     out of range, `ComputationError` where no start leads to an orbit, and `Cancelled`.
     """
     tried = 0
@@ -116,14 +116,14 @@ def _distance_of_motion(state: State, start: State, strobes: np.ndarray) -> floa
 
 
 def _mean(strobes: np.ndarray, period: int) -> Iterator[State]:
-    """The mean of every n-th late state, if there are two."""
+    """Yield the mean of every n-th late state, n being `period`, if there are at least two."""
     late = strobes[-_STATES_OF_MEAN:][::period]
     if len(late) > 1:
         yield State(*np.asarray(late, dtype=float).mean(axis=0))
 
 
 def _close_returns(strobes: np.ndarray, period: int) -> Iterator[State]:
-    """States of the section with the closest returns after `period` periods, closest first, one of each passage."""
+    """Yield the states of the section that return closest after `period` periods, closest first, one per passage."""
     if len(strobes) <= period:
         return
     size = np.maximum(1e-300, np.abs(strobes).max(axis=(0, 2)))[:, None]
@@ -138,7 +138,7 @@ def _close_returns(strobes: np.ndarray, period: int) -> Iterator[State]:
 
 
 def least_period_of(orbit: Orbit, stop: Stop | None = None) -> int:
-    """The least period of an orbit in drive periods."""
+    """Compute the least period of an orbit, in drive periods."""
     scaled = scale_chain(orbit.scene)
     x = scaled.beads_of(scaled.from_si(orbit.state))
 

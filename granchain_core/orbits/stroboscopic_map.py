@@ -1,4 +1,4 @@
-"""The n-period stroboscopic map with its derivative, contact event by contact event."""
+"""The n-period stroboscopic map with its derivative, integrated from contact event to contact event."""
 
 from __future__ import annotations
 
@@ -23,14 +23,15 @@ from ..scene.refusals import refuse_undriven
 from ..steady.residuals import orbit_change
 
 #: [step size] flow: tolerance of one step, relative to the largest displacement and w. The map is then accurate enough
-#: for Newton's method to converge to `RESIDUAL_GOAL` (steady/residuals.py); a chain with its observer is followed to
+#: for Newton's method to converge to `RESIDUAL_GOAL` (steady/residuals.py); a chain with its observer is integrated to
 #: about 1e-11.
 TOLERANCE = 1e-13
 #: [no threshold] Error of the derivative at that tolerance near grazings, relative to its largest entry; docs/orbits.md
-#: ("Error of the tangents") has what was measured, there and elsewhere.
+#: ("Error of the tangents") has the measurements, near grazings and elsewhere.
 TANGENT_ERROR = 1e-7
-#: [no threshold] Error of a multiplier near the unit circle: ten times that, as the largest entry of the derivative is
-#: 2 to 13 and the eigenvectors are well separated. For single orbits it is computed (multiplier_errors.py).
+#: [no threshold] Error of a multiplier near the unit circle: ten times `TANGENT_ERROR`, because the largest entry of
+#: the derivative is 2 to 13 and the eigenvectors are well separated. For single orbits it is computed
+#: (multiplier_errors.py).
 MULTIPLIER_ERROR = 10.0 * TANGENT_ERROR
 #: [step size] flow: first step to try, in scaled time, in a period that is long enough.
 _INITIAL_STEP = 0.1
@@ -38,17 +39,18 @@ _INITIAL_STEP = 0.1
 _LEAST_STEPS = 12
 #: The method, in the provenance of results.
 FLOW_METHOD = "tangent flow (DOP853, time substitution at events)"
-#: [no threshold] An orbit that is back within this, relatively, after a part of its period has that shorter period.
+#: [no threshold] An orbit that returns to within this relative distance after a fraction of its period has that shorter
+#: period.
 SAME_ORBIT_DISTANCE = 1e-8
 
 
 @dataclass(frozen=True, eq=False)
 class Flow:
-    """The flow over n periods: end (2N,) of displacements then w in scaled units, derivative (2N, columns).
+    """The flow over n periods: end (2N,), displacements then w in scaled units, and derivative (2N, columns).
 
-    `log_determinant` is ∫ trace along the way, to be compared with the derivative's own (Liouville).
-    `contact_events` (events, 2) are those on the way: contact + 1, negative where it opened, and the time over the
-    drive period.
+    `log_determinant` is ∫ trace along the motion, to be compared with the derivative's own (Liouville).
+    `contact_events` (events, 2) are those of the motion: contact + 1, negative where it opened, and the time in drive
+    periods.
     """
 
     end: np.ndarray
@@ -58,14 +60,14 @@ class Flow:
 
 
 def refuse_cut(scene: Scene) -> None:
-    """`BadInput` for a scene that cuts tension."""
+    """Raise `BadInput` for a scene that cuts tension."""
     if scene.cuts_tension:
         raise BadInput("tension = cut lets contacts touch without force, which the flow of orbits does not model, so "
                        "orbits and multipliers are not computed; the nearest valid value is tension = allowed.")
 
 
 class StroboscopicMap:
-    """x → the state n drive periods later with its derivative by the tangent flow, for scaled x = (u, w) at phase 0.
+    """x → the state n drive periods later, with its derivative by the tangent flow, for scaled x = (u, w) at phase 0.
 
     Raises `BadInput` for a scene that cuts tension: only open and pressed contacts are implemented.
     """
@@ -78,7 +80,7 @@ class StroboscopicMap:
         self._prepare(tolerance)
 
     def move(self, scene: Scene, tolerance: float) -> None:
-        """Become the map of another scene with as many beads: the bits of a new map at a third of its cost."""
+        """Become the map of another scene with as many beads: bit for bit a new map, at a third of the cost."""
         engine, scaled = self.engine, scale_like(self.engine.scaled, scene)
         engine.stepper = Dop853Stepper(tolerance, scaled, 1)
         engine.stepper.pause = engine.stop.pause
@@ -94,7 +96,7 @@ class StroboscopicMap:
         self._work = self.engine.stepper.work._replace(forces=frozen)
 
     def inner(self, y: np.ndarray) -> np.ndarray:
-        """The beads' part of a whole state array."""
+        """The beads' entries of a full state array."""
         return self.engine.scaled.beads_of(y)
 
     def residual(self, end: np.ndarray, x: np.ndarray) -> float:
@@ -104,7 +106,7 @@ class StroboscopicMap:
     def __call__(self, x: np.ndarray, observer: bool = False, directions: np.ndarray | None = None) -> Flow:
         """The flow from x with the derivative, or its product with the columns of `directions` (2N, columns).
 
-        With `observer` the tangents are those of a chain driven by the recorded input force.
+        With `observer`, the tangents are those of a chain driven by the recorded input force.
         """
         start = np.eye(len(x)) if directions is None else directions
         tangent = new_tangent(start, self.engine.scaled.bodies, 1 if observer else 0)
@@ -115,24 +117,24 @@ class StroboscopicMap:
         """The derivative (2N, 2N) in (u, w), from tangents in (u, v) with their jumps at contact events.
 
         Without `jumps` it is wrong on purpose: the saltation is left out, for comparison. Raises `BadInput` for a
-        damping g(δ) that is not the linear dashpot's: its saltation is the identity, since g(0) = 0, but the tangents
-        in (u, v) have a term g'(δ) δ̇, which this route leaves out.
+        damping g(δ) other than the linear dashpot's: its saltation is the identity, since g(0) = 0, but the tangents
+        in (u, v) have a term g'(δ) δ̇, which this method leaves out.
 
-        Only tests use it. It stands here because its type `VelocityTangent` is in the list of specializations of
-        `run_flow`: were it in tests/, a process without the tests could not read that list.
+        Only tests use it. It is here because its type `VelocityTangent` is in the list of specializations of
+        `run_flow`: if it were in tests/, a process without the tests could not read that list.
         """
         scaled = self.engine.scaled
         if scaled.slots.dissipation is not None and not isinstance(scaled.slots.dissipation, LinearDashpot):
-            raise BadInput(f"dissipation = {scaled.scene.dissipation}: the second route has no term for the change of "
-                           "the damping with the overlap, which is unbounded where a contact closes; it takes linear "
-                           "and none.")
+            raise BadInput(f"dissipation = {scaled.scene.dissipation}: the tangents in (u, v) have no term for the "
+                           "change of the damping with the overlap, which is unbounded where a contact closes; valid "
+                           "values are linear and none.")
         before = velocity_jacobian(scaled, x)
         tangent = new_velocity_tangent(before, scaled.bodies, float(jumps))
         self._run(x, tangent)
         return np.linalg.solve(velocity_jacobian(scaled, self.inner(self.engine.y)), tangent.matrix)
 
     def end(self, x: np.ndarray) -> np.ndarray:
-        """The state n periods after x, by the kernel with tangents, of which there are none."""
+        """The state n periods after x, by the tangent flow's kernel with no tangents."""
         self._run(x, new_tangent(np.zeros((len(x), 0)), self.engine.scaled.bodies, 0))
         return self.inner(self.engine.y)
 
@@ -156,7 +158,7 @@ class StroboscopicMap:
 
 
 def velocity_jacobian(scaled: ScaledChain, x: np.ndarray) -> np.ndarray:
-    """Derivative (2N, 2N) of (u, v) with respect to (u, w) at state x, phase 0, for the linear dashpot or none."""
+    """Derivative (2N, 2N) of (u, v) with respect to (u, w) at state x, phase 0, with a linear dashpot or none."""
     n = scaled.beads
     matrix = np.eye(2 * n)
     if scaled.slots.dissipation is None:

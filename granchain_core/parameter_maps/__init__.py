@@ -1,6 +1,6 @@
 """The parameter map: regime and largest forces over two knobs, every cell from rest.
 
-The bifurcation diagram, over one knob, is in `analysis/bifurcation_diagram.py`.
+The bifurcation diagram over one knob is in `analysis/bifurcation_diagram.py`.
 """
 
 from ..former_names import of_module

@@ -21,7 +21,7 @@ class Blocks:
 
     @classmethod
     def open(cls, grid: Grid, out: str | Path, resume: bool) -> Blocks:
-        """The blocks that belong to the result `out`; an unfinished map there must be the same one and be resumed.
+        """Open the blocks for the result `out`; an unfinished map there must be the same one, and must be resumed.
 
         Raises `BadInput`.
         """
@@ -35,7 +35,7 @@ class Blocks:
         return self.kept.folder
 
     def cells(self) -> np.ndarray:
-        """The table of all cells, filled from the blocks that are intact."""
+        """The table of all cells, filled from the intact blocks."""
         cells = empty_cells(self.grid)
         for content in self.kept.blocks():
             rows = np.load(io.BytesIO(content), allow_pickle=False)

@@ -29,12 +29,12 @@ from ..tables.provenance import Attribute
 from ..tables.words import ERRORS
 from .grid import Grid
 
-#: A cell's regime by number, in this order; "failed" has no forces. A cell that was not computed yet has −1.
+#: A cell's regime by number, in this order; "failed" has no forces. A cell that is not yet computed has −1.
 CELL_REGIMES = (*NAMES, "failed")
-#: One cell. Forces in N, NaN where the computation failed; stated errors are relative, `error_estimate` that of the
-#: output force (docs/result-files.md, "Which name is which error"), NaN where none is stated; `period` in drive
-#: periods, 0 where not periodic; `decay` per orbit, `multiplier` (the largest |μ|), `lyapunov` (per drive period) and
-#: `lyapunov_periods`, over which it was measured, NaN where not seen or not computed.
+#: One cell. Forces are in N, NaN if the computation failed. Stated errors are relative, NaN if no error is stated;
+#: `error_estimate` is that of the output force (docs/result-files.md, "Which name is which error"). `period` is in
+#: drive periods, 0 if not periodic. `decay` (per orbit), `multiplier` (the largest |μ|), `lyapunov` (per drive period)
+#: and `lyapunov_periods`, over which it was measured, are NaN if not observed or not computed.
 CELL = np.dtype([
     ("number", "<i4"), ("regime", "i1"), ("period", "<i2"), ("periods_run", "<i4"), ("max_input_force", "<f8"),
     ("max_output_force", "<f8"), ("max_output_force_elastic", "<f8"), ("error_estimate_input", "<f8"),
@@ -45,7 +45,7 @@ CELL = np.dtype([
 
 
 def empty_cells(grid: Grid) -> np.ndarray:
-    """A table (cells,) of which nothing is computed."""
+    """A table (cells,) in which no cell is computed yet."""
     cells = np.zeros(grid.size, dtype=CELL)
     cells["number"] = np.arange(grid.size)
     cells["regime"] = -1
@@ -101,7 +101,7 @@ class ParameterMap(Labelled):
 
     @property
     def varied(self) -> tuple[str, ...]:
-        """Both knobs, and the drive amplitude where it follows the frequency."""
+        """Both knobs, and the drive amplitude if it follows the frequency."""
         both = (self.grid.x.knob, self.grid.y.knob)
         return both if self.grid.amplitude is None else (*both, "A0")
 
@@ -129,7 +129,7 @@ class ParameterMap(Labelled):
     def attributes(self) -> dict[str, Attribute]:
         """Both knobs, cost and provenance; `accuracy_reached` is the largest error of an output force.
 
-        Only cells that were settled alone were computed to `accuracy_asked`, and at best to `CURVE_ACCURACY`.
+        Only cells that were settled alone were computed to `accuracy_asked`, at best to `CURVE_ACCURACY`.
         """
         errors = self.cells["error_estimate"]
         known = errors[np.isfinite(errors)]
@@ -139,7 +139,7 @@ class ParameterMap(Labelled):
                 "map_axes": json.dumps([self.grid.y.knob, self.grid.x.knob])}
 
     def summary(self) -> list[str]:
-        """The ranges of both knobs, and how many cells are of each regime."""
+        """The ranges of both knobs, and the number of cells by regime."""
         sides = (f"{side.knob} {side.values[0]:g} to {side.values[-1]:g} {QUANTITIES[side.knob].unit}"
                  for side in (self.grid.x, self.grid.y))
         counts = {name: int((self.cells["regime"] == code).sum()) for code, name in enumerate(CELL_REGIMES)}
@@ -154,7 +154,7 @@ class ParameterMap(Labelled):
         return bool((self.cells["regime"] >= 0).all())
 
     def regime(self, number: int) -> Regime | None:
-        """The regime of a cell; None where nothing is computed or the computation failed."""
+        """The regime of a cell; None if it is not computed or the computation failed."""
         cell = self.cells[number]
         if not 0 <= cell["regime"] < CELL_REGIMES.index("failed"):
             return None

@@ -24,10 +24,10 @@ from .starts import by_kernel, starts_of
 def iter_parameter_map(grid: Grid, missing: Sequence[int] | np.ndarray | None = None,
                        stop: Stop | None = None, workers: int | None = None,
                        pause: Callable[[], None] | None = None) -> Iterator[SteadyState]:
-    """Cells of the parameter map as they are decided, coarse first; `missing` are those wanted, else all.
+    """Yield cells of the parameter map as they are decided, coarse first; only those in `missing`, by default all.
 
-    The result's `number` is the cell's. `stop` is read between cells and ends the computation; running cells
-    are then abandoned. `pause` is called before a cell is begun and may wait.
+    The `number` of a result is that of its cell. `stop` is checked between cells and ends the computation; running
+    cells are then abandoned. `pause` is called before a cell is started and may wait.
     """
     wanted = set(range(grid.size) if missing is None else (int(number) for number in missing))
     groups = by_kernel(grid, [int(number) for number in grid.coarse_first() if int(number) in wanted])
@@ -41,9 +41,9 @@ def parameter_map(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, It
                   stop: Stop | None = None, progress: Callable[[ParameterMap, float], None] | None = None,
                   workers: int | None = None, amplitude: Amplitude | None = None,
                   scheduler: Any = None) -> ParameterMap:
-    """The parameter map: regime and largest forces over two knobs, every cell from rest, on all cores.
+    """Compute the parameter map: regime and largest forces over two knobs, every cell from rest, on all cores.
 
-    Cells are computed in batches with fixed steps, whatever the scene's `accuracy`, and state the error they have.
+    Cells are computed in batches with fixed steps, whatever the scene's `accuracy`, and report their actual error.
 
     Parameters
     ----------
@@ -52,13 +52,13 @@ def parameter_map(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, It
     x, y : tuple of (str, iterable of float)
         A knob ("f", "A0", "D", "k", "kappa", "F0", "wall", "dimer", …) and its ascending values in SI.
     stop : Stop, optional
-        Read between cells. When set, the computation ends, and cells that are not computed have regime −1.
+        Checked between cells. When set, the computation ends, and cells that are not computed have regime −1.
     progress : callable, optional
-        Called with the map so far and the fraction that is done, after every cell; with a scheduler after every block.
+        Called with the map so far and the completed fraction, after every cell; with a scheduler, after every block.
     workers : int, optional
-        Threads; one for each core if not given.
+        Number of threads; by default one per core.
     amplitude : Amplitude, optional
-        The drive amplitude over the frequency, which is then one of the axes; the scene's A0 if not given.
+        The drive amplitude over the frequency, which is then one of the axes; by default the scene's A0.
     scheduler : distributed.Client, optional
         A client of a Dask scheduler (`granchain_core.scheduler.connect`), whose workers compute blocks of cells. A cell
         that fails is marked as failed.
@@ -73,7 +73,7 @@ def parameter_map(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, It
     BadInput
         A knob cannot be an axis, its values do not ascend or are out of range, or there are too many cells.
     ComputationError
-        A worker of the scheduler could not do its part.
+        A worker of the scheduler could not compute its block.
 
     Examples
     --------
@@ -99,9 +99,9 @@ def parameter_map(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, It
 
 
 def _finished(grid: Grid, stop: Stop | None, workers: int | None, scheduler: Any) -> Iterator[np.ndarray]:
-    """Finished cells, one by one from the cores of this machine or in blocks from a scheduler's workers."""
+    """Yield finished cells, one by one from the cores of this machine or in blocks from a scheduler's workers."""
     if scheduler is not None:
-        with contextlib.suppress(Cancelled):  # the cells that are known are kept, as without a scheduler
+        with contextlib.suppress(Cancelled):  # known cells are kept, as without a scheduler
             yield from iter_blocks(scheduler, grid, [int(number) for number in grid.coarse_first()], stop)
         return
     for result in iter_parameter_map(grid, None, stop, workers):

@@ -21,7 +21,7 @@ from ..scene.refusals import refuse_undriven
 
 #: Knobs that may be an axis: the continuous ones that change the motion.
 KNOBS = tuple(name for name, quantity in QUANTITIES.items() if quantity.is_axis)
-#: Most cells of one parameter map.
+#: Maximum number of cells of one parameter map.
 MOST_CELLS = 4_000_000
 
 
@@ -44,7 +44,8 @@ class Axis:
 
     @classmethod
     def of(cls, knob: str, values: Iterable[Any]) -> Axis:
-        """An axis from any numbers; `BadInput` for words, repetitions, wrong order and what is out of range."""
+        """Make an axis from any numbers; raise `BadInput` for words, repetitions, wrong order or numbers out of range.
+        """
         if knob not in KNOBS:
             raise unknown_name("knob for an axis", knob, KNOBS)
         listed = series_in(f"The values of the axis {knob}", values)
@@ -61,9 +62,9 @@ class Axis:
 
 @dataclass(frozen=True)
 class Grid:
-    """A scene and two axes; cell (i, j) has y value i and x value j, its number is i · len(x) + j.
+    """A scene and two axes; cell (i, j) has y value i and x value j, and its number is i · len(x) + j.
 
-    With `amplitude` A0 follows f, which is one of the axes.
+    With `amplitude`, A0 follows f, which is one of the axes.
     """
 
     scene: Scene
@@ -77,19 +78,19 @@ class Grid:
         if self.amplitude is not None:
             self.amplitude.check_knobs(*names)
         if len(names) == 1:
-            raise BadInput(f"Both axes are {self.x.knob}; give two distinct knobs.")
+            raise BadInput(f"Both axes are {self.x.knob}; give two different knobs.")
         if names == {"k", "kappa"}:
-            raise BadInput("k and kappa are the same quantity: give one of them an axis, not both.")
+            raise BadInput("k and kappa are the same quantity: use only one of them as an axis.")
         if self.size > MOST_CELLS:
             raise BadInput(f"{len(self.x.values)} × {len(self.y.values)} = {self.size} cells are more than "
-                           f"{MOST_CELLS}; take fewer points on an axis.")
-        for i in (0, self.shape[0] - 1):  # steps a period are monotone along an axis: its ends suffice
+                           f"{MOST_CELLS}; use fewer values on an axis.")
+        for i in (0, self.shape[0] - 1):  # steps per period are monotonic along an axis: its ends suffice
             for j in (0, self.shape[1] - 1):
                 scale_chain(self.cell(i * self.shape[1] + j)).steps_per_period()
 
     @property
     def shape(self) -> tuple[int, int]:
-        """Cells along y and x."""
+        """Number of cells along y and x."""
         return len(self.y.values), len(self.x.values)
 
     @property
@@ -107,22 +108,22 @@ class Grid:
 
     @property
     def digest(self) -> str:
-        """Hash of what the cells are: the scene and both axes. Its accuracy is left out: a batch does not use it."""
+        """Hash of the scene and both axes, without the scene's accuracy, which a batch does not use."""
         described = {"scene": self.scene.evolve(accuracy=1e-6).digest, "x": [self.x.knob, self.x.values],
                      "y": [self.y.knob, self.y.values],
                      **({} if self.amplitude is None else {"amplitude": self.amplitude.to_json()})}
         return hashlib.sha256(json.dumps(described, sort_keys=True).encode()).hexdigest()[:16]
 
     def spacing(self) -> np.ndarray:
-        """Step of the coarsest net each cell belongs to, (cells,): it stands for that many cells in both directions."""
+        """Step (cells,) of the coarsest net that contains each cell, which represents that many cells both ways."""
         i, j = np.divmod(np.arange(self.size), self.shape[1])
         return np.asarray(1 << np.minimum(_level(i), _level(j)))
 
     def coarse_first(self) -> np.ndarray:
-        """Numbers of all cells, the coarsest net first, so that the picture is there early; the next is twice as fine.
+        """Numbers of all cells, the coarsest net first, then each twice as fine, so that the map's shape shows early.
 
-        In each net the cells with the longest drive period in the chain's own time, f/A0^{1/4}, come first: they cost
-        most, and one of them begun last would leave the other cores waiting.
+        In each net, the cells with the longest drive period in the chain's own time, A0^{1/4}/f, come first: they cost
+        most, and one of them started last would keep the other cores waiting.
         """
         i, j = np.divmod(np.arange(self.size), self.shape[1])
         knob = {self.y.knob: self.y.array[i], self.x.knob: self.x.array[j]}
@@ -131,7 +132,7 @@ class Grid:
 
 
 def _level(index: np.ndarray) -> np.ndarray:
-    """Number of times that an index is divisible by two; for 0 the largest number that counts."""
+    """How often each index is divisible by two; for 0, the largest value needed."""
     most = 1
     while 1 << most <= int(index.max(initial=1)):
         most += 1

@@ -15,12 +15,12 @@ from .cells import cell_of
 from .grid import Axis, Grid
 from .starts import by_kernel, starts_of
 
-#: Cells of one block: some seconds of work, so that sending it costs nothing.
+#: Number of cells in one block: a few seconds of work, so that the cost of sending it is negligible.
 CELLS_IN_TASK = 256
 
 
 def block_cells(grid: Grid, numbers: Sequence[int], stop: Stop | None = None) -> np.ndarray:
-    """The cells with these numbers, computed in this thread: the work that is handed to a scheduler as one block."""
+    """Compute the cells with these numbers in this thread: one block, as given to a scheduler's worker."""
     stop = Stop() if stop is None else stop
     cells = [cell_of(result) for group in by_kernel(grid, numbers)
              for result in settle_starts(starts_of(grid, group), stop)]
@@ -28,7 +28,7 @@ def block_cells(grid: Grid, numbers: Sequence[int], stop: Stop | None = None) ->
 
 
 def work_on(described: dict[str, Any], numbers: Sequence[int]) -> np.ndarray:
-    """The cells of one block, from plain data that can be sent: scene, x and y as `describe` gives them."""
+    """Compute the cells of one block from plain data that can be sent, as returned by `describe`."""
     grid = Grid(Scene.from_json(described["scene"]), Axis(described["x"][0], tuple(described["x"][1])),
                 Axis(described["y"][0], tuple(described["y"][1])),
                 None if described["amplitude"] is None else Amplitude.from_json(described["amplitude"]))
@@ -43,7 +43,7 @@ def describe(grid: Grid) -> dict[str, Any]:
 
 def iter_blocks(client: Any, grid: Grid, numbers: Sequence[int],
                 stop: Stop | None = None) -> Iterator[np.ndarray]:
-    """Finished blocks (cells,) in the order in which workers return them; blocks no longer wanted are cancelled."""
+    """Yield finished blocks (cells,) in the order in which workers return them; unneeded blocks are cancelled."""
     described = describe(grid)
     for _, rows in results(client, work_on, [(described, block) for block in dealt(numbers, CELLS_IN_TASK)], stop):
         yield np.asarray(rows)

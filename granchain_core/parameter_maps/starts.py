@@ -9,14 +9,15 @@ from .grid import Grid
 
 
 def starts_of(grid: Grid, numbers: Iterable[int]) -> Iterator[Start]:
-    """Cells as starts from rest."""
+    """The cells with these numbers as starts from rest."""
     return (Start(grid.cell(number), number=number) for number in numbers)
 
 
 def by_kernel(grid: Grid, numbers: Iterable[int]) -> list[list[int]]:
-    """The cells in groups that share a kernel: an axis that reaches 0, or equal beads, switches its effect off.
+    """Group the cells by the kernel they share: where an axis reaches 0, or the beads are equal, an effect is off.
 
-    Effects by name and equal beads tell them apart, because a map has one N; `structure` (precompile/warm.py) has more.
+    The names of the effects and whether the beads are equal determine the group, because a map has one N; `structure`
+    (precompile/warm.py) considers more.
     """
     groups: dict[tuple[bool, tuple[str, ...]], list[int]] = {}
     for number in numbers:

@@ -1,9 +1,9 @@
 """`drive`: the motion of a chain whose driver follows a given signal.
 
 The motion is computed with steps that are halved until the stated error is small enough, by the rules of `run`
-(integrate/stated.py). The signal's motion is computed exactly; where it stands for a formula (signal.py), what differs
-from the formula is added to the stated errors. Where it stands for samples, the motion is computed twice more, from the
-samples with even and with odd numbers, and an error by these differences is added.
+(integrate/stated.py). The signal's motion is computed exactly. If it represents a formula (signal.py), the effect of
+its difference from the formula is added to the stated errors. If it represents samples, the motion is computed twice
+more, from the samples with even and with odd numbers, and an error estimated from the differences is added.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from ..tables.provenance import Attribute
 from .moved_chain import MovedChain
 from .signal import Signal
 
-#: Error of the beads' displacements over that of the driver's, which swings from knot to knot. Random chains showed
+#: Error of the beads' displacements over that of the driver's, which oscillates from knot to knot. Random chains showed
 #: 0.003 to 0.03 where the motion does not magnify errors.
 _TRANSMITTED_ERROR = 0.03
 
@@ -46,15 +46,15 @@ class Driven(RecordedMotion):
     Attributes
     ----------
     scene : Scene
-        The chain; its own drive is left out.
+        The chain; its own drive is ignored.
     signal : Signal
-        How the driver moves.
+        The motion of the driver.
     displacement, velocity : numpy.ndarray, shape (T, N)
-        [m] and [m/s].
+        Displacements [m] and velocities [m/s] of the beads.
     force : numpy.ndarray, shape (T, N + 1)
         Forces of the contacts [N].
     max_input_force, max_output_force, max_output_force_elastic : float
-        Largest forces from the start to the end [N], between the knots too.
+        Largest forces from the start to the end [N], including between the knots.
     force_errors : ForceErrors
         Relative errors of these forces.
     displacement_error : float
@@ -67,8 +67,8 @@ class Driven(RecordedMotion):
     cost : Cost
         Computing time, steps and evaluations.
     interpolation_error : float
-        What the interpolation between samples of the driver's motion contributes to `displacement_error`; 0 for a
-        formula and for a motion that is meant as it is.
+        Contribution of the interpolation between samples of the driver's motion to `displacement_error`; 0 for a
+        formula and for a motion that is exact.
 
     Examples
     --------
@@ -105,14 +105,14 @@ class Driven(RecordedMotion):
         return self.signal.displacement
 
     def tables(self) -> tuple[Table, ...]:
-        """One table, `driven`, laid out as a run's is."""
+        """One table, `driven`, with the layout of a run's."""
         axes = {**time_axis(self.time, "time since the signal's own zero"), **bead_axis(self.scene.N),
                 **contact_axis(self.scene.N)}
         velocity = Column(self.signal.velocity, ("time",), "m/s", "driver velocity")
         return (Table("driven", axes, {**motion_columns(self), "drive_velocity": velocity}),)
 
     def attributes(self) -> dict[str, Attribute]:
-        """The signal, largest forces with their errors, status, energy and cost, and where it comes from."""
+        """The signal, largest forces with their errors, status, energy, cost and provenance."""
         return {**provenance(self.scene, self.cost.method, self.displacement_error), "status": self.status,
                 "drive": self.signal.words, "interpolation_error": self.interpolation_error,
                 "energy_residual": self.energy_residual, "cost": json.dumps(asdict(self.cost)),
@@ -129,32 +129,31 @@ class Driven(RecordedMotion):
 
 def drive(scene: Scene, signal: Signal, start: State | None = None, stop: Stop | None = None,
           progress: Callable[[float], None] | None = None) -> Driven:
-    """The motion of a chain whose driver follows a signal.
+    """Compute the motion of a chain whose driver follows a signal.
 
     Parameters
     ----------
     scene : Scene
-        The chain; its own drive is left out. `scene.accuracy` is the relative error of displacements asked for.
+        The chain; its own drive is ignored. `scene.accuracy` is the requested relative error of displacements.
     signal : Signal
-        How the driver moves.
+        The motion of the driver.
     start : State, optional
-        Where the chain begins; at rest, or with the initial velocities of the scene, if not given. Its phase does not
-        count.
+        Where the chain starts; by default at rest, or with the scene's initial velocities. Its phase is ignored.
     stop : Stop, optional
         Ends the computation when another thread sets it.
     progress : callable, optional
-        Called with the fraction that is done, 0 to 1.
+        Called with the completed fraction, 0 to 1.
 
     Returns
     -------
     Driven
-        The motion at every knot. Its `status` is "done", or "accuracy-not-reached", also where the samples of a
+        The motion at every knot. Its `status` is "done" or "accuracy-not-reached"; the latter also if the samples of a
         measured motion are too far apart for the accuracy.
 
     Raises
     ------
     BadInput
-        It is not a signal, or has too many knots for the chain, or needs too many steps.
+        `signal` is not a signal, has too many knots for the chain, or needs too many steps.
     ComputationError
         The motion is no longer finite.
     Cancelled
@@ -170,7 +169,8 @@ def drive(scene: Scene, signal: Signal, start: State | None = None, stop: Stop |
     """
     require_scene(scene)
     if not isinstance(signal, Signal):
-        raise BadInput(f"A drive is a Signal, such as Signal.chirp(…), not a value of type {type(signal).__name__}.")
+        raise BadInput("A drive is a Signal, for example Signal.chirp(…), not a value of type "
+                       f"{type(signal).__name__}.")
     if len(signal.time) * scene.N > MOST_RECORDED:
         raise BadInput(f"{len(signal.time)} knots for {scene.N} beads are more than {MOST_RECORDED:.0e} values; give a "
                        "shorter signal or fewer beads.")
@@ -183,9 +183,9 @@ def drive(scene: Scene, signal: Signal, start: State | None = None, stop: Stop |
 
 
 def _sampling_errors(chain: MovedChain, signal: Signal, begin: State, finest: Refined) -> np.ndarray:
-    """Relative errors (4,) of displacements and largest forces by the interpolation between the signal's samples.
+    """Relative errors (4,) of displacements and largest forces due to the interpolation between the signal's samples.
 
-    They follow from the differences between the `finest` motion and those by half of the samples; 0 for a formula.
+    They follow from the differences between the `finest` motion and those from half of the samples; 0 for a formula.
     """
     differences = np.zeros(4)
     for coarser in signal.coarser:
@@ -198,7 +198,7 @@ def _sampling_errors(chain: MovedChain, signal: Signal, begin: State, finest: Re
 
 
 def _driven(chain: MovedChain, signal: Signal, finest: Refined, between: np.ndarray, spent: Stopwatch) -> Driven:
-    """The result in SI; `between` are the relative errors (4,) by the interpolation between samples."""
+    """The result in SI; `between` are the relative errors (4,) due to the interpolation between samples."""
     scene, scales, motion = chain.scaled.scene, chain.scaled.scales, finest.samples
     largest = scales.displacements(float(np.abs(motion.displacement).max()))
     maxima = scales.forces(finest.maxima)
@@ -215,14 +215,14 @@ def _driven(chain: MovedChain, signal: Signal, finest: Refined, between: np.ndar
 
 
 def formula_errors(scene: Scene, signal: Signal, growth: float, displacement: float, maxima: np.ndarray) -> np.ndarray:
-    """Relative errors (4,) of displacements and largest forces that come from the signal's difference from its formula.
+    """Relative errors (4,) of displacements and largest forces due to the signal's difference from its formula.
 
-    `growth` is that of the errors in this motion, `displacement` the largest of a bead [m], `maxima` are the largest
-    input, output and elastic output force [N].
+    `growth` is the growth of errors in this motion, `displacement` the largest displacement of a bead [m], and `maxima`
+    are the largest input, output and elastic output force [N].
 
-    A contact is at most [δ] = (F/K)^{2/3} deep, as its force is elastic where the overlap is largest. A displacement
-    that is off by e changes its force by up to (3/2) K √[δ] e, a velocity that is off by e by up to g([δ]) e. Both
-    errors swing from knot to knot, and little of them is left behind contact 0.
+    The overlap of a contact is at most [δ] = (F/K)^{2/3}, because its force is elastic where the overlap is largest. An
+    error e of a displacement changes the force by up to (3/2) K √[δ] e, and an error e of a velocity by up to g([δ]) e.
+    Both errors oscillate from knot to knot, and little of them remains behind contact 0.
     """
     behind = max(1.0, growth) * _TRANSMITTED_ERROR * signal.displacement_error
     stiffness = scene.contact_stiffness()[[0, -1, -1]]
@@ -238,11 +238,11 @@ def formula_errors(scene: Scene, signal: Signal, growth: float, displacement: fl
 
 def sampling_differences(full: tuple[np.ndarray, np.ndarray, np.ndarray],
                          half: tuple[np.ndarray, np.ndarray, np.ndarray]) -> np.ndarray:
-    """Relative differences (4,) of a motion by half of the samples: of displacements, then of the largest forces.
+    """Relative differences (4,) of a motion from half of the samples: of displacements, then of the largest forces.
 
-    `full` is the motion by all samples, `half` that by every second one: times (T,), displacements (T, N) and largest
-    input, output and elastic output force (3,), in any unit. Largest forces may agree by chance, so their difference
-    counts as that of the displacements at least.
+    `full` is the motion from all samples and `half` that from every second one: times (T,), displacements (T, N) and
+    largest input, output and elastic output force (3,), in any unit. Largest forces may agree by chance, so their
+    difference counts as at least that of the displacements.
     """
     (times, displacement, maxima), (half_times, half_displacement, half_maxima) = full, half
     _, of_full, of_half = np.intersect1d(times, half_times, assume_unique=True, return_indices=True)

@@ -1,6 +1,6 @@
-"""Drives that `run --drive NAME=a:b:c` takes, by name: what makes the signal, its numbers, and what is checked of them.
+"""Drives by name for `run --drive NAME=a:b:c`: the function that makes the signal, its numbers, and their checks.
 
-The help of `run --drive` and a table of docs/scenes.md follow from this table.
+The help of `run --drive` and a table in docs/scenes.md are generated from `FORMULAS`.
 """
 
 from __future__ import annotations
@@ -28,13 +28,13 @@ class Formula:
     make : callable
         Makes the signal from the drive amplitude [m] and the numbers.
     numbers : tuple of str
-        What the numbers are, in order; frequencies in Hz, times in s.
+        Names of the numbers, in order; frequencies in Hz, times in s.
     meaning : str
         The motion of the driver, in words, for the docs.
     optional : int
-        How many numbers may be left out at the end. All others must be above 0.
+        Number of values at the end that may be left out. All others must be above 0.
     problem : callable
-        What else is wrong with numbers, as the end of a sentence; "" where nothing is.
+        Returns what else is wrong with the numbers, as the end of a sentence, or "".
     """
 
     make: Callable[..., Signal]
@@ -50,7 +50,7 @@ class Formula:
 
     @property
     def form(self) -> str:
-        """The numbers as they are written, "f1:f2:duration[:ratio]"."""
+        """The numbers in the form in which they are written, for example "f1:f2:duration[:ratio]"."""
         return ":".join(self.numbers[: self.needed]) + "".join(f"[:{name}]" for name in self.numbers[self.needed :])
 
 
@@ -89,9 +89,9 @@ FORMULAS: dict[str, Formula] = {
 
 
 def formula_signal(text: str, amplitude: float) -> Signal | None:
-    """The signal that NAME=a:b:c describes, with the drive amplitude [m]; None for anything else, such as a file.
+    """Make the signal that NAME=a:b:c describes, with the drive amplitude [m]; None for anything else, e.g. a file.
 
-    Raises `BadInput` where the numbers cannot be used.
+    Raises `BadInput` if the numbers cannot be used.
     """
     name, equals, values = text.partition("=")
     if not equals:

@@ -1,4 +1,4 @@
-"""A chain whose driver moves as a signal says."""
+"""A chain whose driver follows a signal."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .signal import Signal
 
 
 class MovedChain(ChainInPieces):
-    """A scene's chain whose driver moves as a signal says, with the energy account."""
+    """A scene's chain whose driver follows a signal, with the energy account."""
 
     def __init__(self, scene: Scene, signal: Signal, stop: Stop, counts: Counts | None = None) -> None:
         driven = scale_chain(scene, account=True)

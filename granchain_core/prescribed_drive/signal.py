@@ -1,13 +1,13 @@
 """Motions of the driver other than the harmonic one: chirp, burst, two tones, noise, a measured series.
 
 A signal is given at knots. Between them the velocity is a straight line and the displacement a quadratic, and this
-motion is computed exactly. A formula u(t) is given at KNOTS places in a period of its highest frequency. The
-velocities there are chosen so that the displacement is the formula's at the knots, and within 4e-8 of the amplitude
-between them; the velocity is off by up to h² v''/12, which is (2π/KNOTS)²/12 = 2e-5 of it. A signal knows this error,
-and `drive` adds what follows from it to the errors that it states.
+motion is computed exactly. A formula u(t) is given at KNOTS knots per period of its highest frequency. The velocities
+there are chosen so that the displacement equals the formula's at the knots, and is within 4e-8 of the amplitude between
+them; the velocity is off by up to h² v''/12, which is (2π/KNOTS)²/12 = 2e-5 of it. A signal knows this error, and
+`drive` adds its effect to the errors that it states.
 
-What a measured motion does between its samples is not known. Such a signal has two coarser ones, made from every second
-sample, and `drive` states an error by the differences from their motions.
+The motion between the samples of a measurement is not known. A measured signal has two coarser ones, made from every
+second sample, and `drive` estimates an error from the differences to their motions.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ from ..errors import BadInput
 from ..inputs.gaps import Gaps, sample_number, with_zeros
 from . import waveforms
 
-#: Knots in a period of the highest frequency of a formula.
+#: Knots per period of a formula's highest frequency.
 KNOTS = 400
-#: Most knots of a signal.
+#: Maximum number of knots of a signal.
 MOST_KNOTS = 2_000_000
-#: Corrections of the velocities at the knots: each reduces the displacement's error there by h² (d²/dt²)/4.
+#: Number of corrections of the velocities at the knots: each replaces the displacement's error e there by h² e''/4.
 _CORRECTIONS = 3
-#: Pieces into which the interval between two samples of a measured displacement is divided.
+#: Number of pieces into which the interval between two samples of a measured displacement is divided.
 _PIECES = 8
 
 
@@ -50,10 +50,10 @@ class Signal:
         Largest difference from a formula at any time [m/s] and [m]; 0 for a motion that is given at knots.
     coarser : tuple of Signal
         The same motion from samples with even numbers, and from those with odd numbers; empty for a formula and for a
-        motion that is meant as it is.
+        motion that is exact.
     order : float
-        How the motion comes nearer to what was measured as samples become closer: 1 (velocities that jump) to 2
-        (smooth ones). It is judged by every second and every fourth sample.
+        Order of convergence to the measured motion as samples become closer: 1 (velocities that jump) to 2 (smooth
+        ones). It is estimated from every second and every fourth sample.
 
     Examples
     --------
@@ -76,7 +76,7 @@ class Signal:
     def from_velocity(cls, time: object, velocity: object, words: str = "given velocity", start: float = 0.0, *,
                       exact: bool = False, gap: str = "refuse",
                       place: Callable[[int], str] = sample_number) -> Signal:
-        """A motion from its velocity at ascending times; between two of them the velocity is a straight line.
+        """Make a motion from its velocity at ascending times; between two of them the velocity is a straight line.
 
         Parameters
         ----------
@@ -87,7 +87,7 @@ class Signal:
         start : float
             Displacement at the first time [m].
         exact : bool
-            Whether the motion is meant to be this broken line, at any spacing. If not, the velocities are samples: a
+            Whether the motion is exactly this polygonal line, at any spacing. If not, the velocities are samples: a
             gap is refused, and `drive` states the error of the lines between the samples.
         gap : str
             Treatment of a gap between samples, a spacing of more than 1.5 times the usual one: "refuse", "zero" (no
@@ -109,7 +109,7 @@ class Signal:
         """
         t, v = (np.asarray(values, dtype=float) for values in (time, velocity))
         if t.ndim != 1 or t.shape != v.shape or len(t) < 2:
-            raise BadInput("A motion of the driver needs times and as many velocities, two at least.")
+            raise BadInput("A motion of the driver needs times and as many velocities, at least two.")
         if len(t) > MOST_KNOTS:
             raise BadInput(f"{len(t)} knots are more than {MOST_KNOTS}; give a shorter signal or a lower frequency.")
         if not (np.isfinite(t).all() and np.isfinite(v).all()) or (np.diff(t) <= 0.0).any():
@@ -127,9 +127,9 @@ class Signal:
     def from_displacement(cls, time: object, displacement: object, words: str = "given displacement", *,
                           exact: bool = False, gap: str = "refuse",
                           place: Callable[[int], str] = sample_number) -> Signal:
-        """A motion from its displacement at ascending times, by a cubic spline with eight knots a sample.
+        """Make a motion from its displacement at ascending times, by a cubic spline with eight knots per sample.
 
-        It begins at 0, wherever the first sample is: a driver that stands in bead 1 at time 0 would be another start.
+        It begins at 0, whatever the first sample is: a driver that overlaps bead 1 at time 0 would be another start.
 
         Parameters
         ----------
@@ -138,11 +138,11 @@ class Signal:
         words : str
             Description of the signal.
         exact : bool
-            Whether the motion is meant to be this spline, at any spacing. If not, the displacements are samples: a
-            gap is refused, and `drive` states the error of the spline between the samples.
+            Whether the motion is exactly this spline, at any spacing. If not, the displacements are samples: a gap is
+            refused, and `drive` states the error of the spline between the samples.
         gap : str
             Treatment of a gap between samples, a spacing of more than 1.5 times the usual one: "refuse" or
-            "interpolate" (the spline across it). There is no zero: a driver that stood still would jump at the end.
+            "interpolate" (the spline across it). There is no "zero": a driver at rest in the gap would jump at its end.
         place : callable, optional
             The place of a sample in its source from its index, for messages.
 
@@ -163,7 +163,7 @@ class Signal:
 
     @classmethod
     def _with_lines(cls, t: np.ndarray, v: np.ndarray, words: str, start: float) -> Signal:
-        """The motion whose velocity is a broken line, from checked arrays."""
+        """The motion whose velocity is a polygonal line, from checked arrays."""
         moved = np.concatenate([[0.0], np.cumsum(0.5 * np.diff(t) * (v[1:] + v[:-1]))])
         return cls(t, start + moved, v, words)
 
@@ -178,7 +178,7 @@ class Signal:
     @classmethod
     def of(cls, velocity: Callable[[np.ndarray], np.ndarray], displacement: Callable[[np.ndarray], np.ndarray],
            duration: float, highest: float, words: str) -> Signal:
-        """A motion by formulas of its velocity [m/s] and displacement [m], with frequencies up to `highest` [Hz]."""
+        """Make a motion from formulas of velocity [m/s] and displacement [m], with frequencies up to `highest` [Hz]."""
         count = math.ceil(KNOTS * duration * highest)
         if count > MOST_KNOTS:
             raise BadInput(f"{duration:g} s at up to {highest:g} Hz are {count:.1e} knots; the nearest valid duration "
@@ -190,8 +190,9 @@ class Signal:
             signal = cls._with_lines(time, corrected, words, float(at_knots[0]))
             corrected = corrected - np.gradient(signal.displacement - at_knots, time[1])
         signal = cls._with_lines(time, corrected, words, float(at_knots[0]))
-        # the error of a smooth velocity is largest at the knots or midway, and its integral between them: within a
-        # tenth of an interval times it, as h² v'' (1/12 − s (1 − s)/2) h ds adds up to 0.0080 h³ v'' at most
+        # the error of a smooth velocity is largest at the knots or midway between them. Its integral between two knots
+        # is within a tenth of an interval times this error, since h² v'' (1/12 − s (1 − s)/2) h ds adds up to at most
+        # 0.0080 h³ v''
         midway = velocity(time[:-1] + 0.5 * time[1])
         velocity_error = max(np.abs(corrected - exact).max(),
                              np.abs(0.5 * (corrected[1:] + corrected[:-1]) - midway).max())
@@ -221,8 +222,8 @@ class Signal:
     def noise(cls, amplitude: float, low: float, high: float, duration: float, seed: int = 0) -> Signal:
         """Noise with a flat spectrum of displacement from f₀ to f₁ [Hz] and the rms A/√2 of a sine of amplitude A.
 
-        The sum of two hundred sines of random frequencies and phases, the same for the same seed. The noise grows from
-        zero over the first two periods of f₀.
+        It is the sum of two hundred sines with random frequencies and phases, the same for the same seed. The noise
+        grows from zero over the first two periods of f₀.
         """
         return cls.of(*waveforms.noise(amplitude, low, high, seed), duration, high,
                       f"noise from {low:g} to {high:g} Hz for {duration:g} s, seed {seed}")
@@ -233,19 +234,19 @@ class Signal:
         return np.stack([self.displacement[:-1], self.velocity[:-1], 0.5 * np.diff(self.velocity) / step], axis=1)
 
     def displacement_at(self, time: np.ndarray) -> np.ndarray:
-        """Displacement at any times from the first knot to the last [m]."""
+        """Displacement [m] at any times between the first knot and the last."""
         at = np.clip(np.searchsorted(self.time, time, "right") - 1, 0, len(self.time) - 2)
         constant, linear, quadratic = self.quadratics()[at].T
         since = time - self.time[at]
         return np.asarray(constant + since * (linear + since * quadratic))
 
     def shifted(self, start: float) -> Signal:
-        """The motion moved into the chain by `start` [m] at all times."""
+        """The motion shifted towards the chain by `start` [m] at all times."""
         return replace(self, displacement=self.displacement + start,
                        coarser=tuple(signal.shifted(start) for signal in self.coarser))
 
     def finer(self, spacing: float) -> Signal:
-        """The motion with knots at most `spacing` [s] apart, at which `drive` then states the forces.
+        """The motion with knots at most `spacing` [s] apart, at which `drive` then returns the forces.
 
         Each interval is divided into the same number of equal parts, so the given knots are among the new ones.
         """
@@ -253,8 +254,8 @@ class Signal:
         if parts < 2:
             return self
         if parts * (len(self.time) - 1) > MOST_KNOTS:
-            raise BadInput(f"Knots {spacing:.3g} s apart are more than {MOST_KNOTS} for this motion; the nearest valid "
-                           f"spacing is {(self.time[-1] - self.time[0]) / MOST_KNOTS:.3g} s.")
+            raise BadInput(f"With knots {spacing:.3g} s apart, this motion would have more than {MOST_KNOTS}; the "
+                           f"nearest valid spacing is {(self.time[-1] - self.time[0]) / MOST_KNOTS:.3g} s.")
         at = np.arange(parts * (len(self.time) - 1) + 1) / parts
         given = np.arange(len(self.time))
         time, velocity = (np.interp(at, given, values) for values in (self.time, self.velocity))
@@ -262,16 +263,16 @@ class Signal:
 
 
 def _of_samples(count: int, put_in: np.ndarray, of: Callable[[np.ndarray], Signal]) -> Signal:
-    """The signal of so many samples, with its coarser ones; `of` makes the signal of the samples with given indices.
+    """The signal of `count` samples with its coarser ones; `of` makes the signal of the samples with given indices.
 
-    The first and the last sample and the zeros that were `put_in` are always kept. There are two signals by every
-    second sample since one of them may be like the full one by chance: of the velocity of a sine with four samples a
-    period, at its extremes and zeros, the extremes alone give the same lines.
+    The first and the last sample and the zeros that were `put_in` are always kept. There are two signals from every
+    second sample, because one of them may agree with the full one by chance: if the velocity of a sine has four samples
+    per period, at its extrema and zeros, the extrema alone give the same lines.
     """
     full, measured = of(np.arange(count)), np.delete(np.arange(count), put_in)
 
     def by_every(nth: int) -> tuple[tuple[Signal, ...], float]:
-        """Signals by every nth sample, and the largest distance of their displacements from the full signal's."""
+        """Signals from every nth sample, and the largest distance of their displacements from the full signal's."""
         signals = tuple(of(np.unique(np.concatenate([measured[first::nth], measured[[0, -1]], put_in])))
                         for first in range(nth))
         return signals, max(float(np.abs(signal.displacement_at(full.time) - full.displacement).max())

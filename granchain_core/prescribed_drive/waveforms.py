@@ -1,6 +1,6 @@
 """Formulas of the driver's motion over time [s]: a chirp, a burst, two tones, noise.
 
-Each function returns the formula of the velocity [m/s] and that of the displacement [m].
+Each function returns two functions of time: velocity [m/s] and displacement [m].
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import numpy as np
 
 OverTime = Callable[[np.ndarray], np.ndarray]
 
-#: Sines of which noise is made.
+#: Number of sines in the noise.
 _SINES = 200
 
 
@@ -60,13 +60,13 @@ def tones(amplitude: float, first: float, second: float, ratio: float) -> tuple[
 
 
 def noise(amplitude: float, low: float, high: float, seed: int) -> tuple[OverTime, OverTime]:
-    """A sum of sines of random frequencies and phases, with the rms A/√2, that grows over two periods of f₀."""
+    """A sum of sines with random frequencies and phases and the rms A/√2, which grows over two periods of f₀."""
     rng = np.random.default_rng(seed)
     omega = 2.0 * np.pi * rng.uniform(low, high, _SINES)
     phase, size, rise = rng.uniform(0.0, 2.0 * np.pi, _SINES), amplitude / math.sqrt(_SINES), 2.0 / low
 
     def window(t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The factor by which the noise has grown, and its rate."""
+        """The fraction to which the noise has grown, and its rate."""
         part = np.clip(t / rise, 0.0, 1.0)
         return np.sin(0.5 * np.pi * part) ** 2, 0.5 * np.pi / rise * np.sin(np.pi * part)
 

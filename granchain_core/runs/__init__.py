@@ -1,1 +1,1 @@
-"""Runs: one motion computed to a stated accuracy, its budget, many at once; the live chain."""
+"""Runs: one motion computed to a stated accuracy, with a budget; many runs at once; the live chain."""

@@ -20,7 +20,7 @@ from ..scene.refusals import require_scene
 from ..scene.state import State, checked_start, rest
 
 LIVE_SETTING = fixed_step_setting(2)
-"""The steps of a live chain."""
+"""The method setting of a live chain."""
 _NOT_ASKED = Regime.unsettled(0)
 
 
@@ -36,9 +36,9 @@ class LiveChain:
     scene : Scene
         The chain.
     samples : int
-        Recorded samples a drive period, an even number.
+        Recorded samples per drive period, an even number.
     start : State, optional
-        Where it begins; at rest if not given.
+        Where the motion starts; by default at rest.
     stop : Stop, optional
         When another thread sets it, `advance` raises `Cancelled`; the chain cannot be used after that.
 
@@ -83,11 +83,11 @@ class LiveChain:
 
     @property
     def state(self) -> State:
-        """The present state of the chain."""
+        """The current state of the chain."""
         return self._engine.state
 
     def change(self, scene: Scene) -> None:
-        """Use other knobs as soon as the drive allows it; another number of beads starts from rest."""
+        """Use new knobs as soon as the drive allows it; with another number of beads, the chain starts from rest."""
         require_scene(scene)
         if scene.N != self.scene.N:
             self.scene = scene
@@ -99,16 +99,16 @@ class LiveChain:
         self.scene = at_once
 
     def reset(self) -> None:
-        """Back to rest at drive phase 0, with the newest knobs."""
+        """Return to rest at drive phase 0, with the newest knobs."""
         self.scene = self._waiting or self.scene
         self._waiting = None
         self.time, self._index, self._began = 0.0, 0, start_words(self.scene, None)
         self._engine = self._new_engine(self.scene, rest(self.scene))
 
     def advance(self, count: int) -> Run:
-        """Advance by `count` samples: count + 1 rows, the present state first; `time` continues from call to call.
+        """Advance by `count` samples: count + 1 rows, the current state first; `time` continues from call to call.
 
-        The largest forces are those of this stretch. Raises `BadInput` for a `count` that is not a whole number from 1,
+        The largest forces are those of these samples. Raises `BadInput` if `count` is not a whole number from 1,
         `ComputationError`, `Cancelled`.
         """
         count = whole_number("count =", count, 1, MOST_RECORDED // self.scene.N)
@@ -145,7 +145,7 @@ class LiveChain:
 
 
 def joined(pieces: list[Run]) -> Run:
-    """One run out of successive ones; the first row of each later piece repeats the last of the one before."""
+    """Join successive runs to one; the first row of each later piece repeats the last row of the previous one."""
 
     def rows(name: str) -> np.ndarray:
         return np.concatenate([getattr(p, name)[(i > 0) :] for i, p in enumerate(pieces)])

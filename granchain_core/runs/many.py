@@ -23,23 +23,23 @@ from ..tables import MAXIMA, Column, Labelled, Table, axis, error_columns, force
 from ..tables.provenance import Attribute, made
 from .to_accuracy import run
 
-#: Most scenes of one batch.
+#: Maximum number of scenes in one batch.
 MOST_SCENES = 100_000
 
 
 Outcome = tuple[Any, str]
-"""A result, or None and why there is none."""
+"""A result and "", or None and the reason of the failure."""
 
 
 class Runs(list[Any], Labelled):
-    """The results of many scenes in their order; None where the computation failed.
+    """The results of many scenes, in the order of the scenes; None where the computation failed.
 
     Attributes
     ----------
     scenes : list of Scene
         The chains.
     failures : list of str
-        For each scene a sentence if its computation failed, else "".
+        For each scene, a sentence if its computation failed, otherwise "".
 
     Examples
     --------
@@ -57,7 +57,7 @@ class Runs(list[Any], Labelled):
         self.scenes, self.failures = list(scenes), list(failures)
 
     def tables(self) -> tuple[Table, ...]:
-        """One table, `runs`: each scene's knobs and what failed; of motions regime and largest forces with errors."""
+        """One table, `runs`: each scene's knobs and failure; for motions, regime and largest forces with errors too."""
         along = ("run",)
         columns = {"scene": _words([scene.name for scene in self.scenes], "name of the scene"),
                    "scene_digest": _words([scene.digest for scene in self.scenes], "hash of everything in the scene")}
@@ -72,7 +72,7 @@ class Runs(list[Any], Labelled):
             "failure": _words(self.failures, "why there is no result; empty where there is one")}),)
 
     def _of_motions(self) -> dict[str, Column]:
-        """Forces, errors and regimes where all results are motions."""
+        """Forces, errors and regimes, if all results are motions."""
         along, runs = ("run",), [motion.run if isinstance(motion, Settled) else motion for motion in self]
         if not all(motion is None or isinstance(motion, Run) for motion in runs):
             return {}
@@ -120,18 +120,18 @@ def run_many(scenes: Iterable[Scene], work: Callable[..., Any] = run,
     scenes : iterable of Scene
         The chains, at most 100,000.
     work : callable
-        `run`, `settle` for steady states, or another function of a scene, such as `orbit`, whose results branches can
-        start from.
+        `run`, `settle` for steady states, or another function of a scene, for example `orbit`, from whose results
+        branches can start.
     progress : callable, optional
-        Called with the fraction that is done, 0 to 1, after each scene.
+        Called with the completed fraction, 0 to 1, after each scene.
     stop : Stop, optional
         Ends the computation when another thread sets it.
     workers : int, optional
-        Threads; one for each core if not given.
+        Number of threads; by default one per core.
     scheduler : distributed.Client, optional
-        Its workers compute one scene at a time each.
+        Its workers compute the scenes, each one scene at a time.
     **options
-        What `work` takes for every scene: `periods`, `record`, `samples`, `method`, …
+        Arguments of `work` for every scene: `periods`, `record`, `samples`, `method`, …
 
     Returns
     -------
@@ -181,7 +181,7 @@ def run_many(scenes: Iterable[Scene], work: Callable[..., Any] = run,
 
 
 def attempted(work: Callable[..., Any], chain: Scene, options: dict[str, Any]) -> Outcome:
-    """The result of `work` for a chain, or the sentence with which the computation failed."""
+    """Return the result of `work` for a chain, or None and the sentence with which the computation failed."""
     try:
         return work(chain, **options), ""
     except (ComputationError, OverBudget) as problem:

@@ -1,7 +1,7 @@
-"""Checkpoints of a run (checkpoints.py): after a kill it continues with the discarded periods that are finished.
+"""Checkpoints of a run (checkpoints.py): after a kill it continues from the finished discarded periods.
 
-A run computes its motion several times, each time finer. For each computation the newest checkpoint among its discarded
-periods is kept; the recorded periods are computed again, since writing them would take longer.
+A run computes its motion several times, each time finer. For each computation, the newest checkpoint among its
+discarded periods is kept. The recorded periods are computed again, since writing them would take longer.
 """
 
 from __future__ import annotations
@@ -22,7 +22,10 @@ from ..scene import Scene
 
 @dataclass(eq=False)
 class Reached:
-    """The progress of one computation: its engine, the discarded periods done, and its latest strobes (P + 1, 2, N)."""
+    """The progress of one computation: its engine, the number of finished discarded periods, and the last strobes.
+
+    `strobes` has the shape (P + 1, 2, N).
+    """
 
     engine: Engine
     done: int
@@ -30,7 +33,7 @@ class Reached:
 
 
 class RunCheckpoints:
-    """The folder of one run: P discarded and R recorded periods of S samples, by a method or the chosen one (None)."""
+    """The folder of one run, with its discarded and recorded periods, samples per period, and method or None."""
 
     def __init__(self, scene: Scene, periods: int, record: int, samples: int, method: str | None,
                  out: str | Path) -> None:
@@ -39,18 +42,18 @@ class RunCheckpoints:
         words = f"{scene.name} with {periods} + {record} periods of {samples} samples"
         self.kept: Kept[dict[str, Any]] = Kept(out, "run", digest_of(request), words, _packed, newest_only=True)
         self._there: dict[str, Any] = {}
-        #: Number of the present computation, and how many of its discarded periods are done.
+        #: Number of the current computation, and how many of its discarded periods are finished.
         self.computation, self.done = 0, 0
 
     def open(self, resume: bool) -> None:
-        """Look what is there, to go on with it. Raises `BadInput`."""
+        """Open the folder and read the progress in it, to `resume` from there. Raises `BadInput`."""
         self.kept.open(resume)
         for content in self.kept.blocks():
             with np.load(io.BytesIO(content), allow_pickle=False) as kept:
                 self._there = dict(kept)
 
     def begin(self, computation: int, engine: Engine) -> Reached | None:
-        """The kept progress of a computation by such an engine; None where there is none."""
+        """Begin a computation; return its saved progress if it was made by such an engine, otherwise None."""
         self.computation, self.done = computation, 0
         name = f"{computation} checkpoint"
         if name not in self._there:
@@ -67,7 +70,7 @@ class RunCheckpoints:
         return Reached(resumed_engine, self.done, self._there[f"{computation} strobes"])
 
     def add(self, reached: Reached) -> None:
-        """Keep where the present computation has come."""
+        """Save the progress of the current computation."""
         self.done, engine = reached.done, reached.engine
         log = np.concatenate([engine.log.peaks, engine.log.last.ravel()])
         values = {"checkpoint": checkpoint(engine), "log": log, "counts": engine.counts.array.copy(),
@@ -77,7 +80,7 @@ class RunCheckpoints:
 
 
 def _with_log(scene: Scene, point: Checkpoint, stop: Stop, log: np.ndarray) -> Engine:
-    """The engine of a checkpoint, with the forces that it had followed."""
+    """The engine of a checkpoint, with the largest forces that it had recorded."""
     engine = resumed(scene, point, stop)
     peaks = engine.log.peaks.size
     engine.log.peaks[:], engine.log.last[:] = log[:peaks], log[peaks:].reshape(engine.log.last.shape)
@@ -85,7 +88,7 @@ def _with_log(scene: Scene, point: Checkpoint, stop: Stop, log: np.ndarray) -> E
 
 
 def _packed(pieces: list[dict[str, Any]]) -> bytes:
-    """The newest piece, which has everything."""
+    """The newest piece, which contains everything, as bytes."""
     out = io.BytesIO()
     arrays: dict[str, Any] = {name: np.frombuffer(value.to_bytes(), np.uint8) if isinstance(value, Checkpoint)
                               else value for name, value in pieces[-1].items()}

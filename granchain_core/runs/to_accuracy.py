@@ -1,6 +1,6 @@
-"""`run`: discarded and recorded periods of a motion, to the accuracy asked for.
+"""`run`: discarded and recorded periods of a motion, to the requested accuracy.
 
-Every accuracy is reached by comparing two computations, none by trust in a tolerance.
+Every accuracy is verified by comparing two computations, and never trusted because of a tolerance.
 """
 
 from __future__ import annotations
@@ -31,17 +31,17 @@ from ..steady.settling.regime_decisions import REMEMBERED, regime_without_contin
 from .budget import BUDGET, check_budget
 from .run_checkpoints import Reached, RunCheckpoints
 
-#: [no threshold] Most drive periods of one run.
+#: [no threshold] Maximum number of drive periods of one run.
 MOST_RUN_PERIODS = 10_000_000
-#: [no threshold] Stated error above which a motion may be chaotic: finer computations do not help then.
+#: [no threshold] Stated error above which a motion may be chaotic: finer computations then do not help.
 _CHAOS_SUSPECTED_ABOVE = 0.3
 #: [no threshold] A motion that may be chaotic is refined until its energy residual is below this factor times the
 #: accuracy: energies are quadratic.
 _RESIDUAL_PER_ACCURACY = 10.0
-#: [no threshold] Time of the next finer computation over the time of the last.
+#: [no threshold] Expected time of the next finer computation over that of the last one.
 _REFINED_COST_RATIO = 2.0
 #: [all] `run`: fewest drive periods after which multipliers or a Lyapunov exponent are computed. A shorter run is
-#: judged by its strobes alone.
+#: classified by its strobes alone.
 _FEWEST_PERIODS_CLASSIFIED = 40
 
 
@@ -58,32 +58,32 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
         start: State | None = None, stop: Stop | None = None,
         progress: Callable[[float], None] | None = None, budget: float = BUDGET,
         kept: RunCheckpoints | None = None) -> Run:
-    """Run a chain through discarded and recorded drive periods, to the accuracy its scene asks for.
+    """Run a chain through discarded and recorded drive periods, to the accuracy that its scene requests.
 
-    The motion is computed twice, the second time finer; the stated error starts from their largest difference
-    (integrate/stated.py). While it is above the accuracy asked for, a still finer computation follows
+    The motion is computed twice, the second time finer; the stated error is derived from their largest difference
+    (integrate/stated.py). As long as it is above the requested accuracy, a still finer computation follows
     (docs/accuracy.md, "Accuracy is measured, not trusted").
 
     Parameters
     ----------
     scene : Scene
-        The chain; `scene.accuracy` is the relative error of the displacements that is asked for.
+        The chain; `scene.accuracy` is the requested relative error of the displacements.
     periods : int
-        Drive periods that are run and discarded.
+        Number of drive periods that are run and discarded.
     record : int
-        Drive periods that are recorded.
+        Number of drive periods that are recorded.
     samples : int
-        Samples a period; both ends are recorded, record · samples + 1 rows.
+        Samples per period; both ends are recorded, so there are record · samples + 1 rows.
     method : str, optional
-        Name of a method in `integrate.METHODS`, in place of the one chosen from the accuracy.
+        Name of a method in `integrate.METHODS`; by default it is chosen from the accuracy.
     start : State, optional
-        Where the motion begins; if not given, at rest, or with the initial velocities of the scene.
+        Where the motion starts; by default at rest, or with the scene's initial velocities.
     stop : Stop, optional
         Ends the computation when another thread sets it.
     progress : callable, optional
-        Called with the fraction done of the computation under way, 0 to 1; each finer computation starts at 0 again.
+        Called with the completed fraction of the current computation, 0 to 1; each finer computation starts again at 0.
     budget : float
-        Seconds the run may take; compiling does not count.
+        Time that the run may take [s]; compilation does not count.
     kept : RunCheckpoints, optional
         Checkpoints on disk of a run that starts at phase 0: the run continues from them and adds to them
         (runs/run_checkpoints.py).
@@ -91,15 +91,15 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
     Returns
     -------
     Run
-        The recorded motion. Its `status` is "done", "accuracy-not-reached" where no finer computation came near enough
-        (chaos magnifies every error), or "over-budget" where the next finer one would take too long.
+        The recorded motion. Its `status` is "done", "accuracy-not-reached" if no finer computation came near enough
+        (chaos magnifies every error), or "over-budget" if the next finer one would take too long.
 
     Raises
     ------
     BadInput
-        A number of periods or samples is not a whole number or out of range, or there is no such method.
+        A number of periods or samples is not a whole number or is out of range, or there is no such method.
     OverBudget
-        The run would take longer than `budget` from the beginning; it is a `BadInput`.
+        Even the first computations would take longer than `budget`; `OverBudget` is a `BadInput`.
     ComputationError
         The motion is no longer finite, a step has shrunk to nothing, a period takes millions of steps, or contacts open
         and close while no time passes (chatter); the message says when and why.
@@ -146,10 +146,10 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
 
 def _refined(attempt: Callable[[MethodSetting], _Attempt], scene: Scene, setting: MethodSetting, samples: int,
              budget: float) -> tuple[_Attempt, str, np.ndarray]:
-    """Compute the motion with `setting`, then ever finer: the last computation, the run's status, the errors (4,).
+    """Compute the motion with `setting`, then ever finer; return the last computation, the status, the errors (4,).
 
-    It ends where the error is as small as asked for, where finer steps would not help, or before a computation that
-    would exceed `budget` seconds.
+    It ends once the error is as small as requested, if finer steps would not help, or before a computation that would
+    exceed `budget` seconds.
     """
     spent, errors = Stopwatch(), Computations(scene.cuts_tension)
     errors.begin(setting)
@@ -171,7 +171,7 @@ def _refined(attempt: Callable[[MethodSetting], _Attempt], scene: Scene, setting
 
 
 def _sizes(scene: Scene, periods: int, record: int, samples: int) -> tuple[int, int, int]:
-    """The three numbers as ints, checked."""
+    """Check the three numbers and return them as ints."""
     periods = whole_number("periods =", periods, 0, MOST_RUN_PERIODS)
     record = whole_number("record =", record, 1, MOST_RUN_PERIODS)
     samples = whole_number("samples =", samples, 1, MOST_SAMPLES)
@@ -218,7 +218,7 @@ def _strobes(rows: Samples, samples: int) -> np.ndarray:
 def _differences(now: _Attempt, before: _Attempt) -> np.ndarray:
     """Relative differences (4,) of the displacements and of the largest input, output and elastic output force.
 
-    The differences of forces are taken with a factor for caution.
+    The differences of forces include a safety factor.
     """
     jumps = now.engine.scaled.scene.forces_jump
     return np.array([relative_difference(now.samples.displacement, before.samples.displacement),
@@ -236,7 +236,7 @@ def _regime(scene: Scene, attempt: _Attempt, periods: int, stop: Stop) -> Regime
     """The regime shown by these periods; a slow motion is classified by multipliers or its Lyapunov exponent."""
     if not scene.is_driven:
         return Regime.undriven(periods)
-    noise = min(1e-6, 10.0 * scene.accuracy)  # strobes carry the error of the motion; ten times it is not a change
+    noise = min(1e-6, 10.0 * scene.accuracy)  # strobes have the motion's error: up to ten times that is no change
     regime = replace(find_period(attempt.strobes, rounding=noise), periods_run=periods)
     if periods < _FEWEST_PERIODS_CLASSIFIED or attempt.engine.grid_index != 0:
         return regime
@@ -246,5 +246,5 @@ def _regime(scene: Scene, attempt: _Attempt, periods: int, stop: Stop) -> Regime
 
 
 def warnings(result: Run) -> list[str]:
-    """Sentences on where the model itself stopped being valid during a run."""
+    """Sentences about contacts for which the model itself was no longer valid during a run."""
     return overlap_warnings(result.scene, result.overlap.max(axis=0))

@@ -1,1 +1,1 @@
-"""Steady states: criteria of the regime, Lyapunov exponent, Poincaré section, errors of an orbit's forces."""
+"""Steady states: regime criteria, Lyapunov exponent, Poincaré section, and errors of an orbit's forces."""

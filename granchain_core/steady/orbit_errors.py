@@ -13,12 +13,12 @@ from ..scene.hertz import EXPONENT, OVERLAP_POWER
 
 
 def force_distances(distance: float, scaled: ScaledChain, maxima: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Relative changes (3,) of the largest forces over a relative `distance` of states.
+    """Relative changes (3,) of the largest forces over a relative `distance` between states.
 
     The distance is relative to the largest displacement of the scaled state y, but a force depends on its overlap as
-    F ∝ δ^p, and a relative change of the overlap is p times as large in the force. Where a contact of the first or last
-    bead overlaps less than the largest displacement, as in the stop band, the same distance changes its force by a
-    larger part. `maxima` are the scaled forces.
+    F ∝ δ^p, so its relative change is p times that of the overlap. Where the first or last contact overlaps by less
+    than the largest displacement, as in the stop band, the same distance changes its force by a larger fraction.
+    `maxima` are the scaled forces.
     """
     stiffness = scaled.slots.chain.stiffness
     largest = float(np.abs(scaled.rows(y)[0]).max())
@@ -39,30 +39,30 @@ def error_of_displacements(change: float, finer: MethodSetting, contraction: flo
 
 
 def errors_of_map(change: np.ndarray, least_errors: float, contraction: float) -> np.ndarray:
-    """Relative errors (3,) of the largest forces on an orbit whose integration was seen from one state.
+    """Relative errors (3,) of the largest forces on an orbit that was computed twice from one state.
 
     `change` (3,) is the relative change of the forces from one computation of the orbit to a finer one, both from the
-    same state. `least_errors` is the typical error of the finer one, because two may agree by chance. An error ε of the
-    n-period map moves its fixed point by ε/(1 − contraction), and the forces with it; `contraction` is the factor per
-    orbit: |μ|, or else the observed contraction factor.
+    same state. `least_errors` is the typical error of the finer one, a lower limit because two may agree by chance. An
+    error ε of the n-period map moves its fixed point by ε/(1 − contraction), and the forces with it. `contraction` is
+    the factor per orbit: |μ|, or otherwise the observed contraction factor.
     """
     return np.maximum(ORBIT_FORCES * change, least_errors) / (1.0 - contraction)
 
 
 def errors_of_two_orbits(change: np.ndarray, least_errors: float, contraction: float) -> np.ndarray:
-    """Relative errors (3,) of the largest forces where each of two computations came to an orbit of its own.
+    """Relative errors (3,) of the largest forces where each of two computations reached its own orbit.
 
-    `change` (3,) is then the difference of these orbits, and as large as the error moves them; only `least_errors`, the
-    typical error of the finer map, is enlarged by 1/(1 − contraction).
+    `change` (3,) is then the difference between these orbits and already contains the factor 1/(1 − contraction). Only
+    `least_errors`, the typical error of the finer map, is enlarged by it.
     """
     return np.maximum(ORBIT_FORCES * change, least_errors / (1.0 - contraction))
 
 
 def errors_between(finer: Engine, before: np.ndarray, contraction: float, distance: float) -> np.ndarray:
-    """Relative errors (3,) of the largest forces that `finer` found in one orbit; a coarser run found `before`.
+    """Relative errors (3,) of the largest forces that `finer` found along one orbit; a coarser run found `before`.
 
-    Both began in one state, at the relative `distance` from the orbit; `contraction` is the factor per orbit. What the
-    distance contributes (`force_distances`) and the errors at jumps are added.
+    Both started in the same state, at a relative `distance` from the orbit; `contraction` is the factor per orbit. The
+    contribution of the distance (`force_distances`) and the errors at jumps are added.
     """
     step = finer.setting.step(finer.scaled, finer.samples)
     jumps = jump_errors(finer.setting, finer.scaled, step, finer.jumps, finer.maxima)

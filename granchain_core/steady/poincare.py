@@ -1,8 +1,8 @@
-"""The Poincaré section: a chain's state once per drive period, at any phase of the drive.
+"""The Poincaré section: a chain's state once per drive period, at any drive phase.
 
 A driven chain's section at phase p is the set of states at t = (j + p)/f, j = 0, 1, …: n points for a period-n orbit, a
-closed curve for a quasi-periodic motion, a cloud with structure for a chaotic one. The motion is recorded at many
-phases of each period at once, so that another phase or bead needs no new run.
+closed curve for a quasi-periodic motion, a structured cloud for a chaotic one. The motion is recorded at many phases of
+each period, so that another phase or bead needs no new run.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from ..integrate.start import at_phase_0
 from ..scene import Scene
 from ..scene.state import State, rest
 
-#: Most values of displacement that a section keeps: it holds fewer periods of a longer chain.
+#: Maximum number of displacement values in a section: the longer the chain, the fewer periods are kept.
 MOST_VALUES = 1_500_000
 
 
@@ -27,8 +27,8 @@ MOST_VALUES = 1_500_000
 class Section:
     """States of every bead at `samples` phases of each of P periods since the start, phase 0 first.
 
-    displacement, velocity (P, samples, N) [m, m/s]; a long one is in single precision, which is enough for pictures and
-    for Newton's starts.
+    displacement, velocity (P, samples, N) [m, m/s]; those of `iter_section` are in single precision, which is enough
+    for figures and for starting Newton's method.
     """
 
     scene: Scene
@@ -46,24 +46,25 @@ class Section:
         return len(self.displacement)
 
     def points(self, bead: int, phase: int) -> np.ndarray:
-        """(P, 2) displacement and velocity of bead 1..N at the phase with that number [m, m/s]."""
+        """Displacement and velocity (P, 2) of bead 1..N at the sample with number `phase` [m, m/s]."""
         return np.stack([self.displacement[:, phase, bead - 1], self.velocity[:, phase, bead - 1]], axis=1)
 
     def strobes(self) -> np.ndarray:
-        """(P, 2, N) all beads at phase 0 [m, m/s]."""
+        """Displacement and velocity (P, 2, N) of all beads at phase 0 [m, m/s]."""
         return np.stack([self.displacement[:, 0], self.velocity[:, 0]], axis=1)
 
 
 def most_periods(scene: Scene, samples: int, wanted: int) -> int:
-    """Number of the wanted periods that are kept."""
+    """Number of periods that are kept, at most `wanted`."""
     return max(1, min(wanted, MOST_VALUES // (samples * scene.N)))
 
 
 def iter_section(scene: Scene, start: State | None, periods: int, samples: int = 48, seconds: float = 0.15,
                  stop: Stop | None = None) -> Iterator[Section]:
-    """The section from `start` (None is the scene's own start), ever longer: about every `seconds`.
+    """Yield the growing section from `start`, by default the scene's own start, about every `seconds`.
 
-    It ends after `most_periods` of `periods`. Raises `ComputationError`, `Cancelled`.
+    It ends after `periods` drive periods, or after as many as are kept (`most_periods`). Raises `ComputationError`,
+    `Cancelled`.
     """
     engine = Engine(scene, following_setting(scene.cuts_tension), samples, stop=stop)
     engine.start(rest(scene) if start is None else at_phase_0(scene, start, engine.stop))

@@ -1,8 +1,8 @@
 """The regime of a motion from its stroboscopic states and its Lyapunov exponents.
 
-A state that hardly changes from one period to the next need not be near the attractor: if changes shrink by r per
-orbit, the distance left is change·r/(1 − r). A motion whose bound is small enough is a candidate for a periodic one;
-settling/regime_decisions.py and batch/jobs_in_batch.py confirm it.
+A state that hardly changes from one period to the next need not be near the attractor: if changes shrink by a factor r
+per orbit, the remaining distance is change·r/(1 − r). If this bound is small enough, the motion is a candidate for a
+periodic one; settling/regime_decisions.py and batch/jobs_in_batch.py confirm it.
 """
 
 from __future__ import annotations
@@ -17,43 +17,43 @@ from ..kernels.strobes import periodicity
 from ..kernels.strobes.periodicity import LONGEST_PERIOD, ROUNDING, SETTLED_DISTANCE
 from ..results.regime import Regime
 
-#: [chaotic, quasi-periodic] Standard errors within which a mean exponent counts as not known (from ten blocks: about
-#: 98.5 % for independent normal means).
+#: [chaotic, quasi-periodic] Number of standard errors within which a mean exponent counts as unknown (from ten blocks:
+#: about 98.5 % for independent normal means).
 STANDARD_ERRORS = 3.0
-#: [period n] Longest period that is tested for a chain alone, in drive periods. Orbits locked to the drive among
+#: [period n] Longest period tested when a chain is settled alone, in drive periods. Orbits locked to the drive among
 #: quasi-periodic motions may be that long.
 LONGEST_LOCKED_PERIOD = 60
 #: [chaotic, quasi-periodic] Variance of the mean of ten overlapping blocks (`block_means` in lyapunov.py), over that of
 #: ten independent ones with the variance that they show. Neighbours correlate by 1/6: (1 + 0.3)/(1 − 1/30).
 OVERLAP_FACTOR = 1.35
-#: [chaotic, quasi-periodic] On a torus the distance of neighbours stays bounded: its logarithm varies by up to this.
-#: Over P periods this biases a mean exponent by up to this over P. Up to 4 was seen.
+#: [chaotic, quasi-periodic] On a torus the distance between neighbours stays bounded: its logarithm varies by up to
+#: this. Over P periods, this biases a mean exponent by up to this value over P. Variations of up to 4 were observed.
 _BOUNDED_GROWTH = 6.0
-#: [quasi-periodic] Largest mean exponent per period, and largest three standard errors of it. All but weak chaos, below
-#: this exponent, is excluded.
+#: [quasi-periodic] Largest mean exponent per period, and largest value of three standard errors of it. All chaos is
+#: excluded except weak chaos, below this exponent.
 _LARGEST_NEUTRAL_EXPONENT = 0.01
-#: [quasi-periodic] A neutral mean that differs from zero by more than its error is measured further where so many
-#: periods, in all, can tell it from the bias that a torus may have. A chain alone measures no longer than that.
+#: [quasi-periodic] The measurement of a neutral mean that differs from zero by more than its error is continued if this
+#: many periods in total can distinguish it from the bias on a torus. A chain settled alone is not measured longer.
 _LONGEST_COMPARISON = 1760
-#: [quasi-periodic] Drive periods in one of the three windows in which a slow approach must show.
+#: [quasi-periodic] Drive periods in each of the three windows in which a slow approach must show.
 _SLOW_WINDOW = 100
-#: [quasi-periodic] Changes shrink if a window has less than this fraction of the changes in the window before. A closed
-#: curve sampled a hundred times shows its extent to about a per cent.
+#: [quasi-periodic] Changes shrink if those of a window are less than this fraction of those in the window before. A
+#: closed curve sampled a hundred times shows its extent to about one per cent.
 _SHRINK_FACTOR = 0.98
 #: [quasi-periodic] Changes of a departure are small below this, relative to the largest displacement and velocity.
 _LARGEST_DEPARTURE = 0.1
 #: [chaotic] One measurement suffices if both halves are above this exponent per period, and above three standard
-#: errors. No departure from an orbit sustains it over the periods in which a motion may settle.
+#: errors. No departure from an orbit sustains such growth over the periods in which a motion may settle.
 CLEAR_GROWTH = 0.05
 #: [chaotic, quasi-periodic] Two mean exponents per period agree if they differ by less than this, or by three combined
 #: standard errors.
 _EXPONENT_DIFFERENCE = 1e-3
 #: [quasi-periodic] The section returns near itself if the median distance between neighbours is at most this many times
-#: that on a curve which is filled evenly.
+#: that on an evenly filled curve.
 _RETURN_FACTOR = 5.0
-#: [no threshold] States that are compared at once in a window, for the length of a loop.
+#: [no threshold] Number of states of a window that are compared at once, which makes the inner loop long.
 _STATES_AT_ONCE = 8
-#: [quasi-periodic] Strobes needed for the three windows.
+#: [quasi-periodic] Number of strobes needed for the three windows.
 SLOW_RECORD = 3 * _SLOW_WINDOW + LONGEST_PERIOD
 
 
@@ -65,10 +65,10 @@ def changes(strobes: np.ndarray, period: int, count: int) -> np.ndarray:
 
 
 def window_changes(strobes: np.ndarray, window: int, windows: int, longest: int) -> list[list[float]]:
-    """The largest relative change over 1, 2, … `longest` periods in each of the last `windows` windows of `window`
-    strobes, the oldest first; strobes (P, 2, N), at least windows·window + longest of them.
+    """The largest relative change over 1, 2, … `longest` periods in each of the last windows, the oldest first.
 
-    Lists: a regime is decided number by number, for which an array takes longer.
+    There are `windows` of them, of `window` strobes each; `strobes` (P, 2, N) has at least windows·window + longest.
+    Returns lists, because a regime is decided number by number, for which an array takes longer.
     """
     seen, workspace = np.zeros((longest, windows)), np.zeros((_STATES_AT_ONCE, *strobes.shape[1:]))
     periodicity.window_changes(np.ascontiguousarray(strobes), window, np.zeros(2), workspace, seen)
@@ -77,10 +77,10 @@ def window_changes(strobes: np.ndarray, window: int, windows: int, longest: int)
 
 
 def find_period(strobes: np.ndarray, longest: int = LONGEST_LOCKED_PERIOD, rounding: float = ROUNDING) -> Regime:
-    """Periodic with the smallest n whose distance bound holds, else unsettled; strobes (P + 1, 2, N).
+    """Periodic with the smallest n whose distance bound is small enough, otherwise unsettled; strobes (P + 1, 2, N).
 
-    Changes below `rounding` are the method's own and count as none. A slow approach may hide below it, so the distance
-    is no better known than rounding·r/(1 − r) with the observed contraction factor r.
+    Changes below `rounding` are due to the method and count as zero. A slow approach may be hidden below it, so the
+    distance is not known better than rounding·r/(1 − r), where r is the observed contraction factor.
     """
     periods_run = len(strobes) - 1
     period, decay, distance, *_ = periodicity.detect_period(np.ascontiguousarray(strobes), longest, rounding,
@@ -95,14 +95,14 @@ def find_period(strobes: np.ndarray, longest: int = LONGEST_LOCKED_PERIOD, round
 
 
 def rounding_of(setting: MethodSetting) -> float:
-    """Largest change of strobes that counts as none: rounding, or with error control the tolerance of a step."""
+    """Largest change of strobes that counts as zero: rounding, or with error control the tolerance of a step."""
     return max(ROUNDING, setting.tolerance)
 
 
 def grows(mean: float, error: float, periods: int) -> bool:
-    """Whether nearby trajectories diverge, by a mean exponent over `periods` drive periods and its standard error.
+    """Whether nearby trajectories diverge, judging by a mean exponent over `periods` drive periods and its error.
 
-    mean > max(`STANDARD_ERRORS` σ, `_BOUNDED_GROWTH`/periods).
+    The criterion is mean > max(`STANDARD_ERRORS` σ, `_BOUNDED_GROWTH`/periods), with the standard error σ.
     """
     return mean > max(STANDARD_ERRORS * error, _BOUNDED_GROWTH / periods)
 
@@ -112,9 +112,9 @@ def is_neutral(mean: float, error: float, periods: int) -> bool:
 
     |mean| ≤ min(max(s, `_BOUNDED_GROWTH`/periods), `_LARGEST_NEUTRAL_EXPONENT`) with s = `STANDARD_ERRORS` σ, which
     must be below `_LARGEST_NEUTRAL_EXPONENT` too: a large error must not make this easier. A mean over a short time may
-    be neutral although it differs from zero by more than its error: `needs_more_periods` says how long it is measured
-    further. A mean that is neither neutral nor clearly positive or negative is undecided. docs/regimes.md
-    ("Quasi-periodic") has the reasons.
+    be neutral although it differs from zero by more than its error: `needs_more_periods` decides how long its
+    measurement is continued. A mean that is neither neutral nor clearly positive or negative is undecided.
+    docs/regimes.md ("Quasi-periodic") gives the reasons.
     """
     uncertain = STANDARD_ERRORS * error
     limit = min(max(uncertain, _BOUNDED_GROWTH / periods), _LARGEST_NEUTRAL_EXPONENT)
@@ -130,10 +130,10 @@ def mean_and_error(exponents: np.ndarray) -> tuple[float, float]:
 
 
 def needs_more_periods(exponents: np.ndarray, periods: int) -> bool:
-    """Whether the measurement is continued, because these blocks of `periods` in all do not suffice for a decision.
+    """Whether a measurement must be continued, because its blocks, `periods` in total, do not suffice for a decision.
 
-    The blocks do not suffice if the error is too large: the mean is neither clearly positive nor clearly negative, and
-    not neutral. They do not suffice either if a neutral mean may be more than the bias of a torus and at most
+    The blocks do not suffice if the error is too large: the mean is neither clearly positive, nor clearly negative, nor
+    neutral. Nor do they suffice if a neutral mean may be more than the bias on a torus and at most
     `_LONGEST_COMPARISON` periods will show it.
     """
     mean, error = mean_and_error(exponents)
@@ -143,18 +143,18 @@ def needs_more_periods(exponents: np.ndarray, periods: int) -> bool:
 
 
 def _periods_of_comparison(mean: float, error: float) -> float:
-    """Periods P over which the bias of a torus, `_BOUNDED_GROWTH`/P, falls to the part of |mean| above its error."""
+    """Periods P over which the bias on a torus, `_BOUNDED_GROWTH`/P, falls to the excess of |mean| over its error."""
     certain = abs(mean) - STANDARD_ERRORS * error
     return _BOUNDED_GROWTH / certain if certain > 0.0 else math.inf
 
 
 def regime_from_exponents(exponents: np.ndarray, periods: int, strobes: np.ndarray, periods_run: int) -> Regime:
-    """Chaotic, quasi-periodic or unsettled from the Lyapunov exponents of overlapping blocks of `periods` in all.
+    """Chaotic, quasi-periodic or unsettled, from the Lyapunov exponents of overlapping blocks, `periods` in total.
 
     Chaotic: the mean is above three standard errors and a least value (`grows`). Quasi-periodic: it is neutral
-    (`is_neutral`), the section comes back near itself (`return_limit`), and the record is long enough to show that
-    changes neither shrink nor grow. Anything else is unsettled. Where `is_neutral` holds the regime has the numbers on
-    which the other two conditions rest, met or not.
+    (`is_neutral`), the section returns near itself (`return_limit`), and the record is long enough to show that
+    changes neither shrink nor grow. Anything else is unsettled. If the mean is neutral, the regime includes the numbers
+    behind the other two conditions, whether these are met or not.
     """
     mean, error = mean_and_error(exponents)
     if grows(mean, error, periods):
@@ -172,7 +172,7 @@ def regime_from_exponents(exponents: np.ndarray, periods: int, strobes: np.ndarr
 def clearly_chaotic(exponents: np.ndarray) -> bool:
     """Whether one measurement is enough: both halves show a growth that no departure from an orbit sustains.
 
-    After 400 periods a growth of 0.05 a period has multiplied a distance by 5e8.
+    In 400 periods, an exponent of 0.05 per period multiplies a distance by 5e8.
     """
     halves = exponents[: len(exponents) // 2], exponents[len(exponents) // 2 :]
     return all(mean > max(STANDARD_ERRORS * error, CLEAR_GROWTH) for mean, error in map(mean_and_error, halves))
@@ -193,17 +193,17 @@ def agree(first: Regime, second: Regime) -> bool:
 
 
 def _windows(strobes: np.ndarray, longest: int = LONGEST_PERIOD) -> list[list[float]]:
-    """Largest changes over 1, 2, … `longest` periods, each in three windows in a row; none for a short record."""
+    """Largest changes over 1, 2, … `longest` periods, each in three successive windows; empty for a short record."""
     return window_changes(strobes, _SLOW_WINDOW, 3, longest) if len(strobes) >= SLOW_RECORD else []
 
 
 def converging(strobes: np.ndarray) -> bool:
     """Whether the motion converges: changes over some period shrink through three windows, and none grow.
 
-    On a closed curve or a strange attractor their largest value does not change, or some grow while others shrink.
+    On a closed curve or a strange attractor, the largest changes stay the same, or some grow while others shrink.
     """
-    strobes = np.ascontiguousarray(strobes)  # once for both looks at it
-    # most irregular motions show growth over one or two periods, and the other fourteen need not be looked at
+    strobes = np.ascontiguousarray(strobes)  # once for both calls
+    # most irregular motions show growth over one or two periods, so the other fourteen need not be computed
     return not _some_grow(_windows(strobes, 2)) and _converging(_windows(strobes))
 
 
@@ -241,7 +241,7 @@ def _neither_converges_nor_departs(seen: list[list[float]]) -> bool:
 def _window_ratios(seen: list[list[float]]) -> tuple[float, float] | None:
     """Smallest and largest ratio of a window's largest change to that of the window before, over all periods.
 
-    None where the record is too short for three windows.
+    None if the record is too short for three windows.
     """
     before = [change for row in seen for change in row[:-1]]
     if not before or min(before) <= 0.0:
@@ -251,7 +251,7 @@ def _window_ratios(seen: list[list[float]]) -> tuple[float, float] | None:
 
 
 def return_distance(strobes: np.ndarray) -> float:
-    """Median distance from a state of the record's second half to the nearest of its first half, relative."""
+    """Median relative distance from a state of the record's second half to the nearest one of its first half."""
     nearest = np.zeros(len(strobes) - len(strobes) // 2)
     order = np.argsort(strobes[: len(strobes) // 2, 0, 0], kind="stable")
     periodicity.nearest_neighbours(np.ascontiguousarray(strobes), order, np.zeros(2), nearest)
@@ -260,10 +260,10 @@ def return_distance(strobes: np.ndarray) -> float:
 
 
 def return_limit(strobes: np.ndarray) -> float:
-    """The limit of `return_distance`, below which the section returns near itself.
+    """The limit of `return_distance` below which the section returns near itself.
 
-    A coarse test: it excludes drift and spreading, but does not prove a closed curve, and a torus of three frequencies
-    may pass. On a curve filled evenly by P points neighbours lie about 2π/P apart. The limit is `_RETURN_FACTOR` times
-    that, with P the number of early states.
+    This is a coarse test: it excludes drift and spreading, but does not prove a closed curve, and a torus with three
+    frequencies may pass. On a curve filled evenly by P points, neighbours are about 2π/P apart. The limit is
+    `_RETURN_FACTOR` times that, where P is the number of states in the first half.
     """
     return _RETURN_FACTOR * 2.0 * math.pi / (len(strobes) // 2)

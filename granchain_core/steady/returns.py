@@ -6,14 +6,14 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-#: [no threshold] Stands for a size of zero, by which nothing can be divided: far below any, and no subnormal number.
+#: [no threshold] Replaces a size of zero, by which nothing can be divided: far below any other, but not subnormal.
 _NO_SIZE = 1e-300
 
 
 def sizes(x: np.ndarray, least_displacement: float = 0.0) -> np.ndarray:
-    """The sizes of displacements and of w, in the two halves of x (2N,): the largest entry of each half.
+    """The sizes (2N,) of displacements and of w, the two halves of x (2N,): the largest modulus in each half.
 
-    That of displacements is at least `least_displacement`.
+    The size of displacements is at least `least_displacement`.
     """
     half = len(x) // 2
     largest = [max(_NO_SIZE, least, float(np.abs(part).max()))
@@ -28,9 +28,9 @@ def relative_change(change: np.ndarray, x: np.ndarray, least_displacement: float
 
 def shorter_periods(after: Callable[[int], np.ndarray], x: np.ndarray, period: int, tolerance: float,
                     least_displacement: float = 0.0) -> Iterator[int]:
-    """Divisors n of `period`, below it, after which x is back within a relative `tolerance`; `after(n)` is Pⁿ(x).
+    """Yield the proper divisors n of `period` after which x returns within a relative `tolerance`; `after(n)` is Pⁿ(x).
 
-    The tolerance must be far above the error of the map P and far below the distance of two orbits.
+    The tolerance must be far above the error of the map P and far below the distance between two orbits.
     """
     for n in range(1, period):
         if period % n == 0 and relative_change(after(n) - x, x, least_displacement) < tolerance:

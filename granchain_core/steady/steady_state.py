@@ -11,7 +11,7 @@ from ..results.regime import Regime
 from ..scene import Scene
 from ..scene.state import State
 
-#: [chaotic, quasi-periodic, unsettled] Drive periods over which the largest forces of a point of a curve are taken.
+#: [chaotic, quasi-periodic, unsettled] Drive periods over which the largest forces of a curve's point are determined.
 IRREGULAR_PERIODS = 100
 
 
@@ -19,9 +19,9 @@ IRREGULAR_PERIODS = 100
 class SteadyState:
     """A steady state with its largest forces `maxima` (3,) [N] in the order input, output, elastic output.
 
-    `errors` (3,) are their relative errors, None where none is stated; `state` is at drive phase 0. If the computation
-    failed, `failure` is a sentence, `status` the name of the failure, and the forces are NaN. `number` is that of its
-    start. If `undecided`, the batch could not decide, and `settle` has to continue from `state`.
+    `errors` (3,) are their relative errors, None if no errors are stated; `state` is at drive phase 0. If the
+    computation failed, `failure` is a sentence, `status` is the name of the failure, and the forces are NaN. `number`
+    is that of its start. If `undecided`, the batch could not decide, and `settle` has to continue from `state`.
     """
 
     scene: Scene
@@ -41,5 +41,5 @@ class SteadyState:
 
     @property
     def output_force_error(self) -> float | None:
-        """Relative error of the output force, infinite where that force is zero; None where none is stated."""
+        """Relative error of the output force, infinite where that force is zero; None if no error is stated."""
         return None if self.errors is None else float(self.errors[1])

@@ -178,7 +178,7 @@ def test_the_wave_from_the_wall_is_not_the_pulse(name: str, knobs: dict[str, flo
 ])
 def test_a_pulse_that_the_wave_from_the_wall_covers_is_refused(name: str, knobs: dict[str, float | str]) -> None:
     """Contact 8 of sec2 was said to have its pulse at 1.57 ms, after contact 9 at 1.06 ms."""
-    with pytest.raises(BadInput, match=r"cannot be told from the wave .* contact \d+ has its largest force at .* s, after contact"):
+    with pytest.raises(BadInput, match=r"cannot be distinguished from the wave .* contact \d+ has its largest force at .* s, after contact"):
         pulse(run(scene(name).evolve(**knobs), periods=0, record=1, samples=SAMPLES))
 
 

@@ -113,9 +113,9 @@ def test_wrong_requests_are_one_sentence() -> None:
     shown, start, _ = near("period_doubling")
     with pytest.raises(BadInput, match="Unknown kind of bifurcation curve 'hopf'"):
         bifurcation_point(shown, "hopf", start)
-    with pytest.raises(BadInput, match="two distinct"):
+    with pytest.raises(BadInput, match="two different"):
         bifurcation_point(shown, "fold", start, x="f", y="f")
-    with pytest.raises(BadInput, match="begins at a value above 0"):
+    with pytest.raises(BadInput, match="must begin at a value above 0"):
         bifurcation_point(shown, "fold", start, x="f", y="k")
     with pytest.raises(ComputationError, match=r"lost the branch|No fold was found"):
         bifurcation_point(scene("sec2"), "fold", granchain_core.orbit(scene("sec2")).state)

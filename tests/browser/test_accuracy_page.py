@@ -168,6 +168,6 @@ def test_steps_that_blow_up_are_told_and_a_stopped_measurement_keeps_its_points(
     # the next one starts: the stopped one, which would take minutes, has really ended
     sheet.get_by_role("button", name="measure again").click()
     expect(sheet).to_contain_text("measuring")
-    sheet.get_by_label("its steps in a drive period").select_option("100")  # steps that blow up are reported
+    sheet.get_by_label("its steps per drive period").select_option("100")  # steps that blow up are reported
     expect(sheet.locator(".naive p")).to_contain_text("nothing would have been drawn", timeout=COMPILED)
     assert naive_line(page)["naive"] == 0

@@ -60,9 +60,9 @@ def test_docstrings_say_up_to_how_many_beads_there_are_multipliers() -> None:
 def test_docstrings_have_the_values_of_the_constants() -> None:
     """Of a growth since the motion was examined, and of an extrapolation."""
     said = " ".join(str(regime_criteria.clearly_chaotic.__doc__).split())
-    periods, growth = re.findall(r"After (\d+) periods a growth of ([\d.]+) a period", said)[0]
+    periods, growth = re.findall(r"In (\d+) periods, an exponent of ([\d.]+) per period", said)[0]
     assert (int(periods), float(growth)) == (regime_decisions.EXAMINED_AFTER, regime_criteria.CLEAR_GROWTH)
-    multiplied = float(re.findall(r"multiplied a distance by ([\de]+)\.", said)[0])
+    multiplied = float(re.findall(r"multiplies a distance by ([\de]+)\.", said)[0])
     assert multiplied == float(f"{math.exp(regime_criteria.CLEAR_GROWTH * regime_decisions.EXAMINED_AFTER):.0e}")
     assert checks.FARTHEST_EXTRAPOLATION == 3 and "at most three times the distance that the contraction factor" in " ".join(
         Path(str(checks.__file__)).read_text(encoding="utf-8").split())

@@ -180,7 +180,7 @@ def test_contacts_become_stiffer_and_nothing_else() -> None:
 
 @pytest.mark.parametrize(("free", "sentence"), [
     ([], "1 to 30 different parameters"), ([Free("k", 1, 2), Free("kappa", 1e-3, 1e-2)], "of k and kappa only one"),
-    ([Free("kappa", 1e-3, 1e-2), Free("A0@60", 1e-6, 1e-5)], "kappa = .* has no one value"),
+    ([Free("kappa", 1e-3, 1e-2), Free("A0@60", 1e-6, 1e-5)], "kappa = .* has no single value"),
     ([FREE[0], FREE[0]], "different"), (per_frequency(FREE, FREQUENCIES), "9 data and priors do not determine 11"),
 ])
 def test_what_cannot_be_fitted_is_refused(free: list[Free], sentence: str) -> None:

@@ -207,7 +207,7 @@ def test_an_observer_that_is_in_step_before_a_rate_shows_synchronises() -> None:
 @pytest.mark.parametrize(("call", "sentence"), [
     (lambda: twin(FREE, periods=0), "periods = 0 is outside"), (lambda: twin(FREE, float("nan")), "not a number"),
     (lambda: twin(FREE, rest(FREE.evolve(N=3))), "a chain of 11 beads has"),
-    (lambda: observer_stability(FREE, "wall", [1.0]), "cannot be followed over"),
+    (lambda: observer_stability(FREE, "wall", [1.0]), "cannot be computed over"),
     (lambda: observer_stability(FREE, "kappa", []), "0 values"),
 ])
 def test_an_impossible_observation_is_refused(call, sentence: str) -> None:  # type: ignore[no-untyped-def]

@@ -139,7 +139,7 @@ def test_a_branch_that_cannot_be_followed_says_so_with_residuals(monkeypatch: py
     (["--knob", "f", "--from", "ten", "--to", "340"], "not 'ten'"),
     (["--knob", "f", "--from", "400", "--to", "500", "--both"], "the nearest valid value is 400"),
     (["--knob", "f", "--from", "2000", "--to", "2100", "--period", "99"], "nearest valid value is 60"),
-    (["--knob", "f", "--from", "2000", "--to", "2100", "--period", "2"], "repeats after 1 already; give period 1"),
+    (["--knob", "f", "--from", "2000", "--to", "2100", "--period", "2"], "repeats after only 1; give period 1"),
     (["--knob", "f", "--from", "2000", "--to", "2100", "--points", "1"], "nearest valid value is 2"),
     (["--knob", "f", "--from", "2000", "--to", "2100", "--set", "tension=cut"], "tension"),
     (["--knob", "f", "--resume", "b.h5"], "cannot be combined with"),

@@ -32,7 +32,7 @@ def test_without_a_period_it_is_one_and_the_command_says_so(capsys: pytest.Captu
     said = capsys.readouterr()
     found = json.loads(said.out)
     assert found["period"] == 1 and not found["stable"] and found["residual"] < 1e-9
-    assert found["period_note"] == "period 1 was taken, because none was given"
+    assert found["period_note"] == "period 1 was assumed, because none was given"
     assert 0.01 < found["distance_of_motion"] < 0.5  # about a tenth: no strobe is nearer
     again = granchain_core.orbit(scene("rig").evolve(f=140.0), 1, orbit_near_motion(scene("rig").evolve(f=140.0)).state)
     assert found["multipliers"][0][0] == pytest.approx(again.multipliers[0].real, rel=1e-6)

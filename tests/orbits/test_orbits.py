@@ -143,10 +143,10 @@ def test_period_1_of_a_motion_without_a_period_is_taken_with_a_reason(capsys: py
     """sec2 is quasi-periodic at 1700 Hz: the unstable orbit of period 1 is another motion than the one from rest."""
     chain = scene("sec2").evolve(f=1700.0)
     found = granchain_core.orbit(chain)
-    reason = "period 1 was taken, because the motion from rest is quasi-periodic"
+    reason = "period 1 was assumed, because the motion from rest is quasi-periodic"
     assert found.period == 1 and found.period_note == reason and reason in found.summary()
     started = granchain_core.orbit(chain, start=found.state)
-    assert started.period_note == "period 1 was taken, because a start was given without a period"
+    assert started.period_note == "period 1 was assumed, because a start was given without a period"
     assert granchain_core.orbit(chain, 1, found.state).period_note == ""
     assert main(["orbit", "sec2", "--set", "f=1700", "--json"]) == 0
     written, said = capsys.readouterr()

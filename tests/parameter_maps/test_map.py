@@ -105,7 +105,7 @@ def test_a_stopped_diagram_says_what_is_missing() -> None:
 
 
 @pytest.mark.parametrize(("x", "y", "words"), [
-    (("f", [300.0]), ("f", [400.0]), "two distinct knobs"),
+    (("f", [300.0]), ("f", [400.0]), "two different knobs"),
     (("N", [3.0]), ("f", [400.0]), "Unknown knob for an axis 'N'"),
     (("k", [3.0]), ("kappa", [0.1]), "k and kappa are the same quantity"),
     (("f", [300.0, 200.0]), ("A0", [1e-7]), "must ascend"),

@@ -137,10 +137,10 @@ def test_a_record_that_begins_at_rest_is_not_warned_of() -> None:
 @pytest.mark.parametrize(("chain", "series", "words"), [
     (CHAIN, Series(np.linspace(0.0, 1.0, 9), None, None, np.zeros(9), "made"), "neither velocity nor displacement"),
     (CHAIN, Series(np.linspace(0.0, 5e-3, 501), np.cos(3e3 * np.linspace(0.0, 5e-3, 501)), None, None, "made"),
-     "is no sine of f = 1000 Hz"),
+     "is not a sine of f = 1000 Hz"),
     (CHAIN.evolve(dissipation="none"),
      Series(np.linspace(0.0, 5e-3, 501), np.cos(2e3 * np.pi * np.linspace(0.0, 5e-3, 501)), None, None, "made"),
-     "has no state that belongs to a drive phase"),
+     "a drive phase does not determine its state"),
     (scene("impact"), Series(np.linspace(0.0, 1.0, 9), np.zeros(9), None, None, "made"), "drive")])
 def test_what_has_no_settled_beginning_is_refused(chain, series: Series, words: str) -> None:  # type: ignore[no-untyped-def]
     with pytest.raises(BadInput, match=words):

@@ -1,8 +1,8 @@
 """The knob of a branch: which knobs are continuous, and the coordinate used for continuation.
 
-A branch is a curve of points z = (x/√(2N), p): x is the scaled state (u, w) at drive phase 0 in the scales of its own
-scene, so that a new amplitude A0, which changes the scales, leaves x of order one; p is a coordinate of the knob, its
-logarithm, the knob itself or, for F0, the static overlap. Arclength is measured in z.
+A branch is a curve of points z = (x/√(2N), p). x is the scaled state (u, w) at drive phase 0 in the scales of its own
+scene, so that x remains of order one when the amplitude A0, and with it the scales, change. p is a coordinate of the
+knob: its logarithm, the knob itself or, for F0, the static overlap. Arclength is measured in z.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from ...scene.quantities import QUANTITIES
 
 #: Knobs that change a chain continuously; N and the laws are discrete, `accuracy` does not change the chain.
 CONTINUOUS = tuple(name for name, quantity in QUANTITIES.items() if quantity.is_continuous)
-#: [branch] Length of a factor e in a logarithmic knob. The state changes by about its own size where f changes by a
+#: [branch] Length of a factor e in a logarithmic knob. The state changes by about its own size when f changes by a
 #: tenth.
 _LENGTH_OF_FACTOR_E = 10.0
 #: [branch] Length of the whole range of every other knob.
 _LENGTH_OF_RANGE = 20.0
-#: The attribute `coordinate` of a file with a branch over F0.
+#: Value of the attribute `coordinate` in the file of a branch over F0.
 STATIC_OVERLAP = "static overlap"
 
 
@@ -31,7 +31,7 @@ STATIC_OVERLAP = "static overlap"
 class KnobAxis:
     """One knob of a scene from `start` to `end`, with its coordinate p (0 at `start`).
 
-    With `amplitude` A0 follows the knob, which is f. With `by_overlap` p is linear in F0^{2/3}, not in F0.
+    With `amplitude`, A0 follows the knob, which is f. With `by_overlap`, p is linear in F0^{2/3}, not in F0.
     """
 
     scene: Scene
@@ -43,7 +43,7 @@ class KnobAxis:
 
     @classmethod
     def of(cls, scene: Scene, knob: str, start: object, end: object, amplitude: Amplitude | None = None) -> KnobAxis:
-        """The checked axis, over F0 with `by_overlap`.
+        """Check the arguments and return the axis; over F0 it has `by_overlap`.
 
         Raises `BadInput` for a knob that is unknown or discrete, and for values that it cannot take.
         """
@@ -84,10 +84,10 @@ class KnobAxis:
 
     @property
     def _power(self) -> float:
-        """The power of the knob in which p is linear, where it is not logarithmic.
+        """The power of the knob in which p is linear, unless it is logarithmic.
 
-        The chain depends on F0 through its static overlaps (F0/K)^{2/3} alone, and smoothly. Over F0 itself orbits have
-        an infinite slope at F0 = 0.
+        The chain depends on F0 only through its static overlaps (F0/K)^{2/3}, and smoothly. As functions of F0 itself,
+        orbits have an infinite slope at F0 = 0.
         """
         return OVERLAP_POWER if self.by_overlap else 1.0
 
@@ -117,7 +117,7 @@ class KnobAxis:
         return min(max(value, quantity.low), quantity.high)
 
     def slope(self, value: float) -> float:
-        """Change of the knob with p."""
+        """Derivative of the knob with respect to p."""
         if self.logarithmic:
             return value / _LENGTH_OF_FACTOR_E
         return self._range[1] * value ** (1.0 - self._power) / self._power

@@ -14,9 +14,9 @@ from .point import BranchPoint, branch_point, rough_point
 
 
 class Between:
-    """The orbits between neighbours a and b. Each one that is computed helps to compute the next.
+    """The orbits between neighbours a and b. Each computed orbit helps to compute the next.
 
-    `near` are P_x and P_p at both. One thread may use it at a time.
+    `near` are P_x and P_p at both. Only one thread may use it at a time.
     """
 
     def __init__(self, equations: BranchEquations, a: BranchPoint, b: BranchPoint, near: tuple[Near, Near]) -> None:
@@ -34,12 +34,12 @@ class Between:
         return self._finished(solved, a.tangent, self._arclength(a, b, fraction))
 
     def exact(self, a: BranchPoint, b: BranchPoint, fraction: float) -> BranchPoint:
-        """Like `careful`, but mostly with the known derivatives at a and b."""
+        """Like `careful`, but mostly with derivatives that are known already, at a, b and orbits between them."""
         guess, normal, distance = self._guess(a, b, fraction)
         return self._solved(guess, normal, a.tangent, self._arclength(a, b, fraction), distance)
 
     def rough(self, a: BranchPoint, b: BranchPoint, fraction: float) -> BranchPoint:
-        """Like `careful`, but by the quick map alone. Values that are alike at a and b are taken from a."""
+        """Like `careful`, but with the quick map alone. Values that agree at a and b are copied from a."""
         guess, normal, distance = self._guess(a, b, fraction)
         arclength, newton = self._arclength(a, b, fraction), Newton(self.equations, guess, normal, distance)
         near = self._near(arclength)
@@ -96,7 +96,7 @@ class Between:
         insort(self._known, (arclength, near), key=lambda known: known[0])
 
     def _guess(self, a: BranchPoint, b: BranchPoint, fraction: float) -> tuple[np.ndarray, np.ndarray, float]:
-        """The cubic's point in the plane of the corrected orbit, the normal of that plane, and the distance of b."""
+        """The cubic's point in the plane of the corrected orbit, the plane's normal, and the distance from a to b."""
         za, zb = self.equations.point(a.x, a.knob), self.equations.point(b.x, b.knob)
         distance = float(np.linalg.norm(zb - za))
         normal = (zb - za) / distance
@@ -105,7 +105,7 @@ class Between:
         return guess + across(offset, normal), normal, distance
 
     def _near(self, arclength: float) -> Near:
-        """P_x and P_p at this arclength, between the two nearest orbits where they are known."""
+        """P_x and P_p at this arclength, interpolated between the two nearest orbits at which they are known."""
         last = len(self._known) - 1
         after = next((i for i in range(1, last) if self._known[i][0] >= arclength), last)
         (s0, before), (s1, behind) = self._known[after - 1 : after + 1]
@@ -115,7 +115,7 @@ class Between:
 
 
 def across(vector: np.ndarray, normal: np.ndarray) -> np.ndarray:
-    """The part of a vector across a unit normal."""
+    """The component of a vector perpendicular to a unit normal."""
     return vector - (vector @ normal) * normal
 
 

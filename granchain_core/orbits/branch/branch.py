@@ -2,8 +2,8 @@
 
     branch = continue_branch(scene("sec2"), "f", 340.0, 60.0)
 
-Pseudo-arclength continuation (Keller 1977) of fixed points of the n-period stroboscopic map. The points come out one
-by one from a `Continuation`, which can be paused at any time, saved, and continued as if it had never stopped.
+Fixed points of the n-period stroboscopic map are continued by pseudo-arclength (Keller 1977). A `Continuation` yields
+the points one by one. It can be paused at any time, saved, and continued as if it had never stopped.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from .point import ON_CIRCLE, BranchPoint, branch_point, state_at
 from .special import SpecialPoint
 from .tables import branch_tables
 
-#: Points of one half-branch at most: a branch that folds without end has to stop somewhere.
+#: Maximum number of points of one half-branch: a branch that folds without end has to stop somewhere.
 MOST_POINTS = 20_000
 
 
@@ -56,7 +56,7 @@ class Branch(Labelled):
     points : list of BranchPoint
         All orbits in their order along the branch.
     special : list of SpecialPoint
-        Folds, period doublings, Neimark–Sacker points and grazings, each with the interval that holds it.
+        Folds, period doublings, Neimark–Sacker points and grazings, each with the interval that contains it.
 
     Examples
     --------
@@ -89,7 +89,7 @@ class Branch(Labelled):
 
     @property
     def special(self) -> list[SpecialPoint]:
-        """All special points in the order of the points."""
+        """All special points in their order along the branch."""
         first = self.half_branches[0].special
         return first if len(self.half_branches) == 1 else [*reversed(self.half_branches[1].special), *first]
 
@@ -102,11 +102,11 @@ class Branch(Labelled):
         return state_at(self.axis.scene_at(point.knob), point.x)
 
     def tables(self) -> tuple[Table, ...]:
-        """`branch`, a row for each orbit; `special` points; `special_before` and `special_after`, the orbits beside."""
+        """`branch`, one row per orbit; `special` points; `special_before` and `special_after`, their neighbours."""
         return branch_tables(self.axis, self.half_branches)
 
     def attributes(self) -> dict[str, Attribute]:
-        """Knob, ends and period as JSON, and the provenance."""
+        """Knob, ends and period as JSON, and provenance."""
         header = {"knob": self.axis.knob, "start": self.axis.start, "end": self.axis.end, "period": self.period,
                 "arms": [{"direction": half.direction, "step": half.step.hex(), "ended": half.ended,
                           "reason": half.reason} for half in self.half_branches]}
@@ -115,7 +115,7 @@ class Branch(Labelled):
                 **({"coordinate": STATIC_OVERLAP} if self.axis.by_overlap else {})}
 
     def summary(self) -> list[str]:
-        """Number of orbits, the reasons why it ended, and the special points."""
+        """Number of orbits, why the half-branches ended, and the special points."""
         ends = [half.reason or half.ended for half in self.half_branches if half.ended]
         kinds = [f"{point.kind_words} at {self.axis.text(point.knob)}"
                  + (f", {point.criticality_words()}" if point.normal_form and point.kind != "fold" else "")
@@ -131,13 +131,13 @@ class Branch(Labelled):
 
 
 class Continuation(Iterator[BranchPoint]):
-    """A branch as it grows: each `next` is one more orbit; `branch` holds those found so far.
+    """A branch as it grows: each `next` adds one orbit; `branch` contains those found so far.
 
-    Of two half-branches the shorter one grows, so both go on alternately; `run` follows both at once. Iteration may be
-    left and continued at any time. Where the stop flag is set, `Cancelled` ends the present step only.
+    Of two half-branches, the shorter one grows, so they take turns; `run` continues both at once. Iteration may be
+    interrupted and resumed at any time. If the stop flag is set, `Cancelled` ends only the current step.
 
-    A half-branch that closes on itself is the whole branch, and the other is dropped once it is as long: only then is
-    it known that the other could not have closed with fewer orbits, so the threads do not decide which one is kept.
+    A half-branch that closes on itself is the whole branch. The other one is dropped once it is as long: only then is
+    it certain that it could not have closed with fewer orbits. So the timing of threads does not decide which is kept.
     """
 
     def __init__(self, branch: Branch, stop: Stop | None = None) -> None:
@@ -156,7 +156,7 @@ class Continuation(Iterator[BranchPoint]):
         raise StopIteration
 
     def run(self, most_points: int = MOST_POINTS, on_point: Callable[[HalfBranch], None] | None = None) -> Branch:
-        """Follow all half-branches to their ends, each in a thread, or until one has `most_points`."""
+        """Continue all half-branches, each in a thread, to its end or to `most_points` orbits."""
 
         def follow(continuation: HalfContinuation) -> None:
             while (self._grows(continuation) and len(continuation.half.points) < most_points
@@ -171,7 +171,7 @@ class Continuation(Iterator[BranchPoint]):
         return self.branch
 
     def _grows(self, continuation: HalfContinuation) -> bool:
-        """Whether a half-branch goes on: it has not ended, and is shorter than every half-branch that has closed."""
+        """Whether a half-branch grows: it has not ended, and is shorter than every half-branch that has closed."""
         half = continuation.half
         return not half.ended and len(half.points) < min(map(len, self._closed), default=math.inf)
 
@@ -180,7 +180,7 @@ class Continuation(Iterator[BranchPoint]):
         return [continuation.half.points for continuation in self._continuations if continuation.half.ended == "closed"]
 
     def _drop_double(self) -> None:
-        """Keep the half-branch that has closed with the fewest orbits, the first of two, once no other can do so."""
+        """Keep only the half-branch that closed with the fewest orbits (the first if equal), once no other can grow."""
         closed = [half for half in self.branch.half_branches if half.ended == "closed"]
         if closed and not any(self._grows(continuation) for continuation in self._continuations):
             self.branch = replace(self.branch, half_branches=(min(closed, key=lambda half: len(half.points)),))
@@ -189,12 +189,12 @@ class Continuation(Iterator[BranchPoint]):
 def begin_branch(scene: Scene, knob: str, start: float, end: float, period: int | None = None,
                  start_state: State | None = None, both: bool = False, stop: Stop | None = None,
                  amplitude: Amplitude | None = None) -> Branch:
-    """The starting orbit of a branch, from which a `Continuation` goes on.
+    """Find the starting orbit of a branch, from which a `Continuation` can proceed.
 
     It is the orbit of `period` drive periods at knob = `start` near `start_state`, or near the steady state from
-    rest. With `both` it is the orbit at the scene's own value of the knob, and the branch goes both ways, to `start`
-    and to `end`. With `amplitude` A0 follows f. Raises `BadInput`, `ComputationError` where there is no such orbit, and
-    `Cancelled`.
+    rest. With `both`, it is the orbit at the scene's own value of the knob, and the branch goes both ways, to `start`
+    and to `end`. With `amplitude`, A0 follows f. Raises `BadInput`, `ComputationError` where there is no such orbit,
+    and `Cancelled`.
     """
     axis = KnobAxis.of(scene, knob, start, end, amplitude)
     seed_at = float(scene.knobs[knob]) if both else axis.start
@@ -202,7 +202,7 @@ def begin_branch(scene: Scene, knob: str, start: float, end: float, period: int 
         nearest = min(max(seed_at, axis.low), axis.high)
         raise BadInput(f"Both ways begin at the scene's own {axis.text(seed_at)}, which is outside {axis.low:g} to "
                        f"{axis.high:g}; the nearest valid value is {nearest:g}.")
-    # a scene whose orbits are not computed is refused before it settles
+    # refuse a scene whose orbits cannot be computed before it settles
     BranchEquations(axis, 1).stroboscopic_map(seed_at)
     orbit = periodic_orbit(axis.scene_at(seed_at), period, start_state, stop=stop)
     equations = BranchEquations(axis, orbit.period, stop)
@@ -215,7 +215,7 @@ def begin_branch(scene: Scene, knob: str, start: float, end: float, period: int 
 
 def half_branches_from(equations: BranchEquations, x: np.ndarray, value: float,
                        directions: tuple[int, ...]) -> tuple[HalfBranch, ...]:
-    """Half-branches with their starting orbit only, the orbit at the knob's `value` near the scaled state x."""
+    """Half-branches with only their starting orbit, which is the one at the knob's `value` near the scaled state x."""
     fixed = np.zeros(equations.size + 1)
     fixed[-1] = 1.0
     solved = equations.solve(equations.point(x, value), fixed)
@@ -250,9 +250,9 @@ def continue_branch(scene: Scene, knob: str, start: float, end: float, period: i
     both : bool
         Begin at the scene's own value of the knob and follow both ways, to `start` and to `end`.
     most_points : int
-        Points of a half-branch at most.
+        Maximum number of points per half-branch.
     on_point : callable, optional
-        Called with the half-branch that has grown.
+        Called with a half-branch each time it has grown.
     stop : Stop, optional
         Ends the computation when another thread sets it.
     amplitude : Amplitude, optional
@@ -266,9 +266,9 @@ def continue_branch(scene: Scene, knob: str, start: float, end: float, period: i
     Raises
     ------
     BadInput
-        The knob cannot be followed, or a value is out of range.
+        The knob is not continuous, or a value is out of range.
     ComputationError
-        There is no orbit to begin with.
+        No starting orbit was found.
     Cancelled
         `stop` was set.
 
@@ -287,8 +287,8 @@ def continue_branch(scene: Scene, knob: str, start: float, end: float, period: i
 
 
 def _refuse_shorter(equations: BranchEquations, x: np.ndarray, value: float) -> None:
-    """Raise `BadInput` where the orbit has a shorter period than the one asked for."""
+    """Raise `BadInput` if the orbit has a shorter period than the requested one."""
     n, least_period = equations.period, equations.least_period(x, value)
     if least_period < n:
         raise BadInput(f"The orbit of {n} drive periods found at {equations.axis.text(value)} repeats after "
-                       f"{least_period} already; give period {least_period}.")
+                       f"only {least_period}; give period {least_period}.")

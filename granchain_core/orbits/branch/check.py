@@ -11,19 +11,19 @@ from .half_branch import HalfBranch
 from .point import BranchPoint
 from .steps import LONGEST_STEP
 
-#: Factor by which neighbours may be farther apart than the longest step, because the correction adds to it.
+#: Factor by which neighbours may be farther apart than the longest step, to which the correction adds.
 _DISTANCE_FACTOR = 1.2
-#: Error of Liouville's sum that is allowed beyond the rounding of the multipliers. Motion, tangents and trace share
+#: Error of Liouville's formula allowed in addition to the rounding of the multipliers. Motion, tangents and trace share
 #: their steps, so it was at most 8e-7 on branches of sec2, of the rig, with preload and with Tsuji's law.
 _LIOUVILLE_ERROR = 1e-5
 
 
 def check_branch(branch: Branch) -> list[str]:
-    """A sentence for each violated invariant; no sentence for a correct branch.
+    """Return a sentence for each violated invariant; none for a correct branch.
 
-    Residuals are small, neighbours are near, Liouville's formula holds; stability, direction and the closings of each
-    contact change at reported special points only, and each of those lies in its interval, between the two orbits that
-    differ by it.
+    The invariants: residuals are small, neighbours are near, and Liouville's formula is satisfied. Stability, direction
+    and the closings of each contact change only at reported special points, and each of these is in its interval,
+    between two orbits that differ.
     """
     faults = []
     for half in branch.half_branches:
@@ -40,7 +40,7 @@ def _orbit_wrong(branch: Branch, point: BranchPoint) -> list[str]:
     if not point.residual <= ACCEPTED_RESIDUAL:
         faults.append(f"residual {point.residual:.1e} at {where}")
     smallest, largest = np.abs(point.multipliers[-1]), max(1.0, float(np.abs(point.multipliers[0])))
-    # where the smallest multiplier is rounding, its logarithm says nothing
+    # where the smallest multiplier is a rounding error, its logarithm is meaningless
     rounding = len(point.multipliers) * np.finfo(float).eps * largest / smallest
     if smallest >= ROUNDING * largest and point.liouville_error > _LIOUVILLE_ERROR + rounding:
         faults.append(f"Liouville is off by {point.liouville_error:.1e} at {where}")

@@ -1,9 +1,9 @@
 """The criticality of a branch's special points: their normal forms (normal_forms.py) from the accurate map.
 
 The map is smooth as long as the contacts close and open in the same sequence as along the orbit. Where the sequence
-changes, higher derivatives may not exist: at a grazing the map has terms of order 3/2, where an event passes the strobe
-phase 0 its second derivative jumps, and the third where events of neighbouring contacts change their order
-(docs/orbits.md). So no state beyond a change that matters to the coefficient is used.
+changes, higher derivatives may not exist. At a grazing, the map has terms of order 3/2. Its second derivative jumps
+where an event passes the strobe phase 0, and its third where events of neighbouring contacts change their order
+(docs/orbits.md). So no state beyond a change that affects the coefficient is used.
 """
 
 from __future__ import annotations
@@ -29,16 +29,16 @@ from .normal_forms import (
 from .point import BranchPoint
 from .special import BIFURCATIONS, SpecialPoint
 
-#: [branch] Tolerance of the map beside an orbit. Coefficients of sec2 change by up to 3e-4 with it, by 2e-3 with 1e-11.
+#: [branch] Tolerance of the map near an orbit. Coefficients of sec2 change by up to 3e-4 with it, by 2e-3 with 1e-11.
 _TOLERANCE = 1e-12
 
 
 def with_normal_forms(special: list[SpecialPoint], between: Between,
                       amplitudes: Mapping[str, tuple[float, ...]] = AMPLITUDES,
                       tolerance: float = _TOLERANCE) -> list[SpecialPoint]:
-    """The special points between two neighbours, bifurcation points with their normal forms.
+    """Return the special points between two neighbours, with normal forms for the bifurcation points.
 
-    `amplitudes` are those of the differences (`normal_form`), `tolerance` that of the map beside an orbit.
+    `amplitudes` are those of the differences (`normal_form`), and `tolerance` is that of the map near an orbit.
     """
     return [replace(point, normal_form=_normal_form(point, between, amplitudes, tolerance))
             if point.kind in BIFURCATIONS else point for point in special]
@@ -59,8 +59,8 @@ def same_sequence(kind: str, before: np.ndarray, after: np.ndarray) -> bool:
     """Whether the derivatives in the normal form of this kind are continuous from one sequence to the other.
 
     A sequence has contact + 1 for each closing and its negative for each opening. The events of each contact must be
-    the same in both; a grazing, or an event that passes phase 0, changes them. The events of any two neighbouring
-    contacts must come in the same order too, except for a fold, which needs no third derivative.
+    the same in both; a grazing, or an event that passes phase 0, changes them. Except for a fold, which needs no third
+    derivative, the events of any two neighbouring contacts must also come in the same order.
     """
     together = 1 if kind == "fold" else 2
     last = int(max(abs(before).max(initial=0), abs(after).max(initial=0)))
@@ -72,7 +72,7 @@ def same_sequence(kind: str, before: np.ndarray, after: np.ndarray) -> bool:
 
 
 def _map_near(kind: str, between: Between, point: BranchPoint, tolerance: float) -> MapNear:
-    """The accurate map near an orbit, as far as contacts close and open in the same sequence (`same_sequence`)."""
+    """The accurate map near an orbit, while contacts close and open in the same sequence (`same_sequence`)."""
 
     def product(x: np.ndarray, columns: np.ndarray) -> np.ndarray:
         try:

@@ -36,9 +36,9 @@ class Ends:
         self._starts = _images(equations, start)
 
     def of_step(self, last: Ending, beyond: Ending, z: np.ndarray, may_close: bool) -> Ending:
-        """The end of a step from `last` to `beyond`, at z; an earlier orbit if it passes the start or the axis's end.
+        """The end of a step from `last` to `beyond`, at z: an earlier orbit if it passes the start or an axis end.
 
-        z shows that the end is passed; the knob's value does not, because it is limited to the allowed range.
+        z shows whether the axis end is passed. The knob's value does not, because it is limited to the allowed range.
         """
         axis = self.equations.axis
         closing = self._closing(last, beyond) if may_close else None
@@ -55,7 +55,7 @@ class Ends:
         return Ending(point, near, "reached", f"reached {axis.text(point.knob)}")
 
     def merging(self, special: list[SpecialPoint]) -> int | None:
-        """Index of the passage through +1 at which the difference of the orbit's halves changes sign: a merging."""
+        """Index of the merging: the passage through +1 at which the difference of the orbit's halves changes sign."""
         if self.equations.period % 2:
             return None
         for place, point in enumerate(special):
@@ -65,7 +65,7 @@ class Ends:
         return None
 
     def _landed(self, last: BranchPoint, beyond: BranchPoint, zb: np.ndarray, end: float) -> tuple[BranchPoint, Near]:
-        """The orbit exactly at the end of the axis that was passed on the way to `beyond`, at zb."""
+        """The orbit exactly at the axis end that was passed on the way to `beyond`, which is at zb."""
         axis, za = self.equations.axis, self._z(last)
         fraction = (axis.coordinate(end) - za[-1]) / (zb[-1] - za[-1])
         distance = float(np.linalg.norm(zb - za))
@@ -79,7 +79,7 @@ class Ends:
         return replace(point, knob=end, damped=axis.damped_at(end)), solved.near
 
     def _halves(self, point: BranchPoint) -> np.ndarray:
-        """Difference of the state half an orbit later from the state now."""
+        """Change of the state over half of the orbit."""
         return self.equations.stroboscopic_map(point.knob, self.equations.period // 2).end(point.x) - point.x
 
     def _closing(self, last: Ending, beyond: Ending) -> BranchPoint | None:

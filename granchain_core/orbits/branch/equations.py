@@ -1,7 +1,7 @@
 """The equations of continuation, P(x; p) − x = 0 and a condition on the step.
 
-Jacobian   [[(P_x − 1)√(2N), P_p], [nᵀ]] in z = (x/√(2N), p): P_x is the derivative of the stroboscopic map, P_p
-           a difference of the map in the knob. n is the normal of the plane in which z is sought: the bordered matrix
+Jacobian   [[(P_x − 1)√(2N), P_p], [nᵀ]] in z = (x/√(2N), p): P_x is the derivative of the stroboscopic map, and P_p
+           a difference of the map in the knob. n is the normal of the plane in which z is sought. The bordered matrix
            stays regular at folds (Keller 1977).
 """
 
@@ -21,8 +21,7 @@ from .axis import KnobAxis
 from .newton import ROUGH_TOLERANCE, Near, Newton
 from .quick import QuickMap, quick_steps
 
-#: One-sided difference ε in p of the accurate map. Its error by curvature is ε P_pp/2, that by the noise of the steps
-#: 1e-12/ε.
+#: One-sided difference ε in p of the accurate map. Its error from curvature is ε P_pp/2, that from step noise 1e-12/ε.
 _DIFFERENCE = 1e-6
 #: Half of the central difference in p of the quick map.
 _QUICK_DIFFERENCE = 1e-5
@@ -30,7 +29,7 @@ _QUICK_DIFFERENCE = 1e-5
 
 @dataclass(frozen=True, eq=False)
 class Solved:
-    """A point z on the branch, its monodromy matrix, knob derivative P_p and the residuals on the way there."""
+    """A point z on the branch, its flow with the monodromy matrix, the knob derivative P_p and all residuals."""
 
     z: np.ndarray
     flow: Flow
@@ -39,7 +38,7 @@ class Solved:
 
     @property
     def near(self) -> Near:
-        """The derivatives, for the search of an orbit nearby."""
+        """The derivatives, for use in the search for an orbit nearby."""
         return Near(self.flow.derivative, self.knob_slope)
 
 
@@ -67,11 +66,11 @@ class BranchEquations:
 
     def stroboscopic_map(self, value: float, periods: int | None = None,
                          tolerance: float = TOLERANCE) -> StroboscopicMap:
-        """The map at a knob value, always a new one, so that equal calls give equal bits."""
+        """The map at a knob value: a new object each time, so that equal calls give equal bits."""
         return StroboscopicMap(self.axis.scene_at(value), periods or self.period, self.stop, tolerance)
 
     def reused_map(self, value: float, tolerance: float) -> StroboscopicMap:
-        """The map at a knob value, in an object that the thread's next call changes."""
+        """The map at a knob value, in an object that the same thread's next call changes."""
         kept_map: StroboscopicMap | None = getattr(self._reused, "map", None)
         if kept_map is None:
             kept_map = self._reused.map = self.stroboscopic_map(value, tolerance=tolerance)
@@ -85,11 +84,11 @@ class BranchEquations:
         return 2.0 * np.pi * scene.f / scales_of(scene).phi
 
     def quick_steps(self, z: np.ndarray) -> int:
-        """Steps in a period of the quick map near z, 0 where the flow takes its place."""
+        """Steps per period of the quick map near z; 0 where the flow is used instead."""
         return quick_steps(scale_like(self._scaled, self.axis.scene_at(self.value(z))))
 
     def quick_end(self, x: np.ndarray, value: float, steps: int) -> np.ndarray:
-        """The end of the quick map from x, or of a rough flow if there are 0 steps."""
+        """The end of the quick map from x, or of a rough flow if `steps` is 0."""
         if steps == 0:
             return self.reused_map(value, ROUGH_TOLERANCE).end(x)
         quick: QuickMap | None = getattr(self._reused, "quick", None)
@@ -105,17 +104,17 @@ class BranchEquations:
         return change / (self.axis.coordinate(above) - self.axis.coordinate(below))
 
     def least_period(self, x: np.ndarray, value: float, back: float = SAME_ORBIT_DISTANCE) -> int:
-        """Number of drive periods, at most `period`, after which the orbit is within `back` of x, relatively."""
+        """Number of drive periods, at most `period`, after which the orbit returns to x within `back`, relative."""
         smallest = least_displacement(x, self.drive_rate(self.point(x, value)))
         return least_period(lambda periods: self.stroboscopic_map(value, periods).end(x), x, self.period, back,
                             smallest)
 
     def solve(self, z: np.ndarray, normal: np.ndarray, slope: np.ndarray | None = None,
               farthest: float = np.inf) -> Solved:
-        """The branch's point in the plane through z across `normal`, at most `farthest` from z.
+        """Find the branch's point in the plane through z perpendicular to `normal`, at most `farthest` from z.
 
-        `slope` is P_p nearby, where it is known. Raises `ComputationError` with the residuals where Newton's method
-        does not converge.
+        `slope` is P_p nearby, if known. Raises `ComputationError` with the residuals where Newton's method does not
+        converge.
         """
         newton = Newton(self, z, normal, farthest)
         flow = newton.solve_with_derivatives(slope)
@@ -137,7 +136,7 @@ class BranchEquations:
         return self.tangent_by(self.matrix(derivative, slope, towards), towards)
 
     def tangent_by(self, matrix: np.ndarray, towards: np.ndarray) -> np.ndarray:
-        """Unit tangent of the branch by the bordered matrix, on the side of `towards`."""
+        """Unit tangent of the branch from the bordered matrix, on the side of `towards`."""
         tangent = np.linalg.solve(matrix, np.append(np.zeros(self.size), 1.0))
         tangent /= np.linalg.norm(tangent)
         return tangent if tangent @ towards > 0.0 else -tangent
@@ -152,9 +151,9 @@ class BranchEquations:
         return matrix
 
     def knob_slope(self, z: np.ndarray, end: np.ndarray, tolerance: float) -> np.ndarray:
-        """P_p (2N,) at z, where the map of this tolerance leads to `end`."""
+        """P_p (2N,) at z, from where the map of this tolerance leads to `end`."""
         p = self.axis.coordinate(self.value(z))
         moved = self.axis.value(p + _DIFFERENCE)
-        if moved == self.axis.value(p):  # at the knob's largest value the difference is taken downwards
+        if moved == self.axis.value(p):  # at the knob's largest value, use a downward difference
             moved = self.axis.value(p - _DIFFERENCE)
         return (self.reused_map(moved, tolerance).end(self.state(z)) - end) / (self.axis.coordinate(moved) - p)

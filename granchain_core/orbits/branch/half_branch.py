@@ -1,10 +1,10 @@
 """Continuation of a branch: tangent predictor, Newton corrector, and the search for special points in between.
 
-A failed step is halved; at the smallest step the branch ends, and the last residuals are reported.
+A failed step is halved. Below the shortest step the branch ends, and the last residuals are reported.
 
 Other threads record the forces and contacts of an orbit and look for the special points before it, while the
-continuation goes some orbits ahead; an orbit is added when all before it are known, so that the branch is the same as
-without threads, to the last bit.
+continuation runs a few orbits ahead. An orbit is added once all orbits before it are known, so that the branch is
+identical to the last bit with and without threads.
 """
 
 from __future__ import annotations
@@ -29,24 +29,24 @@ from .special import SpecialPoint
 from .special_search import special_between
 from .steps import FIRST_STEP, LARGEST_CORRECTION, LEAST_COSINE, SHORTEST_STEP, next_step, predicted
 
-#: [branch] Points from the starting orbit on before the branch may close on itself.
+#: [branch] Fewest points, including the starting orbit, before the branch may close on itself.
 _POINTS_BEFORE_CLOSING = 4
-#: [branch] An orbit that is back within this, relatively, after a part of its period is refused. Where the branches of
-#: both periods meet, an orbit of the shorter one is found with an error far above its residual.
+#: [branch] An orbit that returns to within this relative distance after a fraction of its period is refused. Where the
+#: branches of both periods meet, an orbit of the shorter period is found with an error far above its residual.
 _SHORTER_PERIOD_DISTANCE = 1e-6
-#: [no threshold] Orbits that the continuation is ahead of the search for special points, at most.
+#: [no threshold] Maximum number of orbits that the continuation is ahead of the search for special points.
 _ORBITS_AHEAD = 4
-#: [no threshold] Threads that search, at most; there are no more than processors.
+#: [no threshold] Maximum number of threads that search; never more than usable cores.
 _THREADS = 2
 
 
 @dataclass
 class HalfBranch:
-    """One direction of a branch from its starting orbit: points (that one first), special points, and its end.
+    """One direction of a branch from its starting orbit: points (the starting orbit first), special points, and end.
 
-    `ended` is "" while there is more to come, else "reached", "returned", "closed", "merged" or "lost"; `reason` is
-    a sentence. `step` is the next step in arclength: with it and the last point the continuation goes on as if it had
-    never stopped.
+    `ended` is "" while the half-branch can grow, otherwise "reached", "returned", "closed", "merged" or "lost";
+    `reason` is a sentence. `step` is the next step in arclength: from it and the last point, the continuation resumes
+    as if it had never stopped.
     """
 
     direction: int
@@ -59,9 +59,9 @@ class HalfBranch:
 
 @dataclass(frozen=True)
 class _Ahead:
-    """An orbit ahead of the half-branch, whose special points are still sought, and the steps to and from it.
+    """An orbit ahead of the half-branch, with the step that was `tried` to reach it and the next `step`.
 
-    `found` will be the orbit with its forces and contacts, and the special points before it.
+    `found` is the future orbit with its forces and contacts, and the special points before it.
     """
 
     ending: Ending
@@ -73,7 +73,7 @@ class _Ahead:
 class HalfContinuation(Iterator[BranchPoint]):
     """The points of one half-branch, one after the other; each `next` adds one, with the special points before it.
 
-    One that is not iterated is paused; one whose stop flag is set raises `Cancelled` and can go on later.
+    Between iterations it is paused. If its stop flag is set, it raises `Cancelled` and can be resumed later.
     """
 
     def __init__(self, equations: BranchEquations, half: HalfBranch) -> None:
@@ -108,7 +108,7 @@ class HalfContinuation(Iterator[BranchPoint]):
     # --- ahead of the half-branch --------------------------------------------------------------------------
 
     def _go_back(self, step: float, failure: Exception | None = None) -> None:
-        """Drop all orbits ahead, and go on from the half-branch's last orbit with this step."""
+        """Drop all orbits ahead, and continue from the half-branch's last orbit with this step."""
         self._ahead: deque[_Ahead] = deque()
         self._step, self._failure = step, failure
 
@@ -122,7 +122,7 @@ class HalfContinuation(Iterator[BranchPoint]):
         return [*self.half.points[-2:], *(ahead.ending.point for ahead in self._ahead)][-2:]
 
     def _advance(self) -> None:
-        """Compute the next orbit ahead; halve the step where it is too long."""
+        """Compute the next orbit ahead; halve the step if it is too long."""
         last, tried = Ending(self._last_two[-1], self._near_last), self._step
         try:
             ending, contact_events = self._next_orbit(last)
@@ -145,7 +145,7 @@ class HalfContinuation(Iterator[BranchPoint]):
 
     @property
     def _near_last(self) -> Near:
-        """P_x and P_p at the last orbit. Where P_x is not known it is computed again, to the same bits."""
+        """P_x and P_p at the last orbit. Where P_x is not known, it is computed again, bit for bit the same."""
         if self._ahead:
             return self._ahead[-1].ending.near
         last = self.half.points[-1]
@@ -154,9 +154,10 @@ class HalfContinuation(Iterator[BranchPoint]):
         return self._known[1]
 
     def _next_orbit(self, last: Ending) -> tuple[Ending, np.ndarray | None]:
-        """The next orbit and, if the branch ends there, the reason. Raises `ComputationError` if the step is too long.
+        """Compute the next orbit (with the reason, if the branch ends there) and its contact events; set the next step.
 
-        Its contact events are None if its forces and contacts are known already. Sets the next step.
+        The contact events are None if the orbit's forces and contacts are already known. Raises `ComputationError` if
+        the step is too long.
         """
         equations, step, before = self.equations, self._step, last.point
         guess = predicted(step, self._z(before), before.tangent, self._before_last)
@@ -184,7 +185,7 @@ class HalfContinuation(Iterator[BranchPoint]):
     # --- the half-branch -----------------------------------------------------------------------------------
 
     def _add(self, ahead: _Ahead, point: BranchPoint, special: list[SpecialPoint]) -> None:
-        """Add an orbit and the special points before it to the half-branch, which ends at a merging."""
+        """Add an orbit and the special points before it to the half-branch, and end it at a merging."""
         half, ended, reason = self.half, ahead.ending.ended, ahead.ending.reason
         merging = self._ends.merging(special)
         if merging is not None:
@@ -211,7 +212,7 @@ class HalfContinuation(Iterator[BranchPoint]):
                       f"{formatted(last.residuals)}")
 
     def _refuse_shorter(self, solved: Solved) -> None:
-        """Raise `ComputationError` for an orbit of another branch, whose period is a part of this one's."""
+        """Raise `ComputationError` for an orbit of another branch, whose period is a fraction of this one's."""
         n = self.equations.period
         x, value = self.equations.state(solved.z), self.equations.value(solved.z)
         least_period = self.equations.least_period(x, value, _SHORTER_PERIOD_DISTANCE)

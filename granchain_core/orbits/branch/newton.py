@@ -3,11 +3,11 @@
 Equation   J Δz = −F,  F = (P(x; p) − x, (z − z0)·n),  J as in equations.py;  after a step J is corrected by Broyden's
            rank-one update, J ← J + F(z + Δz) Δzᵀ/|Δz|²
 Source     Broyden 1965; Dennis & Schnabel 1983, Numerical Methods for Unconstrained Optimization, chapter 8
-Note       The accurate map (the flow at 1e-13) takes 2 ms with eleven beads, with its derivative 5 ms, the quick map
-           (quick.py) 0.3 ms. So J begins with a derivative known nearby, and the quick map is solved first. Then the
-           accurate map is computed once: its difference from the quick one, the defect, hardly changes over the
-           distance that is left, and the steps to the orbit itself use the quick map with the defect added (deferred
-           correction). The accurate map's derivative is computed at the orbit only, for the multipliers; its residual
+Note       With eleven beads, the accurate map (the flow at 1e-13) takes 2 ms, or 5 ms with its derivative; the quick
+           map (quick.py) takes 0.3 ms. So J starts as a derivative known nearby, and the quick map is solved first.
+           Then the accurate map is computed once. Its difference from the quick one, the defect, hardly changes over
+           the remaining distance, so the steps to the orbit itself use the quick map with the defect added (deferred
+           correction). The accurate map's derivative is computed only at the orbit, for the multipliers; its residual
            there decides whether the orbit is accepted.
            A derivative of the rough map is computed where steps without one converge too slowly.
 """
@@ -23,39 +23,39 @@ from ...errors import ComputationError
 from ...steady.residuals import ACCEPTED_RESIDUAL, RESIDUAL_GOAL, formatted, orbit_change
 from ..stroboscopic_map import TOLERANCE, Flow, StroboscopicMap
 
-#: [branch] Tolerance of the rough map, the flow where exactness is not needed.
+#: [branch] Tolerance of the rough map, which is the flow where full accuracy is not needed.
 ROUGH_TOLERANCE = 1e-10
 #: [branch] Residual above which the rough map is computed with the tolerance `_ROUGHEST_TOLERANCE`.
 _ROUGHEST_ABOVE = 1e-3
-#: [branch] Tolerance of the rough map where the residual is large. The map is then good to 1e-6 (measured: 7e-7 on the
-#: branch of sec2 over f).
+#: [branch] Tolerance of the rough map where the residual is large. The map is then accurate to 1e-6 (measured: 7e-7 on
+#: the branch of sec2 over f).
 _ROUGHEST_TOLERANCE = 1e-7
-#: [branch] Residual at which the quick map is left. Its own error is as large.
+#: [branch] Residual at which steps by the quick map end. Its own error is as large.
 QUICK_RESIDUAL = 1e-8
 #: [branch] Largest residual at which a derivative from nearby is used.
 _LARGEST_WITH_REUSED = 3e-3
-#: [branch] A step that does not lower the residual to this fraction of it is followed by a derivative.
+#: [branch] After a step that does not lower the residual to this fraction, a derivative is computed.
 _SLOW_DECREASE = 0.4
-#: [branch] A step with its own derivative that does not lower the residual to this fraction of it fails. A shorter step
-#: along the branch is safer than a way that may lead to another branch (Deuflhard 2004, Newton Methods for Nonlinear
-#: Problems).
+#: [branch] A step with its own derivative that does not lower the residual to this fraction has failed. A shorter step
+#: along the branch is safer than iterations that may lead to another branch (Deuflhard 2004, Newton Methods for
+#: Nonlinear Problems).
 _FAILED_DECREASE = 0.5
-#: [branch] A step with the derivative of the accurate map that does not lower the residual to this fraction of it has
-#: met rounding.
+#: [branch] A step with the derivative of the accurate map that does not lower the residual to this fraction has reached
+#: the level of rounding.
 _STALLED_DECREASE = 0.3
-#: [branch] The accurate map with its derivative is computed where its residual should be below this fraction of
+#: [branch] The accurate map with its derivative is computed once its residual is expected to be below this fraction of
 #: `RESIDUAL_GOAL`.
 _SAFETY = 0.3
-#: [branch] Most derivatives of the rough and of the accurate map each.
+#: [branch] Maximum number of derivatives of the rough map, and of the accurate map.
 _MOST_DERIVATIVES = 6
 #: [branch] Least residual before a step of `solve_with_derivatives` that may be followed by one that reuses its
 #: derivative.
 _LEAST_BEFORE_REUSE = 1e-6
 #: [branch] Largest residual before a step that reuses the derivative of the step before it.
 _LARGEST_REUSE = 1e-4
-#: [branch] Most steps of `solve_with_derivatives`.
+#: [branch] Maximum number of steps of `solve_with_derivatives`.
 _MOST_STEPS = 8
-#: [branch] Most steps by the corrected map.
+#: [branch] Maximum number of steps by the quick map with the defect added.
 _MOST_CORRECTED_STEPS = 6
 
 
@@ -68,7 +68,7 @@ class Near:
 
 
 class Equations(Protocol):
-    """The equations as Newton's method uses them (equations.py)."""
+    """What Newton's method needs of the equations (equations.py)."""
 
     def state(self, z: np.ndarray) -> np.ndarray:
         """The scaled state in z."""
@@ -80,7 +80,7 @@ class Equations(Protocol):
         """The bordered matrix."""
 
     def knob_slope(self, z: np.ndarray, end: np.ndarray, tolerance: float) -> np.ndarray:
-        """P_p at z, where the map leads to `end`."""
+        """P_p at z, from where the map leads to `end`."""
 
     def reused_map(self, value: float, tolerance: float) -> StroboscopicMap:
         """The map at a knob value."""
@@ -89,16 +89,16 @@ class Equations(Protocol):
         """The scaled drive frequency β near z."""
 
     def quick_steps(self, z: np.ndarray) -> int:
-        """Steps in a period of the quick map near z."""
+        """Steps per period of the quick map near z."""
 
     def quick_end(self, x: np.ndarray, value: float, steps: int) -> np.ndarray:
         """The end of the quick map from x."""
 
 
 class Newton:
-    """The iteration from one start: the present point `z`, J, and the residuals of all maps so far.
+    """The iteration from one start: the current point `z`, J, and the residuals of all maps so far.
 
-    `z` goes at most `farthest` from the start. `steps` is the number of steps in a period of the quick map.
+    `z` moves at most `farthest` from the start. `steps` is the number of steps per period of the quick map.
     """
 
     def __init__(self, equations: Equations, z: np.ndarray, normal: np.ndarray, farthest: float = np.inf) -> None:
@@ -108,7 +108,7 @@ class Newton:
         self._quick_end_here: np.ndarray | None = None
 
     def solve_quick(self, near: Near) -> None:
-        """Solve for the orbit of the quick map, up to the error of that map."""
+        """Solve for the orbit of the quick map, to within the error of that map."""
         if self._reuse_derivative(near):
             return
         for _ in range(_MOST_DERIVATIVES):
@@ -123,7 +123,7 @@ class Newton:
         raise self._failure()
 
     def solve_exact(self) -> Flow:
-        """Solve for the orbit of the accurate map from that of the quick one; returns that map with its derivative."""
+        """Solve for the orbit of the accurate map from that of the quick one; return its flow with the derivative."""
         quick = self._quick_end() if self._quick_end_here is None else self._quick_end_here
         end, ratio = self._exact_end(TOLERANCE), 1.0
         self._record(end)
@@ -152,11 +152,11 @@ class Newton:
         return flow
 
     def solve_with_derivatives(self, slope: np.ndarray | None = None) -> Flow:
-        """The orbit itself by steps with derivatives; `residuals` has one for each. `slope` is P_p nearby.
+        """Solve for the orbit itself by steps with derivatives; `residuals` has one entry each. `slope` is P_p nearby.
 
-        For orbits near which no derivative is known, and where the way with few derivatives has failed. Each step but
-        the last is followed by one that reuses its derivative. With `slope` the first map is computed at the rough
-        tolerance; the accepted one never is.
+        This is for orbits near which no derivative is known, and for those where fewer derivatives have failed. Each
+        step but the last is followed by one that reuses its derivative. With `slope`, the first map is computed at the
+        rough tolerance; the accepted one never is.
         """
         rough = slope is not None
         for _ in range(_MOST_STEPS):
@@ -178,9 +178,9 @@ class Newton:
         return flow
 
     def _reuse_derivative(self, near: Near) -> bool:
-        """Try steps with a derivative from nearby; True if they lead to the orbit.
+        """Try steps with a derivative from nearby; return True if they lead to the orbit.
 
-        If they lead away, z is the start again.
+        If they lead away from it, z is reset to the start.
         """
         try:
             end = self._quick_end()
@@ -197,7 +197,7 @@ class Newton:
             return False
 
     def _steps_without_derivative(self, end: np.ndarray) -> bool:
-        """Take steps without a derivative, from a map that led to `end`; True if they come near enough."""
+        """Take steps without a derivative, after a map that led to `end`; return True if they come near enough."""
         while True:
             before = self.residuals[-1]
             moved = self._checked_step(end)
@@ -210,11 +210,11 @@ class Newton:
                 return True
 
     def _broyden_update(self, end: np.ndarray, moved: np.ndarray) -> None:
-        """Broyden's update of J after a step."""
+        """Apply Broyden's update to J after the step `moved`."""
         self.matrix[:-1] += np.outer(end - self.equations.state(self.z), moved) / (moved @ moved)
 
     def _checked_step(self, end: np.ndarray) -> np.ndarray:
-        """Newton's step with the present matrix from a map that led to `end`; a step that goes too far is refused."""
+        """Take Newton's step with the current matrix, after a map that led to `end`; refuse one that goes too far."""
         moved = self._step(end)
         far = float(np.linalg.norm(self.z - self.start))
         if not far <= self.farthest:
@@ -233,18 +233,18 @@ class Newton:
         return self.equations.reused_map(self.equations.value(self.z), tolerance).end(self.equations.state(self.z))
 
     def _quick_end(self) -> np.ndarray:
-        """The end of the quick map from z, remembered until the next step."""
+        """The end of the quick map from z, kept until the next step."""
         self._quick_end_here = self.equations.quick_end(self.equations.state(self.z), self.equations.value(self.z),
                                                         self.steps)
         return self._quick_end_here
 
     def _residual(self, end: np.ndarray) -> float:
-        """Relative residual of z, from which a map leads to `end`."""
+        """Relative residual of z, from where a map leads to `end`."""
         x = self.equations.state(self.z)
         return orbit_change(end - x, x, self._rate)
 
     def _record(self, end: np.ndarray) -> float:
-        """The residual as before, appended to `residuals`."""
+        """Like `_residual`, but also append it to `residuals`."""
         self.residuals.append(self._residual(end))
         return self.residuals[-1]
 
@@ -253,7 +253,7 @@ class Newton:
         return self.residuals[-1] > _STALLED_DECREASE * self.residuals[-2]
 
     def flow(self, tolerance: float) -> Flow:
-        """The map at z with its derivative; its residual is added to `residuals`."""
+        """Compute the flow from z with its derivative, and append its residual to `residuals`."""
         flow = self.equations.reused_map(self.equations.value(self.z), tolerance)(self.equations.state(self.z))
         self._record(flow.end)
         return flow

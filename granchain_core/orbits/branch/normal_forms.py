@@ -1,11 +1,11 @@
-"""Normal forms of a map at a fold, a period doubling or a Neimark–Sacker point, and what they say about criticality.
+"""Normal forms of a map at a fold, a period doubling or a Neimark–Sacker point, and the criticality they imply.
 
 Equation   the coefficients a of a fold, c of a period doubling and d of a Neimark–Sacker point, in docs/branches.md,
            "Criticality"
 Source     Kuznetsov 2004, Elements of Applied Bifurcation Theory, 3rd edition: chapter 4, and the projection method of
            section 5.4
 Note       B and C are central differences of the derivative A, so that no difference is of higher order than the
-           second. They hold only where the map is smooth: `MapNear.product` raises `NotSmooth` elsewhere.
+           second. They are valid only where the map is smooth: `MapNear.product` raises `NotSmooth` elsewhere.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-#: Criticalities as JSON and files spell them; a nondegenerate fold has always been "generic" there.
+#: Criticalities as spelled in JSON and files, where a nondegenerate fold has always been "generic".
 SUPERCRITICAL, SUBCRITICAL, NONDEGENERATE, NOT_DECIDED = CRITICALITIES = (
     "supercritical", "subcritical", "generic", "not decided")
 
-#: Why a criticality is not decided; results, files and JSON spell these so.
+#: Why a criticality is not decided, as spelled in results, files and JSON.
 SEQUENCE_IN_INTERVAL = "the sequence of contact events changes in the same interval of the knob"
 SEQUENCE_NEAR = "the sequence of contact events changes within the smallest amplitude"
 DISAGREE = "its two values disagree"
@@ -28,27 +28,28 @@ NO_MULTIPLIER = "no multiplier of this kind is found on both sides"
 RESONANCE = "strong resonance"
 NO_MAP = "the map cannot be computed beside the orbit"
 REASONS = (SEQUENCE_IN_INTERVAL, SEQUENCE_NEAR, DISAGREE, ANOTHER_MULTIPLIER, NO_MULTIPLIER, RESONANCE, NO_MAP)
-#: Earlier spellings of two reasons, and the reasons that are read for them.
+#: Earlier spellings of two reasons, and the reasons that replace them when they are read.
 EARLIER_REASONS = {"a contact grazes in the same interval of the knob": SEQUENCE_IN_INTERVAL,
                    "a contact grazes within the smallest amplitude": SEQUENCE_NEAR}
 
-#: [branch] Amplitude ξ of the differences of a period doubling or Neimark–Sacker point. The value on the second side
-#: has half of it. Rounding then changes the cubic coefficients of sec2, some hundreds to 20,000, by up to 0.3.
+#: [branch] Amplitude ξ of the differences of a period doubling or Neimark–Sacker point. Half of it is used on the
+#: second side of the point. Rounding then changes the cubic coefficients of sec2, a few hundred to 20,000, by up to
+#: 0.3.
 _AMPLITUDE = 1e-4
-#: [branch] Amplitude ξ of a fold, which needs no second differences, and of the others where `_AMPLITUDE` decides
-#: nothing.
+#: [branch] Amplitude ξ of a fold, which needs no second differences, and of the other kinds where `_AMPLITUDE` does not
+#: decide.
 _SMALL_AMPLITUDE = 2e-5
 #: Amplitudes by kind, tried in this order.
 AMPLITUDES = {"fold": (_SMALL_AMPLITUDE,), "period_doubling": (_AMPLITUDE, _SMALL_AMPLITUDE),
               "neimark_sacker": (_AMPLITUDE, _SMALL_AMPLITUDE)}
-#: [branch] Largest difference of the two values of a coefficient, relative to their mean, at which its sign is decided.
-#: Only an error of four times the difference would change the sign.
+#: [branch] Largest difference between the two values of a coefficient, relative to their mean, at which its sign is
+#: decided. Only an error of four times the difference would change the sign.
 _LARGEST_ERROR = 0.25
-#: [branch] Another multiplier is at the unit circle if its modulus is this near to 1. The passing one mostly is within
+#: [branch] Another multiplier is at the unit circle if its modulus is this near to 1. The passing one is mostly within
 #: 5e-4.
 _AT_CIRCLE = 1e-3
 #: [branch] |μᵏ − 1|, k = 1 to 4, below which a resonance is strong. Near μ³ = 1 the coefficient grows as 1/|μ³ − 1|,
-#: and the amplitude up to which it describes the motion falls with it.
+#: and the amplitude up to which it describes the motion falls accordingly.
 _STRONG_RESONANCE = 0.02
 
 
@@ -58,20 +59,21 @@ class NotSmooth(Exception):
 
 @dataclass(frozen=True)
 class NormalForm:
-    """Criticality of a bifurcation point, with the coefficient that it rests on.
+    """Criticality of a bifurcation point, with the coefficient that decides it.
 
     Attributes
     ----------
     criticality : str
-        "supercritical" or "subcritical"; "generic", that is nondegenerate, for a fold whose quadratic coefficient is
-        not zero; "not decided".
+        "supercritical" or "subcritical"; for a fold whose quadratic coefficient is not zero, "generic", meaning
+        nondegenerate; or "not decided".
     coefficient : float
         |a| of a fold, c of a period doubling (supercritical: c > 0), Re d of a Neimark–Sacker point (supercritical:
         Re d < 0), for ξ in units of the scaled state's root mean square. NaN where it was not computed.
     error : float
-        Difference of two values, one on each side of the point and of different amplitudes. NaN where not computed.
+        Difference between two values, one from each side of the point, with different amplitudes. NaN where it was not
+        computed.
     reason : str
-        Why it is not decided, one of `REASONS`; "" where it is.
+        Why the criticality is not decided, one of `REASONS`; "" where it is decided.
     """
 
     criticality: str
@@ -105,16 +107,17 @@ class _Critical:
 
 def normal_form(kind: str, multiplier: complex, sides: tuple[MapNear, MapNear],
                 amplitudes: Mapping[str, tuple[float, ...]] = AMPLITUDES) -> NormalForm:
-    """The normal form of a bifurcation point, from the fixed points on both sides of it.
+    """Compute the normal form of a bifurcation point from the fixed points on both sides of it.
 
     Parameters
     ----------
     kind : str
         "fold", "period_doubling" or "neimark_sacker".
     multiplier : complex
-        About the multiplier that passes the unit circle; of a pair the one above the real axis.
+        Approximately the multiplier that passes the unit circle; of a pair, the one above the real axis.
     sides : tuple of MapNear
-        The map near a fixed point before and near one after the bifurcation, so near that their coefficients agree.
+        The map near a fixed point before the bifurcation and near one after it, close enough for their coefficients to
+        agree.
     amplitudes : mapping of str to tuple of float
         For every kind, the amplitudes ξ of the differences, tried in this order until one decides.
     """
@@ -155,7 +158,7 @@ def _judged(kind: str, one: float, other: float) -> NormalForm:
 def _critical(kind: str, multiplier: complex, derivative: np.ndarray) -> _Critical:
     """The eigenvalue of this kind that is nearest to `multiplier`, and its eigenvectors.
 
-    Raises `NotSmooth` where there is none, and where another one is at the unit circle.
+    Raises `NotSmooth` if there is none, or if another eigenvalue is at the unit circle.
     """
     right, q = _nearest(kind, multiplier, derivative)
     _, p = _nearest(kind, multiplier.conjugate(), derivative.T)
@@ -170,7 +173,7 @@ def _critical(kind: str, multiplier: complex, derivative: np.ndarray) -> _Critic
 
 
 def _nearest(kind: str, multiplier: complex, matrix: np.ndarray) -> tuple[complex, np.ndarray]:
-    """The eigenvalue nearest to `multiplier`, real or complex as the kind has it, with its eigenvector."""
+    """The eigenvalue nearest to `multiplier`, real or complex as the kind requires, with its eigenvector."""
     values, vectors = np.linalg.eig(matrix)
     distances = np.where((values.imag != 0.0) == (kind == "neimark_sacker"), np.abs(values - multiplier), np.inf)
     place = int(np.argmin(distances))
@@ -181,12 +184,12 @@ def _nearest(kind: str, multiplier: complex, matrix: np.ndarray) -> tuple[comple
 
 
 def _with_sign_of(vectors: _Critical, reference: _Critical) -> _Critical:
-    """`vectors` with the sign of q that points as the q of `reference` does."""
+    """`vectors` with the signs chosen so that q points to the same side as the q of `reference`."""
     return vectors if vectors.q @ reference.q > 0.0 else _Critical(vectors.multiplier, -vectors.q, -vectors.p)
 
 
 def _resonant(multiplier: complex) -> bool:
-    """Whether μᵏ is 1 for a k up to 4: a strong resonance, at which no closed curve is proved."""
+    """Whether μᵏ is near 1 for a k up to 4: a strong resonance, at which a closed curve is not guaranteed to exist."""
     on_circle = multiplier / abs(multiplier)
     return any(abs(on_circle**k - 1.0) < _STRONG_RESONANCE for k in (1, 2, 3, 4))
 

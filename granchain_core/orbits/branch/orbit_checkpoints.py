@@ -1,7 +1,7 @@
 """Checkpoints of a branch (checkpoints.py): finished orbits on disk as JSON, exact to the last bit.
 
-A piece is what a half-branch has gained: its new orbits and special points, the numbers of the first of each, and the
-step with which it goes on or the reason why it ended.
+A piece contains what a half-branch has gained: its new orbits and special points, the index of the first of each, and
+the step with which it continues or the reason why it ended.
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ from .special import SpecialPoint
 
 #: Entries of a point that are arrays.
 _ARRAYS = ("x", "tangent", "multipliers", "closings", "slope", "overlap_extrema")
-#: Entries of a point whose names in a file of checkpoints are former ones.
+#: Entries of a point that keep their former names in checkpoint files.
 _FORMER = {"liouville_error": "liouville", "overlap_extrema": "turns"}
 
 
 def asked_digest(axis: KnobAxis, both: bool) -> str:
-    """Hash of all arguments that change a branch, except its period, which may be that of the settled motion."""
+    """Hash of all arguments that determine a branch, except its period, which may be that of the settled motion."""
     driven = {} if axis.amplitude is None else {"amplitude": axis.amplitude.to_json()}
     coordinate = {"coordinate": STATIC_OVERLAP} if axis.by_overlap else {}
     return digest_of({"scene": axis.scene.digest, "knob": axis.knob, "from": axis.start, "to": axis.end, "both": both,
@@ -37,7 +37,7 @@ def asked_digest(axis: KnobAxis, both: bool) -> str:
 
 
 class OrbitCheckpoints:
-    """The folder of one branch, which grows while the branch is continued; each half-branch may have its own thread."""
+    """The folder of one branch, which grows with the branch; each half-branch may have its own thread."""
 
     def __init__(self, axis: KnobAxis, both: bool, out: str | Path) -> None:
         self._axis, self._directions = axis, 1 + both
@@ -46,12 +46,12 @@ class OrbitCheckpoints:
         self._written: dict[int, tuple[int, int]] = {}
 
     def asks_for(self, branch: Branch) -> bool:
-        """Whether a branch is the one of this folder; one that has closed on itself has one half-branch left of two."""
+        """Whether a branch is the one in this folder; a closed one may have only one of its two half-branches left."""
         both = self._directions > 1 if branch.half_branches[0].ended == "closed" else len(branch.half_branches) > 1
         return asked_digest(branch.axis, both) == asked_digest(self._axis, self._directions > 1)
 
     def add(self, period: int, half: HalfBranch) -> None:
-        """Add the orbits and special points by which a half-branch has grown since the last call."""
+        """Add the orbits and special points that a half-branch has gained since the last call."""
         points, special = self._written.get(half.direction, (0, 0))
         self._written[half.direction] = len(half.points), len(half.special)
         self.kept.add({"period": period, "direction": half.direction, "first": [points, special],
@@ -60,14 +60,13 @@ class OrbitCheckpoints:
                        "step": half.step.hex(), "ended": half.ended, "reason": half.reason})
 
     def begin(self, branch: Branch) -> None:
-        """Add a branch as it is before it is continued."""
+        """Add a branch in its state before it is continued."""
         for half in branch.half_branches:
             if self._written.get(half.direction) != (len(half.points), len(half.special)):
                 self.add(branch.period, half)
 
     def branch(self) -> Branch | None:
-        """The branch in the blocks, each half-branch up to the first orbit that is missing; None without its start.
-        """
+        """The branch in the blocks, each half-branch up to its first missing orbit; None if a start is missing."""
         halves: dict[int, HalfBranch] = {}
         period = 0
         for content in self.kept.blocks():
@@ -111,7 +110,7 @@ def _point(kept: dict[str, Any]) -> BranchPoint:
 
 
 def special_as_json(point: SpecialPoint) -> dict[str, Any]:
-    """A special point as JSON has it; `special_from_json` gives it back to the last bit."""
+    """A special point as a JSON record; `special_from_json` restores it to the last bit."""
     multiplier = None if point.multiplier is None else [complex(point.multiplier).real, complex(point.multiplier).imag]
     return {"kind": point.kind, "knob": point.knob, "interval": list(point.interval), "before": _as_json(point.before),
             "after": _as_json(point.after), "multiplier": multiplier, "contact": point.contact,
@@ -120,7 +119,7 @@ def special_as_json(point: SpecialPoint) -> dict[str, Any]:
 
 
 def special_from_json(record: dict[str, Any]) -> SpecialPoint:
-    """The special point of a record by `special_as_json`."""
+    """The special point in a record from `special_as_json`."""
     multiplier = None if record["multiplier"] is None else complex(*record["multiplier"])
     form = record.get("normal_form")  # earlier versions had none
     if form:

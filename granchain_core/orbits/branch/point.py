@@ -1,4 +1,4 @@
-"""One orbit of a branch, with everything that is compared with its neighbours."""
+"""One orbit of a branch, with everything in which it is compared with its neighbours."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ from ...scene.state import State
 from ..orbit import liouville_error, sorted_multipliers
 from .equations import BranchEquations, Solved
 
-#: Tolerance per step of the run that records forces and contacts, with errors of about 1e-9.
+#: Tolerance per step of the run that records forces and contacts; errors are about 1e-9.
 _TOLERANCE = 1e-11
-#: Tolerance per step of the run along an orbit that only helps to find others; overlaps have errors of about 1e-7.
+#: Tolerance per step of the run along an orbit that only helps to find others; errors of overlaps are about 1e-7.
 _ROUGH_TOLERANCE = 1e-9
-#: Room for extrema of overlaps at first, for each contact and period.
+#: Initial room for extrema of overlaps, per contact and period.
 _FIRST_ROOM = 32
-#: Without damping the multipliers of a stable orbit lie on the unit circle. Where two meet they are known to about the
-#: root of the map's error only; so near to the circle a multiplier is on it.
+#: A multiplier this near to the unit circle counts as on it if there is no damping. The multipliers of a stable orbit
+#: then lie on the circle, and where two meet, they are known only to about the root of the map's error.
 ON_CIRCLE = 1e-6
-#: Count of the closings of a contact that is always closed; it is 0 of one that is always open.
+#: Number of closings stored for a contact that is always closed; 0 is stored for one that is always open.
 _CLOSED = -1
-#: Columns of an extremum (`OrbitRecord`): contact, +1 for a largest and −1 for a smallest overlap, time, overlap.
+#: Columns of an extremum (`OrbitRecord`): contact, +1 for a maximum and −1 for a minimum of the overlap, time, overlap.
 CONTACT, EXTREMUM_SIGN, TIME, OVERLAP = range(4)
 
 
@@ -38,13 +38,13 @@ CONTACT, EXTREMUM_SIGN, TIME, OVERLAP = range(4)
 class BranchPoint:
     """A periodic orbit on a branch.
 
-    `knob` in SI; `x` (2N,) is the scaled state (u, w) at phase 0; `tangent` (2N + 1,) the branch's unit tangent in
-    (x/√(2N), p); `arclength` counts from the start. `multipliers` (2N,) come largest modulus first. The three largest
-    forces are in N. `closings` (N + 1,) count how often each contact closes along the orbit: 0 if it is always
-    open, −1 if it is always closed. `slope` (2N,) is the map's change with p. `residuals` are those of Newton's method,
-    the last being the orbit's; `liouville_error` is how far ln |det| of the monodromy matrix is from ∫ trace.
-    `overlap_extrema` are the extrema of all overlaps (kernels/error_control/orbit_record.py). `damped` is whether its
-    chain loses energy.
+    `knob` is in SI. `x` (2N,) is the scaled state (u, w) at phase 0; `tangent` (2N + 1,) is the branch's unit tangent
+    in (x/√(2N), p); `arclength` is measured from the starting orbit. `multipliers` (2N,) are sorted by modulus, largest
+    first. The three largest forces are in N. `closings` (N + 1,) count how often each contact closes along the orbit: 0
+    if it is always open, −1 if it is always closed. `slope` (2N,) is the derivative of the map with respect to p.
+    `residuals` are those of Newton's method, the last being the orbit's; `liouville_error` is the difference between
+    ln |det| of the monodromy matrix and ∫ trace. `overlap_extrema` are the extrema of all overlaps
+    (kernels/error_control/orbit_record.py). `damped` tells whether the chain loses energy.
     """
 
     knob: float
@@ -69,7 +69,7 @@ class BranchPoint:
 
     @property
     def unstable_multipliers(self) -> int:
-        """Number of multipliers outside the unit circle; without damping, outside by more than `ON_CIRCLE`."""
+        """Number of multipliers outside the unit circle; without damping, by more than `ON_CIRCLE`."""
         return int((np.abs(self.multipliers) >= self._circle).sum())
 
     @property
@@ -100,12 +100,12 @@ class BranchPoint:
 
 
 def branch_point(equations: BranchEquations, solved: Solved, tangent: np.ndarray, arclength: float) -> BranchPoint:
-    """The point with its multipliers, forces and contacts, from a run along the orbit."""
+    """Make the point with its multipliers, and with forces and contacts from a run along the orbit."""
     return recorded(equations, unrecorded(equations, solved, tangent, arclength), solved.flow.contact_events)
 
 
 def unrecorded(equations: BranchEquations, solved: Solved, tangent: np.ndarray, arclength: float) -> BranchPoint:
-    """The point without a run along its orbit: its forces are NaN and its closings are not counted."""
+    """Make the point without a run along its orbit: its forces are NaN and its closings are not counted."""
     multipliers = sorted_multipliers(solved.flow.derivative)
     return BranchPoint(
         knob=equations.value(solved.z), x=equations.state(solved.z), tangent=tangent, arclength=arclength,
@@ -116,7 +116,7 @@ def unrecorded(equations: BranchEquations, solved: Solved, tangent: np.ndarray, 
 
 
 def recorded(equations: BranchEquations, point: BranchPoint, contact_events: np.ndarray) -> BranchPoint:
-    """The point with its forces and contacts; `contact_events` are its contact events, as in `Flow`."""
+    """Add forces and contacts to a point; `contact_events` are those of its orbit, as in `Flow`."""
     engine, record = record_along(equations, point.x, point.knob)
     maxima = engine.scaled.scales.forces(largest_forces(record.peaks))
     return replace(
@@ -133,7 +133,7 @@ def state_at(scene: Scene, x: np.ndarray) -> State:
 
 def rough_point(equations: BranchEquations, z: np.ndarray, tangent: np.ndarray, slope: np.ndarray,
                 multipliers: np.ndarray, residuals: list[float], arclength: float) -> BranchPoint:
-    """A point near the branch with its contacts, for the search only, without forces and Liouville's sum."""
+    """Make a point near the branch with its contacts, for the search only: without forces and Liouville's formula."""
     x, value = equations.state(z), equations.value(z)
     _, record = record_along(equations, x, value, _ROUGH_TOLERANCE)
     return BranchPoint(
@@ -145,7 +145,7 @@ def rough_point(equations: BranchEquations, z: np.ndarray, tangent: np.ndarray, 
 
 def record_along(equations: BranchEquations, x: np.ndarray, value: float,
                  tolerance: float = _TOLERANCE) -> tuple[Engine, OrbitRecord]:
-    """Largest forces and extrema of all overlaps along the way from the scaled state x."""
+    """Record largest forces and the extrema of all overlaps along the motion from the scaled state x."""
     engine = Engine(equations.axis.scene_at(value), dop853_setting(tolerance), 1, stop=equations.stop)
     stepper, room = engine.stepper, _FIRST_ROOM * (equations.size // 2 + 1) * equations.period
     while True:
@@ -160,7 +160,7 @@ def record_along(equations: BranchEquations, x: np.ndarray, value: float,
 
 
 def _counted_extrema(contacts: int, extrema: np.ndarray) -> np.ndarray:
-    """Closings of every contact by its overlap's extrema alone, between which it passes zero once or never."""
+    """Closings of every contact from its overlap's extrema alone: between two of them it crosses zero at most once."""
     closings = np.zeros(contacts, dtype=int)
     for contact in range(contacts):
         pressed = extrema[extrema[:, CONTACT] == contact, OVERLAP] > 0.0
@@ -171,7 +171,7 @@ def _counted_extrema(contacts: int, extrema: np.ndarray) -> np.ndarray:
 
 
 def _counts(contacts: int, record: OrbitRecord, contact_events: np.ndarray) -> np.ndarray:
-    """Closings of every contact; always open and always closed are distinguished by the overlap's extrema."""
+    """Closings of every contact; the overlap's extrema distinguish contacts always open from those always closed."""
     numbers = contact_events[:, 0].astype(int)
     closings = np.bincount(numbers[numbers > 0] - 1, minlength=contacts)
     if not np.array_equal(closings, np.bincount(-numbers[numbers < 0] - 1, minlength=contacts)):

@@ -1,8 +1,8 @@
-"""The stroboscopic map without derivative by the fixed-step method, for all but the last steps of Newton's method.
+"""The stroboscopic map without derivative, by the fixed-step method, for all but the last steps of Newton's method.
 
-Its steps are split at contact events, so that it is smooth: differences in the knob are good to 1e-6. Its kernels work
-in vectors: near orbits of sec2 it is good to 1e-8 in a sixth of the time of the flow at a tolerance of 1e-10
-(docs/branches.md, "Few derivatives").
+Its steps are split at contact events, so it is smooth: differences in the knob are accurate to 1e-6. Its kernels are
+vectorised: near orbits of sec2 the map is accurate to 1e-8 in a sixth of the time that the flow takes at a tolerance of
+1e-10 (docs/branches.md, "Few derivatives").
 """
 
 from __future__ import annotations
@@ -15,18 +15,18 @@ from ...integrate.scaling import ScaledChain, scale_like
 from ...kernels.effects.registry import unknown_slots
 from ...scene import Scene
 
-#: Steps in place of one default step.
+#: Number of steps that replace one default step.
 _REFINEMENT = 8.0
-#: Most steps a period: with more the flow is faster, since its steps are long while contacts are open.
+#: Maximum number of steps per period. Beyond it the flow is faster, since its steps are long while contacts are open.
 _MOST_QUICK_STEPS = 30_000
-#: Numbers of steps have this many binary digits, so that orbits nearby share the table of the driver's motion.
+#: Significant binary digits of the number of steps, so that nearby orbits share the table of the driver's motion.
 _BINARY_DIGITS = 4
 
 
 class QuickMap:
-    """(scene, x) → the state n drive periods later, for scenes that differ by the value of a knob.
+    """(scene, x) → the state n drive periods later, for scenes that differ in the value of a knob.
 
-    One thread may use it at a time. Equal calls give equal bits.
+    Only one thread may use it at a time. Equal calls give equal bits.
     """
 
     def __init__(self, periods: int, stop: Stop | None = None) -> None:
@@ -45,9 +45,9 @@ class QuickMap:
 
 
 def quick_steps(scaled: ScaledChain) -> int:
-    """Steps in a period of the quick map of a scene, 0 where the flow is faster.
+    """Steps per period of the quick map of a scene; 0 where the flow is faster.
 
-    The map would jump if they changed with the knob, so those of one scene serve for all that are compared.
+    The map would jump if their number changed with the knob, so all scenes that are compared use the number of one.
     """
     steps = int(_REFINEMENT * max(16.0, scaled.period / scaled.step)) + 1
     if steps > _MOST_QUICK_STEPS or unknown_slots(scaled.slots, "rk4"):

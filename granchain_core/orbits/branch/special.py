@@ -1,6 +1,6 @@
-"""Special points of a branch: their kinds, and what is known of a point: an interval of the knob, two orbits around it.
+"""Special points of a branch: their kinds, and for each point an interval of the knob and the two orbits around it.
 
-`KINDS` has all kinds, with their names in AUTO and MatCont. special_search.py finds them.
+`KINDS` lists all kinds, with their names in AUTO and MatCont. special_search.py finds the points.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ _BOTH_KNOBS = "the two orbits' knobs"
 
 @dataclass(frozen=True)
 class Kind:
-    """A kind of special point: how results, files and JSON spell it, its words, and its names in AUTO and MatCont.
+    """A kind of special point: its name in results, files and JSON, its words, and its names in AUTO and MatCont.
 
-    `passes` is what changes there, `interval` what the stated interval of the knob is.
+    `passes` says what changes there, and `interval` defines the stated interval of the knob.
     """
 
     name: str
@@ -54,13 +54,13 @@ _WORDS = {kind.name: kind.words for kind in KINDS}
 @with_former_names
 @dataclass(frozen=True, eq=False)
 class SpecialPoint:
-    """A special point: its kind, the interval of the knob that holds it, and the two orbits around it.
+    """A special point: its kind, the interval of the knob that contains it, and the two orbits around it.
 
-    `kind` is one of `SPECIAL_KINDS`, `knob` the middle of the interval.
-    `contact` and `gained` belong to a grazing: on its side `gained_side` the contact has one more contact phase
-    ("closed interval" in `gained`) or separation ("open interval") per period of the orbit. `multiplier` passes the
-    unit circle at the point. `normal_form` has the criticality and its coefficient; it is None for a grazing, for
-    `multiplier_one`, at the end of a doubled branch, and in older files.
+    `kind` is one of `SPECIAL_KINDS`; `knob` is the middle of the interval. `contact` and `gained` describe a grazing:
+    on its side `gained_side` the contact has one more contact phase ("closed interval" in `gained`) or separation
+    ("open interval") per period of the orbit. `multiplier` passes the unit circle at the point. `normal_form` has the
+    criticality and its coefficient; it is None for a grazing, for `multiplier_one`, at the end of a doubled branch,
+    and in older files.
     """
 
     kind: str
@@ -75,7 +75,7 @@ class SpecialPoint:
 
     @property
     def gained_side(self) -> str | None:
-        """On which side of `knob` a contact has one `gained` more: "below" or "above"; None where the knob turns."""
+        """Side of `knob` on which a contact has one `gained` more: "below" or "above"; None where the knob turns."""
         if self.contact is None or self.before.knob_direction != self.after.knob_direction:
             return None
         more, fewer = more_and_fewer(self.before, self.after, self.contact)
@@ -103,14 +103,14 @@ class SpecialPoint:
 
     @property
     def angle(self) -> float | None:
-        """Angle in radians by which the map turns about the orbit, the argument of a Neimark–Sacker multiplier."""
+        """Angle in radians by which the map rotates about the orbit: the argument of a Neimark–Sacker multiplier."""
         if self.kind != "neimark_sacker" or self.multiplier is None:
             return None
         return float(np.angle(self.multiplier))
 
 
 def more_and_fewer(a: BranchPoint, b: BranchPoint, contact: int) -> tuple[BranchPoint, BranchPoint]:
-    """Two orbits in order: first the orbit along which a contact closes more often."""
+    """The two orbits, first the one along which a contact closes more often."""
     return (a, b) if closings_of(a, contact) > closings_of(b, contact) else (b, a)
 
 

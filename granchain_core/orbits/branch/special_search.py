@@ -1,7 +1,7 @@
 """The search for special points of a branch: changes between neighbouring orbits, enclosed in a narrow interval.
 
-Each change lies between two computed orbits (docs/branches.md says what the interval is). Test functions only choose
-the next orbit to compute, so a wrong test function cannot make an interval wrong.
+Each change lies between two computed orbits (docs/branches.md defines the interval). Test functions only choose the
+next orbit to compute, so a wrong test function cannot make an interval wrong.
 """
 
 from __future__ import annotations
@@ -16,32 +16,32 @@ from .between import Between
 from .point import CONTACT, EXTREMUM_SIGN, OVERLAP, TIME, BranchPoint
 from .special import SpecialPoint, closings_of, more_and_fewer
 
-#: [branch] Width of an interval that is narrow enough, relative to the knob or to a thousandth of the range's larger
+#: [branch] Width at which an interval is narrow enough, relative to the knob or to a thousandth of the range's larger
 #: end.
 RELATIVE_WIDTH = 1e-5
-#: [branch] The tangents at both ends of a bracket meet within this factor times its length. In a plane it is within
-#: once the length where the branch turns by less than 90°, and `_LARGEST_TURN` in steps.py is below that.
+#: [branch] The tangents at both ends of a bracket meet within this factor times its length. In a plane, they meet
+#: within one length if the branch turns by less than 90°, and `_LARGEST_TURN` in steps.py is below that.
 _TANGENT_REACH = 1.25
 #: [branch] Offset of the next orbit from the root of the straight line through the test function, as a fraction of the
 #: bracket.
 _OFFSET_FROM_ROOT = 0.02
 #: [branch] First part of the offset from the root by inverse quadratic interpolation, where a third value is known, as
-#: a fraction of the width that is narrow enough.
+#: a fraction of the width at which the interval is narrow enough.
 _WIDTH_FRACTION = 0.4
 #: [branch] Second part of that offset, as a fraction of the distance between the linear and the inverse quadratic
 #: estimate. The latter's error is a small fraction of the former's.
 _ERROR_FRACTION = 0.1
-#: [branch] Levels of bisection from one that takes the middle, whatever the test function says, to the next.
+#: [branch] Interval, in levels of bisection, at which the middle is used whatever the test function says.
 _LEVELS_TO_MIDDLE = 5
-#: [branch] Most levels of bisection between two neighbours. The interval is then taken as it is.
+#: [branch] Maximum number of levels of bisection between two neighbours. The interval is then accepted at its width.
 _MOST_LEVELS = 60
 
 
 def special_between(between: Between) -> list[SpecialPoint]:
-    """All special points between two neighbours, in their order.
+    """Find all special points between two neighbours, in their order.
 
-    Rough orbits find brackets, whose ends are then computed exactly. Where that fails, or an exact end is not on the
-    side of its rough one, all orbits are computed as those of the branch.
+    Brackets are found with rough orbits, and their ends are then computed exactly. If that fails, or if an exact end is
+    on another side than its rough one, all orbits are computed as carefully as those of the branch.
     """
     axis, a, b = between.equations.axis, between.a, between.b
     try:
@@ -84,7 +84,7 @@ def _wanted(axis: KnobAxis, a: BranchPoint, b: BranchPoint) -> float:
 
 
 def _interval(axis: KnobAxis, a: BranchPoint, b: BranchPoint) -> tuple[float, float]:
-    """An interval that holds all knob values between a and b.
+    """An interval that contains all knob values between a and b.
 
     Where the knob turns in between, the curve stays on the inner side of its tangents at a and b.
     """
@@ -103,12 +103,12 @@ def _distance(axis: KnobAxis, a: BranchPoint, b: BranchPoint) -> float:
 
 def _fraction(axis: KnobAxis, a: BranchPoint, b: BranchPoint, depth: int,
               beyond: BranchPoint | None) -> tuple[float, bool]:
-    """Place of the next orbit, as a fraction of the bracket from a to b, and whether to solve it exactly.
+    """Place of the next orbit, as a fraction of the bracket from a to b, and whether to compute it exactly.
 
-    The orbit lies just beyond the estimated root of the test function, on the side of the longer part, so that the
-    bracket shrinks from both ends; at times, or without a test function, it is the middle. The first root is that of a
-    straight line. With a third value the root is known so well that the orbits on both sides of it are the ends of the
-    narrow bracket; these are solved exactly.
+    The orbit is just beyond the estimated root of the test function, on the side of the longer part, so that the
+    bracket shrinks from both ends; now and then, or without a test function, it is in the middle. The first estimate is
+    the root of a straight line. With a third value the root is known so well that the orbits on both sides of it are
+    the ends of the narrow bracket; these are computed exactly.
     """
     values = _test_values(a, b)
     if depth % _LEVELS_TO_MIDDLE == _LEVELS_TO_MIDDLE - 1 or values is None or not values[0] * values[1] < 0.0:
@@ -124,7 +124,7 @@ def _fraction(axis: KnobAxis, a: BranchPoint, b: BranchPoint, depth: int,
 
 def _inverse_quadratic_root(a: BranchPoint, b: BranchPoint, values: tuple[float, float],
                             beyond: BranchPoint) -> float | None:
-    """Root of the test function by inverse quadratic interpolation of the arclength, from a (0) to b (1); else None."""
+    """Root of the test function by inverse quadratic interpolation, from a (0) to b (1); None if there is none."""
     first, last = (a, beyond) if beyond.arclength > b.arclength else (beyond, b)
     outer = None if first.signature == last.signature else _test_values(first, last)
     if outer is None:
@@ -151,7 +151,7 @@ def _test_values(a: BranchPoint, b: BranchPoint) -> tuple[float, float] | None:
 
 
 def _extremal_overlaps(a: BranchPoint, b: BranchPoint, contact: int) -> tuple[float, float] | None:
-    """The extremum of the overlap that passes zero, at a and at b; None if it is not found in both."""
+    """The extremum of the overlap that passes zero between a and b, at both; None if it is not found at one."""
     more, fewer = more_and_fewer(a, b, contact)
     nearest = _slightest_crossing(more, contact)
     if nearest is None:
@@ -167,9 +167,9 @@ def _extremal_overlaps(a: BranchPoint, b: BranchPoint, contact: int) -> tuple[fl
 
 
 def _slightest_crossing(point: BranchPoint, contact: int) -> np.ndarray | None:
-    """The extremum of the overlap nearest to zero, of the maxima above it and the minima below.
+    """The extremum of the overlap that is nearest to zero, among the maxima above zero and the minima below.
 
-    Before and after such an extremum the contact closes and opens. None if there is none.
+    Before and after such an extremum, the contact closes and opens. None if there is no such extremum.
     """
     extrema = _extrema(point, contact)
     crossed = extrema[extrema[:, EXTREMUM_SIGN] * extrema[:, OVERLAP] > 0.0]
@@ -182,7 +182,7 @@ def _extrema(point: BranchPoint, contact: int) -> np.ndarray:
 
 
 def _classified(axis: KnobAxis, a: BranchPoint, b: BranchPoint) -> list[SpecialPoint]:
-    """The special points inside a narrow bracket, usually one."""
+    """The special points inside a narrow bracket, usually just one."""
     low, high = _interval(axis, a, b)
     special_points = []
     passing = _passing(a, b)
@@ -202,7 +202,7 @@ def _classified(axis: KnobAxis, a: BranchPoint, b: BranchPoint) -> list[SpecialP
 
 
 def _passing(a: BranchPoint, b: BranchPoint) -> list[complex]:
-    """Multipliers that pass the unit circle between a and b; of a complex pair the one above the real axis.
+    """Multipliers that pass the unit circle between a and b; of a complex pair, the one above the real axis.
 
     If two pass in opposite directions, one of them through −1, these are the multipliers at a nearest to −1 and to +1.
     """
@@ -215,7 +215,7 @@ def _passing(a: BranchPoint, b: BranchPoint) -> list[complex]:
 
 
 def _gained(a: BranchPoint, b: BranchPoint, contact: int) -> str:
-    """The interval of a contact that one of two orbits has in addition to the other's, a key of `EVENTS`."""
+    """The kind of interval, a key of `EVENTS`, of which a contact has one more along one of two orbits."""
     more, fewer = more_and_fewer(a, b, contact)
     if closings_of(fewer, contact) == 0:
         return "open interval" if fewer.closings[contact] < 0 else "closed interval"
@@ -225,10 +225,9 @@ def _gained(a: BranchPoint, b: BranchPoint, contact: int) -> str:
 
 
 def _merged(special_points: list[SpecialPoint]) -> list[SpecialPoint]:
-    """The special points, with the turn of a fold and the passage of its multiplier through 1 as one point.
+    """The special points, with the turn of a fold and the passage of its multiplier through 1 joined to one point.
 
-    They are two brackets where one bracket ended between them. A multiplier that passes 1 without a turn is
-    `multiplier_one`.
+    They are two points if a bracket ended between them. A multiplier that passes 1 without a turn is `multiplier_one`.
     """
     merged: list[SpecialPoint] = []
     for point in special_points:

@@ -1,8 +1,8 @@
-"""The steps along a branch: where the next orbit is expected, and how long the step after it is.
+"""The steps along a branch: where the next orbit is expected, and how long the following step is.
 
 The length of a step keeps two things small: the turn of the branch, and the distance of the orbit from its prediction.
-Both are measured on the step before, so the length does not depend on how Newton's method found the orbit. After a step
-that failed, the next does not grow: what made it fail usually lies just ahead.
+Both are measured on the previous step, so the length does not depend on how Newton's method found the orbit. After a
+failed step, the next one does not grow: the cause of the failure usually lies just ahead.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ FIRST_STEP = 0.02
 LONGEST_STEP = 0.2
 #: [branch] Shortest step.
 SHORTEST_STEP = 1e-7
-#: [branch] Angle by which the branch turns in a step of the length aimed at [degrees].
+#: [branch] Angle by which the branch turns in a step of the intended length [degrees].
 _TURN_OF_STEP = 8.0
-#: [branch] Distance of the orbit from its prediction in a step of the length aimed at, as a fraction of the step.
+#: [branch] Distance of the orbit from its prediction in a step of the intended length, as a fraction of the step.
 _MISS_OF_STEP = 0.02
 #: [branch] Largest factor from one step to the next.
 _GROWTH_FACTOR = 2.0
@@ -47,10 +47,11 @@ def predicted(step: float, z: np.ndarray, tangent: np.ndarray,
 
 
 def next_step(step: float, off: float, cosine: float, failed: bool) -> float:
-    """The length of the next step, after one that ended `off` its prediction and turned by an angle of this cosine.
+    """The length of the next step, from the miss `off` and the turn of the last one.
 
-    The turn grows with the step, the distance off relative to the step with its square. `failed` says that longer steps
-    from there had failed.
+    `off` is the distance of the last point from its prediction, and `cosine` that of the angle by which the branch
+    turned. The turn grows with the step, and `off` relative to the step with its square. `failed` means that longer
+    steps from there had failed.
     """
     angle = max(float(np.arccos(min(1.0, cosine))), 1e-9)
     most = 1.0 if failed else _GROWTH_FACTOR

@@ -1,7 +1,7 @@
 """Branch switching: from a period doubling to the branch of twice the period.
 
-At a multiplier −1 with eigenvector v the orbits of twice the period lie at x ± εv + O(ε²), p + O(ε²): Newton's method
-on the doubled map in the plane at distance ε along v finds one, because the trivial solution is not in that plane.
+At a multiplier −1 with eigenvector v, the orbits of twice the period lie at x ± εv + O(ε²), p + O(ε²). Newton's method
+on the doubled map, in the plane at distance ε along v, finds one, because the trivial solution is not in that plane.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _LEAST_DOUBLING = 0.5
 
 
 def switch_to_doubled(branch: Branch, special: SpecialPoint, stop: Stop | None = None) -> Branch:
-    """The branch of twice the period that leads away from the period doubling `special` of `branch`.
+    """Start the branch of twice the period that leads away from the period doubling `special` of `branch`.
 
     Raises `BadInput` for another kind of point and `ComputationError` where no doubled orbit is found.
     """
@@ -34,7 +34,7 @@ def switch_to_doubled(branch: Branch, special: SpecialPoint, stop: Stop | None =
         raise BadInput(f"A doubled branch begins at a period_doubling, not at a {special.kind}.")
     if special.multiplier is None:
         raise BadInput(f"At {branch.axis.text(special.knob)} this branch merges with that of half its period; "
-                       "no orbit of twice its own begins there.")
+                       "no orbit of twice its own period begins there.")
     once = BranchEquations(branch.axis, branch.period, stop)
     twice = BranchEquations(branch.axis, 2 * branch.period, stop)
     foot = special.before
@@ -51,8 +51,8 @@ def switch_to_doubled(branch: Branch, special: SpecialPoint, stop: Stop | None =
         halves = once.stroboscopic_map(twice.value(solved.z)).end(x) - x
         if np.linalg.norm(halves) / once.weight > _LEAST_DOUBLING * 2.0 * distance:
             return Branch(branch.axis, 2 * branch.period, (_half(twice, solved, direction),))
-        tried.append("the orbit found repeats after half of its period.")
-    raise ComputationError(f"No orbit of {2 * branch.period} drive periods was found beside the period doubling at "
+        tried.append("the orbit that was found repeats after half of its period.")
+    raise ComputationError(f"No orbit of {2 * branch.period} drive periods was found near the period doubling at "
                            f"{branch.axis.text(special.knob)}: {tried[-1]}", "no-convergence")
 
 

@@ -16,16 +16,16 @@ from .normal_forms import NormalForm
 from .point import BranchPoint
 from .special import SPECIAL_KINDS, SpecialPoint
 
-#: Entries of a special point without a normal form.
+#: Normal form written for a special point that has none.
 _NO_NORMAL_FORM = NormalForm("")
 #: Meaning of the column `arm`.
 _HALF_BRANCH = "half-branch: 0 first, 1 second; direction in the attribute branch"
-#: The contact of a special point that is not a grazing.
+#: Contact number written for a special point that is not a grazing.
 NO_CONTACT = -1
 
 
 def branch_tables(over: KnobAxis, half_branches: Sequence[HalfBranch]) -> tuple[Table, ...]:
-    """All tables of a branch. Orbits come half-branch by half-branch, each from the starting orbit."""
+    """All tables of a branch. Orbits are listed half-branch by half-branch, each from the starting orbit."""
     points = [(place, point) for place, half in enumerate(half_branches) for point in half.points]
     special = [(place, point) for place, half in enumerate(half_branches) for point in half.special]
     return (_orbits("branch", over, [point for _, point in points], [place for place, _ in points]),
@@ -93,7 +93,7 @@ def _special(over: KnobAxis, special: Sequence[SpecialPoint], half_branches: Seq
         "knob": Column(number([s.knob for s in special]), along, unit,
                        "knob at the special point, the middle of its interval"),
         "knob_low": Column(number([s.interval[0] for s in special]), along, unit,
-                           "lower end of the interval that holds it"),
+                           "lower end of the interval that contains it"),
         "knob_high": Column(number([s.interval[1] for s in special]), along, unit, "upper end of that interval"),
         "multiplier_real": Column(multipliers.real, along, "1",
                                   "multiplier that passes the unit circle, real part"),

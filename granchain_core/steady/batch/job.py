@@ -1,4 +1,4 @@
-"""A scene that is being settled in a batch: when its regime is checked, and what follows."""
+"""A scene that is being settled in a batch: when its regime is checked, and what happens next."""
 
 from __future__ import annotations
 
@@ -35,15 +35,15 @@ from ..settling.refine_orbit import FARTHEST_FROM_ORBIT
 from ..settling.regime_decisions import EXAMINED_AFTER, MOST_SETTLING_PERIODS
 from ..steady_state import IRREGULAR_PERIODS, SteadyState
 
-#: [no threshold] Steps of the fine run of a batch for one of the coarse run.
+#: [no threshold] Steps of a batch's fine run per step of the coarse run.
 FINE_STEPS_PER_COARSE = 3
-#: [no threshold] Setting for the largest forces of an orbit where they jump: finer than the batch that found the orbit.
+#: [no threshold] Setting for the largest forces of an orbit with jumps: finer than in the batch that found the orbit.
 _LOCATED_SETTING = fixed_step_setting(8)
 #: [period n] A batch: an orbit found by extrapolation needs multipliers if its contraction factor per orbit is above
 #: this.
 _SLOW_CONTRACTION = 0.998
 #: [period n] A batch: an orbit that needs multipliers is accepted if its largest |μ|, by one-sided differences, is
-#: below this, else settled alone. An orbit near which changes grew in the fine run needs them too.
+#: below this; otherwise the chain is settled alone. An orbit near which changes grew in the fine run needs them too.
 _LARGEST_SURE_MULTIPLIER = 0.995
 #: [no threshold] Typical relative error of the fine run.
 _FINE_ERROR = typical_error(fixed_step_setting(FINE_STEPS_PER_COARSE))
@@ -51,7 +51,7 @@ _FINE_ERROR = typical_error(fixed_step_setting(FINE_STEPS_PER_COARSE))
 
 @dataclass(frozen=True, eq=False)
 class Start:
-    """A scene that is to be settled, from rest or from `state` at phase 0; its `number` comes back with the result."""
+    """A scene to be settled, from rest or from `state` at phase 0; its `number` is returned with the result."""
 
     scene: Scene
     state: State | None = None
@@ -65,7 +65,7 @@ class Stage(Enum):
     COARSE = "coarse"
     #: The periodic orbit of the coarse run, with fine steps.
     FINE = "fine"
-    #: The motion with coarse steps beside a neighbouring trajectory, which gives its Lyapunov exponent.
+    #: The motion with coarse steps, along with a neighbouring trajectory, which gives its Lyapunov exponent.
     EXPONENT = "exponent"
 
 
@@ -78,15 +78,15 @@ class BatchJob:
     scene, scaled : Scene, ScaledChain
         The scene, and its chain in scaled quantities.
     y : np.ndarray
-        Scaled state (2(N+2),) at phase 0 from which the motion goes on.
+        Scaled state (2(N+2),) at phase 0 from which the motion continues.
     periods_run : int
         Drive periods from the start to `y`.
     stage : Stage
         The run that the job is in, or waits for.
     coarse : tuple of (Regime, np.ndarray) or None
-        In the fine stage: regime and scaled largest forces (3,) of the coarse run.
+        In the fine stage: regime and scaled largest forces (3,) from the coarse run.
     record : np.ndarray
-        The last strobes (P, 2, N), scaled, from the time when a measurement was first due.
+        The last strobes (P, 2, N), scaled, since a measurement was first due.
     maxima : np.ndarray
         Largest forces (3,) [N] of a motion whose exponent is measured.
     measurements : ExponentMeasurements
@@ -108,7 +108,7 @@ class BatchJob:
 
     @functools.cached_property
     def steps(self) -> int:
-        """Steps a period of the coarse run."""
+        """Steps per period of the coarse run."""
         return self.scaled.steps_per_period()
 
     @property
@@ -130,7 +130,7 @@ class BatchJob:
         maxima, jumps, unresolved = batch.maxima(member, regime.period)
         farther = max(distance, regime.distance)
         regime = _with_period(regime, int(batch.state.search.last_check[member, CHECK_PERIOD]))
-        if not distance <= FARTHEST_FROM_ORBIT:  # settled alone; a NaN is not near
+        if not distance <= FARTHEST_FROM_ORBIT:  # settled alone; NaN counts as far
             return SteadyState(self.scene, self.scaled.scales.forces(maxima), replace(regime, distance=distance), None,
                                self.scaled.to_si(y), number=self.number, undecided=True)
         multiplier = self._multiplier(regime, y, batch.grew(member), batch.stop)
@@ -148,7 +148,7 @@ class BatchJob:
                            undecided=undecided)
 
     def _multiplier(self, regime: Regime, y: np.ndarray, grew: bool, stop: Stop) -> float | None:
-        """Largest |μ| of an orbit through the scaled state y that decays slowly, or near which changes `grew`.
+        """Largest |μ| of an orbit through the scaled state y that attracts slowly, or near which changes `grew`.
 
         An extrapolation leads to an orbit whether it is stable or not, and one that is stable with coarse steps may be
         unstable with finer ones. None for other orbits, and for chains too long for multipliers. Raises `Cancelled`.
@@ -163,8 +163,8 @@ class LocatedOrbits:
     """Largest forces on orbits that a batch found, computed with located events.
 
     A batch steps across events, so its jumps have an error of the order of the step. A second orbit with half the step
-    shows how much the forces still change between the batch's orbit and this method's orbit, and how much the forces
-    depend on the step at a jump, where the order is uneven.
+    shows how much the forces still change between the batch's orbit and that of this method, and how much they depend
+    on the step at a jump, where convergence is uneven.
     """
 
     def __init__(self, scaled: ScaledChain, stop: Stop) -> None:
@@ -172,7 +172,7 @@ class LocatedOrbits:
 
     @functools.cached_property
     def _engines(self) -> list[Engine]:
-        """One engine for each step."""
+        """One engine for each of the two step sizes."""
         return [Engine(self._scaled.scene, setting, 1, stop=self._stop, scaled=self._scaled)
                 for setting in (_LOCATED_SETTING, _LOCATED_SETTING.finer())]
 
@@ -207,9 +207,10 @@ def draft_result(job: BatchJob, batch: Batch, member: int) -> SteadyState:
 
 
 def outcome_of_coarse_run(job: BatchJob, batch: Batch, member: int) -> SteadyState | BatchJob | None:
-    """The outcome of a coarse run without an orbit: a job that measures the exponent, or a result if no steps are left.
+    """Return what follows a coarse run that has not found an orbit.
 
-    None means that the member goes on.
+    This is the result if no steps are left, otherwise a job that measures the exponent, or None if the member
+    continues.
     """
     here = int(batch.state.record.periods[member])
     periods_run = job.periods_run + here
@@ -224,7 +225,7 @@ def outcome_of_coarse_run(job: BatchJob, batch: Batch, member: int) -> SteadySta
 
 
 def take_coarse_orbit(job: BatchJob, batch: Batch, member: int) -> None:
-    """Store what the coarse run found; the member has since run with fine steps."""
+    """Store the orbit that the coarse run found; the member has run with fine steps since then."""
     row = batch.state.search.coarse_orbit[member]
     job.periods_run += int(row[ORBIT_PERIODS])
     regime = _periodic(row[:CHECK_COLUMNS], row[ORBIT_SLOWEST_CONTRACTION], job.periods_run)
@@ -232,7 +233,7 @@ def take_coarse_orbit(job: BatchJob, batch: Batch, member: int) -> None:
 
 
 def _with_period(regime: Regime, period: int) -> Regime:
-    """A regime whose orbit has this period, which divides the one that the coarse run found."""
+    """The regime with this period of its orbit, which divides the one that the coarse run found."""
     if regime.period is None or period == regime.period:
         return regime
     seen = regime.observed_contraction
@@ -250,7 +251,7 @@ def _periodic(check: np.ndarray, slowest_decay: float, periods_run: int) -> Regi
 
 
 def _to_measure(job: BatchJob, batch: Batch, member: int, periods_run: int, record: np.ndarray) -> BatchJob:
-    """A job whose exponent is measured next."""
+    """The job whose exponent is measured next."""
     maxima = job.scaled.scales.forces(batch.maxima(member, IRREGULAR_PERIODS)[0])
     y = batch.state.motion.y[:, member].copy()
     return BatchJob(job.scene, job.scaled, y, periods_run, Stage.EXPONENT, record=record, maxima=maxima,
@@ -258,7 +259,7 @@ def _to_measure(job: BatchJob, batch: Batch, member: int, periods_run: int, reco
 
 
 def unsettled(job: BatchJob, batch: Batch, member: int, periods_run: int) -> SteadyState:
-    """The result of a member whose budget of steps is spent."""
+    """The result of a member that has used up its budget of steps."""
     maxima = job.scaled.scales.forces(batch.maxima(member, IRREGULAR_PERIODS)[0])
     state = job.scaled.to_si(batch.state.motion.y[:, member])
     return SteadyState(job.scene, maxima, Regime.unsettled(periods_run), None, state,
@@ -266,9 +267,9 @@ def unsettled(job: BatchJob, batch: Batch, member: int, periods_run: int) -> Ste
 
 
 def failed(job: BatchJob) -> SteadyState:
-    """A member whose numbers stopped being finite, with the state from which it went on.
+    """The result of a member with numbers that are no longer finite, with the state from which its run started.
 
-    Which bead failed and when is found where it is settled alone (starts.py).
+    Which bead failed, and when, is found when the chain is settled alone (starts.py).
     """
     return SteadyState(job.scene, np.full(3, np.nan), Regime.unsettled(job.periods_run), None, job.scaled.to_si(job.y),
                        not_finite(f"at {job.scene.f:g} Hz"), "not-finite", job.number)

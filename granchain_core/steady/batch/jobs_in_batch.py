@@ -1,14 +1,14 @@
 """Many steady states in batches: settle with coarse steps, then with fine ones; the difference is the error.
 
-Every scene becomes a member of a batch, with coarse steps. Once its orbit is found, the member goes on with fine
+Every scene becomes a member of a batch, with coarse steps. Once its orbit is found, the member continues with fine
 steps, without a return from the kernel. Once its regime is decided, the next scene takes its place.
 
-Coarse run: `check_coarse` (kernels/batch/checks.py) bounds the distance to the orbit; an orbit that was reached by
-extrapolation (kernels/strobes/extrapolation.py) must survive a disturbance. Finer run (kernels/batch/begin.py):
-`check_fine`, until the bound is small or no extrapolation is left; the distance that is left goes into the stated
-error, with the change of the forces. Motions that are not periodic are classified by their Lyapunov exponents
-(steady/exponent_measurements.py), measured beside a neighbouring trajectory in another lane. A scene that is then not
-decided is marked `undecided` and settled alone (settling/single_chain.py).
+In the coarse run, `check_coarse` (kernels/batch/checks.py) bounds the distance to the orbit; an orbit that was reached
+by extrapolation (kernels/strobes/extrapolation.py) must survive a disturbance. The fine run (kernels/batch/begin.py)
+continues with `check_fine` until the bound is small or no extrapolation is left. The remaining distance enters the
+stated error, together with the change of the forces. Motions that are not periodic are classified by their Lyapunov
+exponents (steady/exponent_measurements.py), measured with a neighbouring trajectory in another lane. A scene that is
+still not decided is marked `undecided` and settled alone (settling/single_chain.py).
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ from .job import (
     take_coarse_orbit,
 )
 
-#: [unsettled] Most drive periods of a draft of a curve.
+#: [unsettled] Maximum number of drive periods in a draft of a curve.
 _DRAFT_PERIODS = 300
 
 
@@ -62,13 +62,13 @@ class _JobsInBatch:
     draft, stop : bool, Stop
         Whether only coarse runs are wanted; the flag that ends all runs.
     example : ScaledChain
-        The chain of the start taken last, from which the chain of the next start is scaled.
+        The chain of the most recent start, from which the chain of the next start is scaled.
     rest_state : np.ndarray
-        Scaled state of rest, the same for scenes that differ by their frequency alone.
+        Scaled state of rest, the same for scenes that differ only in their frequency.
     orbits : LocatedOrbits
         Largest forces with located events.
     starts : iterator of Start
-        Starts that are not taken yet.
+        Starts that are not yet jobs.
     jobs : dict of int to BatchJob
         Jobs by the lane of their member.
     neighbours : dict of int to int
@@ -98,7 +98,7 @@ class _JobsInBatch:
         """Put jobs into the free lanes.
 
         A job to be measured takes two lanes. If such a job waits and only one lane is free, this lane stays empty until
-        another is free.
+        another one becomes free.
         """
         while self.free and not self._waits_for_second_lane:
             job = (self.to_measure.pop(0) if self.to_measure else
@@ -114,11 +114,11 @@ class _JobsInBatch:
 
     @property
     def _waits_for_second_lane(self) -> bool:
-        """Whether the one free lane is kept for a job that needs two."""
+        """Whether a free lane is reserved for a job that needs two."""
         return bool(self.to_measure) and len(self.free) < 2
 
     def _next_job(self) -> BatchJob | None:
-        """The job of the next start, if there is one."""
+        """The job of the next start, or None after the last one."""
         start = next(self.starts, None)
         if start is None:
             return None
@@ -131,7 +131,7 @@ class _JobsInBatch:
     def _start(self, member: int, job: BatchJob) -> None:
         """Make a job a member.
 
-        A coarse run is due after `EXAMINED_AFTER` periods at the latest, a fine run once the difference has decayed. A
+        A coarse run is due after at most `EXAMINED_AFTER` periods, and a fine run once the difference has decayed. A
         job whose exponent is measured gets a neighbour.
         """
         if job.stage is Stage.EXPONENT:
@@ -150,7 +150,7 @@ class _JobsInBatch:
                             regime.observed_contraction or 0.0, maxima)
 
     def step(self) -> SteadyState | None:
-        """Run until a member is due; returns its result, or None if the job goes on."""
+        """Run until a member is due; return its result, or None if its job continues."""
         member, finite = self.batch.run()
         job = self.jobs[member]
         measured = job.stage is Stage.EXPONENT
@@ -178,18 +178,18 @@ class _JobsInBatch:
         return None
 
     def _free(self, member: int) -> None:
-        """Take a job out of its lanes; `fill` gives these lanes to other jobs or empties them."""
+        """Remove a job from its lanes; `fill` gives these lanes to other jobs or empties them."""
         del self.jobs[member]
         lanes = [member, self.neighbours.pop(member)] if member in self.neighbours else [member]
         self.free += lanes
         self.newly_free.update(lanes)
 
     def _decide_by_exponent(self, job: BatchJob, member: int) -> SteadyState | None:
-        """The result of a job whose Lyapunov exponents were measured, or None if the job goes on."""
+        """The result of a job whose Lyapunov exponents were measured, or None if the job continues."""
         seen = growth_of(self.batch, member)
         job.periods_run += len(seen.strobes)
         job.y, job.stage = seen.y, Stage.COARSE
-        job.record = np.concatenate([job.record, seen.strobes])[-REMEMBERED:]  # as a chain settled alone is judged
+        job.record = np.concatenate([job.record, seen.strobes])[-REMEMBERED:]  # as for a chain settled alone
         regime = replace(find_period(job.record), periods_run=job.periods_run)
         if regime.period is not None:
             if regime.period > LONGEST_PERIOD:
@@ -210,7 +210,7 @@ class _JobsInBatch:
         comes_in_time = approach_rate * (MOST_SETTLING_PERIODS - job.periods_run) > -math.log(SETTLED_DISTANCE)
         if goes_on and (comes_in_time or converging(job.record)):
             job.measurements.interrupted()
-            self.waiting.append(job)  # the motion comes to its orbit, or to its closed curve, within the budget
+            self.waiting.append(job)  # the motion reaches its orbit or closed curve within the budget
             return None
         if approach_rate == 0.0 and job.measurements.complete < MOST_MEASUREMENTS:
             self._measure(job)
@@ -218,18 +218,18 @@ class _JobsInBatch:
         return self._measured_result(job, replace(latest, name="unsettled"), undecided=True)
 
     def _measured_result(self, job: BatchJob, regime: Regime, undecided: bool) -> SteadyState:
-        """The result of a job whose exponents were measured; once its budget of steps is spent the result is final."""
+        """The result of a job whose exponents were measured; it is final once the budget of steps is used up."""
         return SteadyState(job.scene, job.maxima, regime, None, job.scaled.to_si(job.y), number=job.number,
                            undecided=undecided and job.affordable)
 
     def _measure(self, job: BatchJob) -> None:
-        """Let a job wait for two lanes, behind jobs with at least as many steps a period: the longest begin first."""
+        """Queue a job for two lanes, behind jobs with at least as many steps per period: the longest start first."""
         job.stage = Stage.EXPONENT
         insort(self.to_measure, job, key=lambda one: -one.steps)
 
 
 def batch_results(scenes: Iterator[Scene], stop: Stop, draft: bool = False) -> Iterator[SteadyState]:
-    """Steady states of scenes of one structure and one N, from rest, in the order in which they are decided.
+    """Yield the steady states from rest of scenes of one structure and one N, in the order in which they are decided.
 
     See `batch_states`.
     """
@@ -237,9 +237,9 @@ def batch_results(scenes: Iterator[Scene], stop: Stop, draft: bool = False) -> I
 
 
 def batch_states(starts: Iterator[Start], stop: Stop, draft: bool = False) -> Iterator[SteadyState]:
-    """Steady states that starts of one structure and one N lead to, in the order in which they are decided.
+    """Yield the steady states reached from starts of one structure and one N, in the order in which they are decided.
 
-    To the last bit, results do not depend on which starts share a batch. A draft is the coarse run alone, over few
+    Results do not depend on which starts share a batch, to the last bit. A draft is the coarse run alone, over few
     periods: its results have no errors, and a motion that is not periodic by then is called unsettled. Raises
     `Cancelled`.
     """

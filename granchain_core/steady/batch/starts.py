@@ -1,4 +1,4 @@
-"""Steady states of many starts: in a batch where they can share one and it decides, else one by one."""
+"""Steady states of many starts: in a batch if they can share one and it decides, otherwise one by one."""
 
 from __future__ import annotations
 
@@ -19,21 +19,21 @@ from .threads import on_all_cores
 
 
 def settling_methods(scene: Scene, each: str) -> str:
-    """The methods behind many steady states of `scene` in words, for their provenance; `each` is "point", "cell", …"""
+    """The methods behind many steady states of `scene`, in words for provenance; `each` is "point", "cell", …"""
     alone = f"{methods_alone(scene)} {each} by {each}"
     return f"rk4 corrected at contact events, in batches, {alone}" if can_share_batch(scene) else alone
 
 
 def methods_alone(scene: Scene) -> str:
-    """The methods by which a chain alone comes to its steady state and is computed there."""
+    """The methods by which a chain alone reaches its steady state and is computed there."""
     return DOP853 if following_setting(scene.cuts_tension).method == DOP853 else f"{RK4_SPLIT} or {DOP853}"
 
 
 def settle_starts(starts: Iterable[Start], stop: Stop) -> Iterator[SteadyState]:
-    """Steady states from starts of one structure and one N, in the order in which they are decided.
+    """Yield the steady states from starts of one structure and one N, in the order in which they are decided.
 
-    A start that a batch leaves undecided is settled alone. So is a start that fails in the batch: settled alone, its
-    failure says which bead failed and when. Raises `Cancelled`.
+    A start that a batch leaves undecided is settled alone. So is a start that fails in the batch, because the failure
+    of a chain settled alone tells which bead failed and when. Raises `Cancelled`.
     """
     others = iter(starts)
     first = next(others, None)
@@ -50,6 +50,6 @@ def settle_starts(starts: Iterable[Start], stop: Stop) -> Iterator[SteadyState]:
 
 def settle_on_all_cores(starts: Iterable[Start], stop: Stop | None = None,
                         workers: int | None = None, pause: Callable[[], None] | None = None) -> Iterator[SteadyState]:
-    """Steady states from starts of one structure, as they are found; closing the generator ends it."""
+    """Yield the steady states from starts of one structure as they are found; closing the generator ends the work."""
     ended = Stop()
     return on_all_cores(lambda shared: settle_starts(shared, ended), starts, ended, stop, workers, pause)

@@ -1,6 +1,6 @@
 """Independent work on all cores: threads take items from one iterator and yield results.
 
-Kernels run without the GIL, except brief ones, so threads are enough, and a result needs no copy.
+Kernels run without the GIL, except brief ones, so threads are enough, and results need not be copied.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from ...errors import Cancelled
 from ...execution.cores import usable_cores
 from ...execution.stop import Stop
 
-#: Time between two looks at what the threads have found, and whether it is still wanted [s]. Waking up for each result
-#: would take the GIL from the threads hundreds of times a second.
+#: Interval at which the threads' results and the stop flag are checked [s]. Waking up for each result would take the
+#: GIL from the threads hundreds of times per second.
 _INTERVAL = 0.005
 
 Item = TypeVar("Item")
@@ -41,11 +41,11 @@ class _Shared(Generic[Item]):
 def on_all_cores(work: Callable[[Iterator[Item]], Iterable[Result]], items: Iterable[Item], ended: Stop,
                  stop: Stop | None = None, workers: int | None = None,
                  pause: Callable[[], None] | None = None) -> Iterator[Result]:
-    """The results that `work` yields from `items`, in one thread for each core, in the order of completion.
+    """Yield the results of `work` on `items`, in one thread per core, in the order of completion.
 
-    `stop` is read between results and ends the iteration, as closing the generator does; `ended`, which the kernels of
-    `work` poll, is then set. `pause` is called before an item is drawn and may wait. Whatever exception ends a thread
-    is raised here, and the first one if there are several; so is `Cancelled`, unless `ended` or `stop` asked for it.
+    `stop` is checked between results and ends the iteration, as closing the generator does; `ended`, which the kernels
+    of `work` poll, is then set. `pause` is called before an item is drawn and may wait. An exception that ends a thread
+    is raised here, the first one if there are several; so is `Cancelled`, unless `ended` or `stop` is set.
     """
     shared: _Shared[Item] = _Shared(items, pause)
     results: queue.SimpleQueue[Any] = queue.SimpleQueue()
@@ -79,9 +79,9 @@ def on_all_cores(work: Callable[[Iterator[Item]], Iterable[Result]], items: Iter
 
 def _share(work: Callable[[Iterator[Item]], Iterable[Result]], items: Iterator[Item],
            results: queue.SimpleQueue[Any], a_thread_ended: threading.Event, stops: tuple[Stop | None, ...]) -> None:
-    """One thread's share into `results`: its results, the exception that ended it, if any, and None.
+    """Put one thread's share into `results`: its results, the exception that ended it, if any, and finally None.
 
-    `Cancelled` is no exception to report if one of `stops` is set.
+    `Cancelled` is not reported if one of `stops` is set.
     """
     try:
         for result in work(items):

@@ -43,9 +43,9 @@ class CurvePoint:
     regime : Regime
         What kind of motion it is.
     force_errors : ForceErrors
-        Relative errors of the three; None where the motion is not periodic.
+        Relative errors of the three; each None where the motion is not periodic.
     state : State
-        Where the chain is at drive phase 0.
+        State of the chain at drive phase 0.
     failure : str
         A sentence where the computation failed.
     status : str
@@ -78,9 +78,10 @@ class CurvePoint:
 
     @property
     def error_estimate(self) -> float | None:
-        """`force_errors.output`, by its name in the command line's JSON.
+        """`force_errors.output`, under its name in the command line's JSON.
 
-        Of a motion this name is the error of the displacements (docs/result-files.md, "Which name is which error").
+        For a single motion, this name means the error of the displacements (docs/result-files.md, "Which name is which
+        error").
         """
         return self.force_errors.output
 
@@ -132,7 +133,7 @@ class Curve(Labelled):
         return np.array([getattr(p, name) for p in self.points])
 
     def tables(self) -> tuple[Table, ...]:
-        """One table, `curve`: largest forces with errors, regime with its evidence, and status over the frequency."""
+        """One table, `curve`: largest forces with errors, regime with its evidence, and status, over the frequency."""
         along = ("frequency",)
         forces = np.array([[getattr(p, name) for name in MAXIMA] for p in self.points]).reshape(-1, 3)
         errors = np.array([p.force_errors.row for p in self.points]).reshape(-1, 3)
@@ -146,9 +147,9 @@ class Curve(Labelled):
             "status": Column(outcomes, along, "", "done, or how the computation failed")}),)
 
     def attributes(self) -> dict[str, Attribute]:
-        """Start and cost, and where it comes from; `accuracy_reached` is the largest error of an output force.
+        """Start, cost and provenance; `accuracy_reached` is the largest error of an output force.
 
-        Only points that were settled alone were computed to `accuracy_asked`, and at best to `CURVE_ACCURACY`.
+        Only points that were settled alone were computed to `accuracy_asked`, at best to `CURVE_ACCURACY`.
         """
         method = settling_methods(self.scene, "point")
         reached = [p.force_errors.output for p in self.points if p.force_errors.output is not None]

@@ -8,13 +8,13 @@ from collections.abc import Iterator, Sequence
 
 from ...inputs.checks import unknown_name
 
-#: The knobs of one point of a curve that differ from its neighbours', by their names.
+#: The knobs by which one point of a curve differs from its neighbours: values by name.
 Knobs = dict[str, float]
 
 #: Ways to start the points of a curve: each from rest, or each from the state of the one before, upwards or downwards.
 CURVE_STARTS = ("rest", "up", "down")
-#: One point in so many has a frequency of the lowest, which come first. Of `sec2` on two threads the last of 298 points
-#: then ends 3 % after the mean, with 8 or 32 it ends 5 % after it, and with none 8 %.
+#: One in this many points, those of the lowest frequencies, comes first. With `sec2` on two threads, the last of 298
+#: points then ends 3 % after the mean; with 8 or 32 it ends 5 % after it, and with none 8 %.
 _LOWEST = 16
 
 
@@ -33,10 +33,10 @@ def coarse_first(count: int) -> list[int]:
 
 
 def used_and_missing(known: Sequence[float], frequencies: Sequence[float], start: str) -> tuple[list[int], list[int]]:
-    """Places of the known points that a curve can use, and of the frequencies that are missing, in order of computing.
+    """Indices of the known points that a curve can use, and of the missing frequencies, in order of computation.
 
-    From rest every known point is used. Where the state is carried along, only those up to the first that is missing.
-    Raises `BadInput` for an unknown start.
+    From rest, every known point is used. Where the state is carried along, only those before the first missing
+    frequency are. Raises `BadInput` for an unknown start.
     """
     if start not in CURVE_STARTS:
         raise unknown_name("start", start, CURVE_STARTS)
@@ -60,9 +60,9 @@ class LongestFirst:
     """Points of a curve from rest, in the order in which threads draw them: those that may take long come early.
 
     A long point that is drawn last keeps one thread busy when the others have nothing left to do. The lowest
-    frequencies come first, since their periods have the most steps. The rest is coarse first, up to the last points,
-    which lie between others: of these, the ones whose neighbours took longest come first, since next to a bifurcation
-    all settle slowly.
+    frequencies come first, since their periods have the most steps. The others follow in the order given, coarse first.
+    The last half of these lies between computed points: those whose neighbours took longest come first, since all
+    points near a bifurcation settle slowly.
     """
 
     def __init__(self, points: list[Knobs]) -> None:
@@ -86,5 +86,5 @@ class LongestFirst:
         yield from sorted(self._between, key=of_neighbours, reverse=True)
 
     def finished(self, frequency: float, periods: int) -> None:
-        """Note the time that a point took. One still under way when the last points begin counts as the longest."""
+        """Note the time that a point took. A point still running when the last half begins counts as the longest."""
         self._time[frequency] = periods / frequency

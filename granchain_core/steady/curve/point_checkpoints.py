@@ -20,7 +20,7 @@ _NUMBERS = ("frequency", "max_output_force", "max_output_force_elastic", "max_in
 
 
 def point_checkpoints(request: CurveRequest, out: str | Path) -> Kept[CurvePoint]:
-    """The folder for the points of the curve that will be in `out`."""
+    """The checkpoint folder for the points of the curve that will be written to `out`."""
     frequencies = request.frequencies
     words = (f"{request.scene.name} from {frequencies[0]:g} to {frequencies[-1]:g} Hz ({len(frequencies)}, "
              f"{request.start})")
@@ -28,7 +28,7 @@ def point_checkpoints(request: CurveRequest, out: str | Path) -> Kept[CurvePoint
 
 
 def points_in(kept: Kept[CurvePoint]) -> list[CurvePoint]:
-    """The points in the blocks that are whole, in the order in which they were finished."""
+    """The points in the complete blocks, in the order in which they were finished."""
     return [_point(record) for content in kept.blocks() for record in json.loads(content)]
 
 
@@ -45,7 +45,7 @@ def _as_json(point: CurvePoint) -> dict[str, Any]:
 
 def _point(record: dict[str, Any]) -> CurvePoint:
     regime = dict(record["regime"])
-    for name in ("lyapunov", "window_ratios"):  # the second is missing where an earlier version wrote
+    for name in ("lyapunov", "window_ratios"):  # files of earlier versions lack the second
         regime[name] = tuple(regime[name]) if regime.get(name) else None
     displacement, velocity, phase = record["state"]
     return CurvePoint(**{name: record[name] for name in _NUMBERS}, regime=Regime.from_json(regime),

@@ -1,4 +1,4 @@
-"""A request for a curve: one object for the computation, for its checkpoints and for a finished file."""
+"""A request for a curve: one object for the computation, its checkpoints and the finished file."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .resonance_curve import resonance_curve
 class CurveRequest:
     """The arguments of `resonance_curve` that change the points of a curve.
 
-    A new field enters the digest and the computation by itself; its default must be what curves were before it.
+    A new field enters the digest and the computation automatically; its default must reproduce earlier curves.
     """
 
     scene: Scene
@@ -31,7 +31,7 @@ class CurveRequest:
 
     @property
     def digest(self) -> str:
-        """Hash of all fields; the scene's own frequency does not count, and a field at its default is left out."""
+        """Hash of all fields; the scene's own frequency is ignored, and later fields are left out at their defaults."""
         hashed: dict[str, Any] = {
             "scene": self.scene.evolve(f=self.frequencies[0]).digest, "frequencies": self.frequencies,
             "start": self.start}

@@ -25,17 +25,17 @@ from ..settling.single_chain import settle_or_failure
 from .curve import Curve, CurvePoint
 from .order import Knobs, LongestFirst, used_and_missing
 
-#: Most points of one curve.
+#: Maximum number of points of one curve.
 MOST_POINTS = 100_000
-#: Points of one task of a scheduler's worker.
+#: Number of points in one task for a scheduler's worker.
 POINTS_IN_TASK = 64
 
 
 def checked_points(scene: Scene, frequencies: Sequence[float] | np.ndarray,
                    amplitude: Amplitude | None = None) -> list[Knobs]:
-    """The knobs that change from point to point of a curve: f, and A0 where it follows the frequency.
+    """Check the points of a curve; return the knobs that change between them: f, and A0 where it follows the frequency.
 
-    Raises `BadInput` for no points, too many, or a frequency or amplitude out of range.
+    Raises `BadInput` for no points, too many points, or a frequency or amplitude out of range.
     """
     refuse_undriven(scene)
     numbers = numbers_in("Frequencies", frequencies)
@@ -50,7 +50,7 @@ def checked_points(scene: Scene, frequencies: Sequence[float] | np.ndarray,
 
 def iter_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: str = "rest",
                stop: Stop | None = None, workers: int | None = None) -> Iterator[CurvePoint]:
-    """Points of a resonance curve as they are finished.
+    """Yield the points of a resonance curve as they are finished.
 
     Parameters
     ----------
@@ -59,12 +59,12 @@ def iter_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: s
     frequencies : sequence of float
         Drive frequencies [Hz].
     start : str
-        "rest": every point begins at rest, on all cores; "up" or "down": each begins in the state of the
-        one before it.
+        "rest": every point starts from rest, on all cores; "up" or "down": each starts from the state of the
+        previous one.
     stop : Stop, optional
         When set, the curve ends and running points are abandoned.
     workers : int, optional
-        Threads; one for each core if not given.
+        Number of threads; by default one per core.
 
     Yields
     ------
@@ -74,8 +74,8 @@ def iter_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: s
     Raises
     ------
     BadInput
-        When the first point is asked for: no frequency, too many, one out of range, another word for `start`, or a
-        scene without a drive.
+        When the first point is requested: no frequency, too many, one out of range, an unknown `start`, or a scene
+        without a drive.
 
     Examples
     --------
@@ -90,7 +90,7 @@ def iter_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: s
 def _parted(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: str,
             known: Sequence[CurvePoint] = (),
             amplitude: Amplitude | None = None) -> tuple[list[CurvePoint], list[Knobs]]:
-    """The known points that can be used and the knobs of those that are left, both in the order of computing."""
+    """The known points that can be used and the knobs of the missing ones, both in the order of computation."""
     points = checked_points(scene, frequencies, amplitude)
     used, missing = used_and_missing([point.frequency for point in known], [knobs["f"] for knobs in points], start)
     return [known[i] for i in used], [points[i] for i in missing]
@@ -98,7 +98,7 @@ def _parted(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: str,
 
 def _computed(scene: Scene, left: list[Knobs], before: CurvePoint | None, start: str, stop: Stop | None,
               workers: int | None) -> Iterator[CurvePoint]:
-    """The remaining points; where the state is carried along, each starts in the state of the point before."""
+    """Yield the remaining points; where the state is carried along, each starts from the state of the previous one."""
     if left and start == "rest":
         yield from _from_rest(scene, left, stop, workers)
     elif left:
@@ -106,7 +106,7 @@ def _computed(scene: Scene, left: list[Knobs], before: CurvePoint | None, start:
 
 
 def _carried(scene: Scene, left: list[Knobs], before: CurvePoint | None, stop: Stop | None) -> Iterator[CurvePoint]:
-    """Points one after another, each from the state of the one before; from rest after one that failed."""
+    """Yield points one after another, each from the state of the previous one, or from rest if that one failed."""
     stop = Stop() if stop is None else stop
     state = None if before is None or before.failure else before.state
     for knobs in left:
@@ -121,7 +121,7 @@ def _carried(scene: Scene, left: list[Knobs], before: CurvePoint | None, stop: S
 
 
 def _from_rest(scene: Scene, left: list[Knobs], stop: Stop | None, workers: int | None) -> Iterator[CurvePoint]:
-    """Independent points on all cores: in batches where they can, else one by one; closing the generator stops them."""
+    """Yield independent points on all cores, in batches where possible; closing the generator stops the work."""
     ended, order = Stop(), LongestFirst(left)
 
     def work(shared: Iterator[Knobs]) -> Iterator[CurvePoint]:
@@ -133,14 +133,13 @@ def _from_rest(scene: Scene, left: list[Knobs], stop: Stop | None, workers: int 
 
 
 def _points(scene: Scene, left: Iterator[Knobs], ended: Stop) -> Iterator[CurvePoint]:
-    """Points from rest in one thread, which makes the scenes: made beforehand, all other threads would wait for them.
-    """
+    """Yield points from rest in one thread, which also creates the scenes, so that other threads do not wait for it."""
     for steady_state in settle_starts((Start(scene.evolve(**knobs)) for knobs in left), ended):
         yield CurvePoint.of(steady_state)
 
 
 def _scheduled(scheduler: Any, scene: Scene, left: list[Knobs], stop: Stop | None) -> Iterator[CurvePoint]:
-    """Independent points by the workers of a scheduler."""
+    """Yield independent points, computed by the workers of a scheduler."""
     try:
         for _, points in results(scheduler, block_points, [(scene, block) for block in dealt(left, POINTS_IN_TASK)],
                                  stop):
@@ -150,15 +149,15 @@ def _scheduled(scheduler: Any, scene: Scene, left: list[Knobs], stop: Stop | Non
 
 
 def block_points(scene: Scene, left: list[Knobs]) -> list[CurvePoint]:
-    """Points of one structure from rest, computed in this thread: the work of one worker."""
+    """Compute points of one structure from rest in this thread: the task of one worker."""
     return list(_points(scene, iter(left), Stop()))
 
 
 def draft_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, stop: Stop) -> list[CurvePoint]:
-    """A draft of the curve from rest, on one core, to be drawn while a knob still moves.
+    """Compute a draft of the curve from rest on one core, to be drawn while a knob is still moving.
 
-    Coarse steps and few periods: no errors are stated, and motions that are not periodic by then are unsettled. Empty
-    for scenes that a batch cannot run. Raises `BadInput` and `Cancelled`.
+    It has coarse steps and few periods: no errors are stated, and motions that are not periodic by then are unsettled.
+    Returns an empty list for scenes that a batch cannot run. Raises `BadInput` and `Cancelled`.
     """
     points = checked_points(scene, frequencies)
     if not can_share_batch(scene):
@@ -171,10 +170,10 @@ def resonance_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, sta
                     stop: Stop | None = None, on_point: Callable[[CurvePoint], None] | None = None,
                     workers: int | None = None, known: Sequence[CurvePoint] = (),
                     amplitude: Amplitude | None = None, scheduler: Any = None) -> Curve:
-    """The resonance curve: largest forces of the steady state over the drive frequency.
+    """Compute the resonance curve: largest forces of the steady state over the drive frequency.
 
-    Points from rest are computed in batches with fixed steps, whatever the scene's `accuracy`, and state the error they
-    have. Points that are settled alone are computed to `accuracy`, at best to 1e-5.
+    Points from rest are computed in batches with fixed steps, whatever the scene's `accuracy`, and report their actual
+    error. Points that are settled alone are computed to `accuracy`, at best to 1e-5.
 
     Parameters
     ----------
@@ -183,32 +182,32 @@ def resonance_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, sta
     frequencies : sequence of float
         Drive frequencies [Hz], 1 to 100,000 of them, in any order.
     start : str
-        "rest": every point begins at rest, on all cores; "up" or "down": each point begins in the state of the one
-        before it, so hysteresis shows.
+        "rest": every point starts from rest, on all cores; "up" or "down": each point starts from the state of the
+        previous one, so that hysteresis shows.
     stop : Stop, optional
         When set, the curve ends with its finished points; running points are abandoned.
     on_point : callable, optional
         Called with each `CurvePoint` as it is finished.
     workers : int, optional
-        Threads; one for each core if not given.
+        Number of threads; by default one per core.
     known : sequence of CurvePoint
         Points of this curve that are already computed, as `on_point` received them.
     amplitude : Amplitude, optional
-        The drive amplitude over the frequency; the scene's A0 if not given. The spring k stays as it is.
+        The drive amplitude over the frequency; by default the scene's A0. The spring k is not changed.
     scheduler : distributed.Client, optional
-        Points from rest are computed by its workers.
+        Its workers compute the points from rest.
 
     Returns
     -------
     Curve
-        Its points in ascending frequency. If the computation of a point fails, its `failure` says why, and the curve
+        The points in ascending frequency. If the computation of a point fails, its `failure` says why, and the curve
         continues.
 
     Raises
     ------
     BadInput
-        No frequency, too many, one out of range, another word for `start`, a scene without a drive, or a scheduler for
-        a sweep.
+        No frequency, too many, one out of range, an unknown `start`, a scene without a drive, or a scheduler for a
+        sweep.
 
     Examples
     --------

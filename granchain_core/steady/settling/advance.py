@@ -1,8 +1,8 @@
-"""Running a chain to its steady state until its regime is decided.
+"""Running a chain towards its steady state until its regime is decided.
 
-The chain runs from the start by the setting of `following_setting` (integrate/methods.py) until the distance bound is
+The chain runs from its start with the setting of `following_setting` (integrate/methods.py) until the distance bound is
 small (steady/regime_criteria.py) or the regime is decided otherwise (regime_decisions.py). A periodic orbit is then
-computed again with a finer setting (refine_orbit.py); recording.py records what was reached.
+computed again with a finer setting (refine_orbit.py), and recording.py records the motion.
 """
 
 from __future__ import annotations
@@ -22,19 +22,19 @@ from ...scene.state import State, rest
 from ..regime_criteria import find_period, rounding_of
 from .regime_decisions import EXAMINED_AFTER, REMEMBERED, Decisions
 
-#: [unsettled] Most steps of a chain alone, or of a coarse run. They take 6 s for eleven beads, at 60 ns a step; where
-#: tension is cut, a hundred times as long.
+#: [unsettled] Maximum number of steps of a chain settled alone, or of a coarse run. They take 6 s for eleven beads, at
+#: 60 ns per step; where tension is cut, a hundred times as long.
 MOST_SETTLING_STEPS = 100_000_000
 #: [period n] A chain alone: drive periods before the first check for a period.
 _FIRST_CHECK = 2
-#: [period n] A chain alone: fewest drive periods between two checks; later an eighth of those that were run.
+#: [period n] A chain alone: fewest drive periods between two checks; later an eighth of those run so far.
 _BETWEEN_CHECKS = 8
 
 
 class SettlingRun:
     """A chain on its way to its steady state, run chunk by chunk until the regime is decided.
 
-    `periods_run` is the number of drive periods after which `start` was reached: they count as run.
+    `periods_run` is the number of drive periods that were run before `start`; they are counted.
     """
 
     def __init__(self, scene: Scene, start: State | None, stop: Stop | None, periods_run: int = 0) -> None:
@@ -50,7 +50,7 @@ class SettlingRun:
         self.decided = False
 
     def _begin(self, periods_run: int) -> None:
-        """Begin a new record of strobes at the engine's state, after `periods_run` periods; `_here` counts its own."""
+        """Begin a record of strobes at the engine's state, after `periods_run` periods; `_here` counts from there."""
         first, scales = self.engine.state, self.engine.scaled.scales
         self.strobes = np.array([[scales.scaled_displacements(first.displacement),
                                   scales.scaled_velocities(first.velocity)]])
@@ -59,7 +59,7 @@ class SettlingRun:
         self.regime = Regime.unsettled(periods_run)
 
     def go_on(self, seconds: float) -> None:
-        """Run until the regime is decided, the budget is spent, or about `seconds` have passed."""
+        """Run until the regime is decided, the budget is used up, or about `seconds` have passed."""
         end = time.perf_counter() + seconds
         while not self.decided and self.advance_for(end - time.perf_counter()):
             self._decide()
@@ -67,7 +67,7 @@ class SettlingRun:
                 return
 
     def advance_for(self, seconds: float) -> bool:
-        """Run until a decision is due, which may need other kernels, or for `seconds`; True if one is due."""
+        """Run for `seconds`, or until a decision is due, which may need other kernels; return True if one is due."""
         end, per_period = time.perf_counter() + seconds, 0.0
         while not self._finished:
             left = end - time.perf_counter()
@@ -84,10 +84,10 @@ class SettlingRun:
         return True
 
     def _note(self, strobes: np.ndarray) -> None:
-        """Add strobes to the record, of which only the last are kept, and check for a period when it is time for that.
+        """Add strobes to the record, of which only the last are kept, and check for a period when a check is due.
 
-        An eighth of the periods so far are run between two checks, so that checks cost little. Their times depend on
-        the motion alone, and not on the speed of this machine.
+        The interval between two checks is an eighth of the periods so far, so that checks cost little. When they are
+        due depends only on the motion, and not on the speed of the machine.
         """
         self._here += len(strobes)
         self.strobes = np.concatenate([self.strobes[-REMEMBERED:], strobes])
@@ -97,7 +97,7 @@ class SettlingRun:
         self.regime = replace(self.regime, periods_run=self._run_before + self._here)
 
     def _steps_per_period(self) -> int:
-        """Steps in a drive period; with error control their mean so far."""
+        """Steps per drive period; with error control, their mean so far."""
         if not METHODS[self.engine.setting.method].error_control:
             return self.engine.grid
         return max(1, self.engine.counts.steps // max(1, self.regime.periods_run - self._first))
@@ -111,9 +111,9 @@ class SettlingRun:
         return self.regime.name == "periodic" or self._steps_left() <= 0 or self._here >= self._stop_at
 
     def _decide(self) -> None:
-        """Take the next decision: a regime, a state further on from which the motion goes on, or just more periods.
+        """Make the next decision: a regime, a later state from which the motion continues, or just more periods.
 
-        Where the budget of steps is spent the chain stays unsettled: more evidence would cost as much again.
+        If the budget of steps is used up, the chain remains unsettled: more evidence would cost as much again.
         """
         if self._steps_left() <= 0 and self.regime.name != "periodic":
             self.decided = True
@@ -132,7 +132,7 @@ class SettlingRun:
 
 
 def run_until_settled(scene: Scene, start: State | None, stop: Stop | None, periods_run: int = 0) -> SettlingRun:
-    """Run to the end of the budget or to the steady state, without pictures; `periods_run` came before the start."""
+    """Run to the steady state, or to the end of the budget; `periods_run` drive periods came before `start`."""
     settling = SettlingRun(scene, start, stop, periods_run)
     settling.go_on(np.inf)
     return settling

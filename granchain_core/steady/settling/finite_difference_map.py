@@ -1,9 +1,8 @@
 """The n-period stroboscopic map, its derivative by finite differences, and its fixed points.
 
 While a chain settles, claims near |μ| = 1 are tested with this map: its kernels are already compiled, and it allows cut
-tension, with dop853 in place of fixed steps. `StroboscopicMap` (orbits/stroboscopic_map.py), whose
-derivative is the tangent flow, is for orbits that are asked for. Both agree on |μ| to 1e-5
-(tests/numerics/test_regime_labels.py).
+tension, with dop853 instead of fixed steps. `StroboscopicMap` (orbits/stroboscopic_map.py), whose derivative is the
+tangent flow, is for orbits that the user requests. Both agree on |μ| to 1e-5 (tests/numerics/test_regime_labels.py).
 """
 
 from __future__ import annotations
@@ -19,21 +18,21 @@ from ...scene import Scene
 from ..residuals import ACCEPTED_FIXED_STEP_RESIDUAL, FIXED_STEP_RESIDUAL_GOAL, least_displacement, orbit_change
 from ..returns import sizes
 
-#: [no threshold] Steps in place of one default step: multipliers then differ from those of a tangent flow by about
-#: 1e-6.
+#: [no threshold] Number of steps that replace one default step: multipliers then differ from those of the tangent flow
+#: by about 1e-6.
 _REFINEMENT = 4.0
-#: [no threshold] Half the distance of the two states of a central difference, relative to the largest displacement or
-#: w. The error is its square times the map's third derivative, plus the method's noise divided by it. The noise is
-#: about 1e-10, and seldom up to 5e-9: the map jumps where a contact event passes the end of a step.
+#: [no threshold] Half the distance between the two states of a central difference, relative to the largest displacement
+#: or w. The error is its square times the map's third derivative, plus the method's noise divided by it. The noise is
+#: about 1e-10, in rare cases up to 5e-9: the map jumps where a contact event passes the end of a step.
 _DIFFERENCE = 1e-5
-#: [no threshold] Distance of the two states of a one-sided difference, relative to the largest displacement or w. The
-#: error is of the order of this distance times the map's second derivative.
+#: [no threshold] Distance between the two states of a one-sided difference, relative to the largest displacement or w.
+#: The error is of the order of this distance times the map's second derivative.
 _ONE_SIDED_DIFFERENCE = 1e-6
-#: [period n, followed] Most iterations of Newton's method.
+#: [period n, followed] Maximum number of iterations of Newton's method.
 _MOST_ITERATIONS = 10
-#: [no threshold] The derivative is renewed if an iteration leaves more than this fraction of the residual.
+#: [no threshold] The derivative is recomputed if an iteration leaves more than this fraction of the residual.
 _RENEWAL_FRACTION = 0.1
-#: [period n, followed] Most sizes of a Newton step that are tried, each half of the one before.
+#: [period n, followed] Maximum number of sizes tried for one Newton step, each half of the previous one.
 _HALVINGS = 5
 
 
@@ -52,7 +51,7 @@ class FiniteDifferenceMap:
         return self.inner(self.engine.y)
 
     def passed(self, x: np.ndarray, first: int, between: int) -> tuple[np.ndarray, np.ndarray]:
-        """The first `first` states (first, 2N) on the way from x, and as many after `between` more."""
+        """The first `first` iterates (first, 2N) from x on, and as many again after `between` more."""
         self.engine.start_scaled(x)
         early = self._next(first)
         self.engine.periods(self.periods * between, watch=False)
@@ -66,7 +65,7 @@ class FiniteDifferenceMap:
         return np.array(states)
 
     def inner(self, y: np.ndarray) -> np.ndarray:
-        """The beads' part of a whole state array."""
+        """The beads' entries of a full state array."""
         return self.engine.scaled.beads_of(y)
 
     def relative(self, change: np.ndarray, x: np.ndarray) -> float:
@@ -74,7 +73,7 @@ class FiniteDifferenceMap:
         return orbit_change(change, x, self.engine.scaled.beta)
 
     def derivative(self, x: np.ndarray, central: bool = True) -> np.ndarray:
-        """The derivative (2N, 2N) by differences; one-sided ones take half the time and are good to about 1e-4."""
+        """The derivative (2N, 2N) by differences; one-sided ones take half the time and are accurate to about 1e-4."""
         matrix, difference = np.zeros((len(x), len(x))), _DIFFERENCE if central else _ONE_SIDED_DIFFERENCE
         width = difference * sizes(x, least_displacement(x, self.engine.scaled.beta))
         middle = None if central else self(x)
@@ -103,14 +102,14 @@ class FixedPoint:
 
 
 def fixed_point(stroboscopic_map: FiniteDifferenceMap, x: np.ndarray) -> FixedPoint | None:
-    """The fixed point to which Newton's method converges from x; None where it does not.
+    """Return the fixed point to which Newton's method converges from x, or None if it does not converge.
 
-    The derivative is computed anew only where the present one does not reduce the residual enough: by differences it
-    costs 4N maps, by tangents (orbits/damped_newton.py) as much as two.
+    The derivative is computed again only where the current one does not reduce the residual enough: by differences it
+    costs 4N maps, by tangents (orbits/damped_newton.py) only as much as two.
     """
     try:
         return _newton(stroboscopic_map, x)
-    except (ComputationError, np.linalg.LinAlgError):  # raised where a trial state cannot be followed, or |μ| = 1
+    except (ComputationError, np.linalg.LinAlgError):  # where a trial state cannot be integrated, or |μ| = 1
         return None
 
 

@@ -2,9 +2,9 @@
 
 A motion may stay near an unstable orbit for hundreds of periods, and may need thousands to reach a stable one;
 meanwhile both look alike. So the orbit itself is found by Newton's method, and its multipliers predict the growth of
-small perturbations. The prediction is tested: from its present distance and from smaller and smaller ones, the motion
-must approach the orbit about as fast as the multipliers say. The search for orbits that a motion does not follow, which
-has no limit of the distance, is orbits/search.py.
+small perturbations. The prediction is tested: from its current distance and from smaller and smaller ones, the motion
+must approach the orbit about as fast as the multipliers predict. The search for orbits that a motion does not follow,
+at any distance, is in orbits/search.py.
 """
 
 from __future__ import annotations
@@ -23,46 +23,46 @@ from ..residuals import least_displacement
 from ..returns import shorter_periods
 from .finite_difference_map import FiniteDifferenceMap, FixedPoint, fixed_point
 
-#: [period n] A chain alone: an unconfirmed claim needs multipliers up to this many beads. Up to there the derivative of
-#: the map is computed.
+#: [period n] A chain alone: an unconfirmed claim needs multipliers up to this many beads. Up to this number, the
+#: derivative of the map is computed.
 MOST_BEADS_WITH_MULTIPLIERS = 100
-#: [period n] An orbit counts as stable if |μ| is below 1 by more than this. No |μ| is known better.
+#: [period n] An orbit counts as stable if |μ| is below 1 by more than this. No |μ| is known more accurately.
 MODULUS_ERROR = 1e-5
-#: [followed] Largest relative change over n periods with which an orbit of period n is looked for, and largest distance
-#: from the orbit that is then found.
+#: [followed] Largest relative change over n periods at which an orbit of period n is sought, and largest distance from
+#: the orbit that is then found.
 NEAR_AN_ORBIT = 0.1
-#: [quasi-periodic] A batch: a motion whose least change over 1 to 16 periods is below this is settled alone, where the
-#: orbit near it is examined. On closed curves of section 2 and of the rig the least change was 1.8e-3 or more, on slow
-#: approaches 2.2e-4 or less.
+#: [quasi-periodic] In a batch, a motion whose least change over 1 to 16 periods is below this is settled alone, where
+#: the orbit near it is examined. On closed curves of section 2 and of the rig, the least change was 1.8e-3 or more; on
+#: slow approaches it was 2.2e-4 or less.
 _ALMOST_PERIODIC = 1e-3
-#: [quasi-periodic] A batch: number of last changes that must all be below `_ALMOST_PERIODIC`. On a closed curve a
-#: motion may hardly move for some periods, and then goes on.
+#: [quasi-periodic] In a batch, number of last changes that must all be below `_ALMOST_PERIODIC`. On a closed curve, a
+#: motion may hardly move for some periods, and then continue.
 _ALMOST_PERIODIC_CHANGES = 32
 #: [followed] The period tried is the shortest over which the motion changes by at most this many times the least
 #: change.
 _CHANGE_FACTOR = 3.0
-#: [followed] Factor from one tested distance to the next. Near an orbit that has just become stable there may be a
-#: closed curve on which the motion stays, and distances vary by some per cent: hence several distances, and large parts
-#: of each.
+#: [followed] Factor from one tested distance to the next. Near an orbit that has just become stable, the motion may
+#: stay on a closed curve, and distances vary by a few per cent: hence several distances, and large fractions of each.
 _DISTANCE_FACTOR = 0.4
 #: [followed] Smallest distance from that orbit that is tested, relative to the orbit.
 _SMALLEST_DISTANCE = 1e-5
-#: [followed] Fraction of a distance that must decay by |μ| in the orbits of the test. It sets their number.
+#: [followed] Fraction of a distance that must decay, as predicted by |μ|, during the orbits of the test. It sets their
+#: number.
 _PREDICTED_FRACTION = 0.2
-#: [followed] Most orbits of the test.
+#: [followed] Maximum number of orbits in the test.
 _MOST_ORBITS = 3000
 #: [followed] Fraction of the predicted decay that must be observed.
 _OBSERVED_FRACTION = 0.3
-#: [followed] Orbits at the beginning and at the end of the test, of which the largest distance counts. A distance may
-#: turn as it shrinks.
+#: [followed] Number of orbits at the beginning and at the end of the test, of which the largest distance counts. A
+#: distance may oscillate as it shrinks.
 _COMPARED_ORBITS = 16
-#: [followed] Directions with |μ| below this, or below this part of the largest |μ|, are left out of the distance. They
-#: have decayed within `_COMPARED_ORBITS` orbits.
+#: [followed] Directions with |μ| below this, or below this fraction of the largest |μ|, are left out of the distance.
+#: They have decayed within `_COMPARED_ORBITS` orbits.
 _SLOW_DIRECTION = 0.3
-#: [followed] A departure is enlarged along the growing directions to this part of the motion.
+#: [followed] A departure is enlarged along the growing directions to this fraction of the motion.
 _ENLARGED_LENGTH = 3e-3
-#: [period n] An orbit that is back within this, relatively, after a part of its period has that shorter period. The
-#: fixed-step map is known less well than the one of `granchain_core/orbits/stroboscopic_map.py`.
+#: [period n] An orbit that returns to within this relative distance after a fraction of its period has that shorter
+#: period. The fixed-step map is less accurate than that of `granchain_core/orbits/stroboscopic_map.py`.
 _SAME_ORBIT_DISTANCE = 1e-6
 
 
@@ -101,7 +101,7 @@ class NearbyOrbit:
         return self.point.residual / max(MODULUS_ERROR, 1.0 - self.modulus)
 
     def approached(self) -> bool:
-        """Whether the motion goes to this orbit: it comes nearer from its present and from all shorter distances."""
+        """Whether the motion approaches this orbit from its current distance and from all shorter ones."""
         if not self.stable or self.distance_of_motion > NEAR_AN_ORBIT:
             return False
         rows = _slow_coordinates(self.point.derivative, max(_SLOW_DIRECTION, _SLOW_DIRECTION * self.modulus))
@@ -117,7 +117,7 @@ class NearbyOrbit:
                 return True
 
     def _largest_lengths(self, rows: np.ndarray, offset: np.ndarray, orbits: int) -> tuple[float, float]:
-        """Largest lengths of an offset from the orbit, now and after `orbits` orbits; infinite if the map fails."""
+        """Largest lengths of an offset from the orbit, now and after `orbits` orbits; (0, inf) if the map fails."""
         try:
             passed = self.stroboscopic_map.passed(self.point.x + offset, _COMPARED_ORBITS, orbits)
         except ComputationError:
@@ -126,9 +126,9 @@ class NearbyOrbit:
         return now, later
 
     def amplified_departure(self) -> np.ndarray | None:
-        """A later state of a motion that leaves this orbit, with its part along the growing directions enlarged.
+        """A later state of a motion that leaves this orbit: its offset along the growing directions, enlarged.
 
-        None if the motion is as far away already.
+        None if the motion is already as far away.
         """
         values, right = np.linalg.eig(self.point.derivative)
         grows = np.abs(values) > 1.0
@@ -141,7 +141,7 @@ class NearbyOrbit:
 
 
 def _slow_coordinates(matrix: np.ndarray, slowest: float) -> np.ndarray:
-    """Left eigenvectors as rows: in these coordinates every slow direction shrinks by its own μ."""
+    """Left eigenvectors as rows: in these coordinates, every slow direction shrinks by its own μ."""
     values, vectors = np.linalg.eig(matrix.T)
     return vectors[:, np.abs(values) >= slowest].T
 
@@ -151,7 +151,7 @@ def _lengths(rows: np.ndarray, offsets: np.ndarray) -> np.ndarray:
 
 
 def orbit_of(scene: Scene, period: int, x: np.ndarray, stop: Stop) -> NearbyOrbit | None:
-    """The orbit of `period` drive periods, or of a divisor of them, that Newton's method finds from x; else None."""
+    """Find an orbit of `period` drive periods, or of a divisor, by Newton's method from x; None if it finds none."""
     stroboscopic_map = FiniteDifferenceMap(scene, period, stop)
     point = fixed_point(stroboscopic_map, x)
     if point is None:
@@ -166,7 +166,7 @@ def orbit_of(scene: Scene, period: int, x: np.ndarray, stop: Stop) -> NearbyOrbi
 
 
 def seen_modulus(scene: Scene, period: int, x: np.ndarray, stop: Stop, refine: float) -> float:
-    """Largest |μ| at a settled state by one-sided differences: quick, good to about 1e-4."""
+    """Compute the largest |μ| at a settled state by one-sided differences: fast, and accurate to about 1e-4."""
     matrix = FiniteDifferenceMap(scene, period, stop, refine).derivative(x, central=False)
     return float(np.abs(np.linalg.eigvals(matrix)).max())
 
@@ -174,8 +174,8 @@ def seen_modulus(scene: Scene, period: int, x: np.ndarray, stop: Stop, refine: f
 def is_almost_periodic(strobes: np.ndarray) -> bool:
     """Whether an orbit may be near a motion with these last strobes (P, 2, N): it changes little over some period.
 
-    Such a motion may approach the orbit so slowly that its Lyapunov exponent is neutral (`is_neutral`). A record that
-    is too short gives False.
+    Such a motion may approach the orbit so slowly that its Lyapunov exponent is neutral (`is_neutral`). For a record
+    that is too short, the result is False.
     """
     if len(strobes) < _ALMOST_PERIODIC_CHANGES + LONGEST_PERIOD:
         return False
@@ -184,13 +184,13 @@ def is_almost_periodic(strobes: np.ndarray) -> bool:
 
 
 def _changes_over_periods(strobes: np.ndarray) -> list[float]:
-    """Largest of the last n changes over n periods, for every n that a batch looks for."""
+    """Largest of the last n changes over n periods, for every period n that a batch can detect."""
     most = min(LONGEST_PERIOD, (len(strobes) - 1) // 2)
     return [float(changes(strobes, n, n).max()) for n in range(1, most + 1)]
 
 
 def orbits_beside(scene: Scene, strobes: np.ndarray, x: np.ndarray, stop: Stop) -> Iterator[NearbyOrbit]:
-    """Orbits near a motion with these last strobes (P, 2, N) that is at x now, one for each period tried."""
+    """Yield orbits near a motion with these last strobes (P, 2, N) that is now at x, one for each period tried."""
     moved = _changes_over_periods(strobes)
     if not moved or min(moved) > NEAR_AN_ORBIT:
         return

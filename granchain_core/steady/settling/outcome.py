@@ -1,4 +1,4 @@
-"""A settled chain: its steady state as a recorded motion, its regime, and where it came from."""
+"""A settled chain: its steady state as a recorded motion, its regime, and the start of the motion."""
 
 from __future__ import annotations
 
@@ -16,22 +16,22 @@ from ...tables.words import state_columns
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Settled(Labelled):
-    """A settled chain as a recorded motion, or its motion so far; `SteadyState` is the same without the record.
+    """A settled chain as a recorded motion, or its motion so far; `SteadyState` is the counterpart without a record.
 
     Attributes
     ----------
     run : Run
-        The recorded orbit, or a few periods where the motion is not periodic.
+        The recorded orbit, or a few periods if the motion is not periodic.
     regime : Regime
         What kind of motion it is.
     state : State
-        Where the chain is at drive phase 0.
+        State of the chain at drive phase 0.
     start : str
-        Where the motion came from: "rest" or "previous state"; `run.start` has a run's words for it.
+        Where the motion started: "rest" or "previous state"; `run.start` has the words used for runs.
     preview : bool
-        Whether this is a first picture, before anything is decided.
+        Whether this is a preview, before the regime is decided.
     final : bool
-        Whether it is the last and best.
+        Whether this is the last and best result.
 
     Examples
     --------
@@ -54,7 +54,7 @@ class Settled(Labelled):
 
     @property
     def start(self) -> str:
-        """The start of the motion: "rest", also with initial velocities of the scene, or "previous state"."""
+        """Where the motion started: "rest", also with the scene's initial velocities, or "previous state"."""
         return "previous state" if self.run.start == GIVEN_STATE else "rest"
 
     def tables(self) -> tuple[Table, ...]:

@@ -1,7 +1,7 @@
 """The motion of a settling chain as a result: the motion so far, or its refined periodic orbit with an error.
 
-Motions that are not periodic are recorded by the setting they settled with, without a claim on their error. `origin` is
-where the motion began, in the words of a run's `start`.
+Motions that are not periodic are recorded with the setting with which they settled, without a stated error. `origin` is
+where the motion started, in the words of a run's `start`.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from .advance import SettlingRun
 from .outcome import Settled
 from .refine_orbit import FARTHEST_FROM_ORBIT, refined_orbit
 
-#: Periods shown of a motion that is not periodic.
+#: Number of periods shown of a motion that is not periodic.
 _PERIODS_SHOWN = 4
 
 
 def motion_so_far(motion: SettlingRun, samples: int, began: float, origin: str, final: bool) -> Settled:
-    """The present motion, over one orbit or a few periods; the settling itself is not advanced."""
+    """Record the current motion over one orbit or a few periods; the settling itself is not advanced."""
     engine = Engine(motion.scene, motion.engine.setting, samples, stop=motion.stop)
     state = motion.engine.state
     engine.start(state)
@@ -36,10 +36,10 @@ def motion_so_far(motion: SettlingRun, samples: int, began: float, origin: str, 
 
 
 def recorded_orbit(motion: SettlingRun, samples: int, began: float, origin: str) -> Settled:
-    """The periodic orbit by the finer method, with its error: integration plus distance from the orbit.
+    """Record the periodic orbit with the finer method, and its error: integration plus distance from the orbit.
 
-    An error e of the n-period map moves its fixed point by e/(1 − |μ|). A chain that the finer method does not bring to
-    the orbit is unsettled.
+    An error e of the n-period map moves its fixed point by e/(1 − |μ|). If the finer method does not bring the chain to
+    the orbit, it is unsettled.
     """
     n = motion.regime.period
     assert n is not None

@@ -1,9 +1,9 @@
 """Reduced rank extrapolation: shortening a slow transient without leaving the attractor's basin.
 
-Reduced rank extrapolation (kernels/strobes/extrapolation.py) takes out the slowest modes. It is used only where changes
+Reduced rank extrapolation (kernels/strobes/extrapolation.py) removes the slowest modes. It is used only where changes
 are already small and shrinking. An extrapolation is accepted only if the change after it is smaller and if it goes at
-most three times as far as change/(1 − r) with the contraction factor r, the distance before the last change: so the
-orbit is the one that the chain approaches.
+most three times as far as change/(1 − r), the distance before the last change, where r is the contraction factor. This
+ensures that the orbit is the one that the chain approaches.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from ...kernels.strobes import extrapolation
 
 
 def reduced_rank(states: np.ndarray) -> np.ndarray:
-    """The limit of the states x_0..x_k (k + 1, 2, N) by reduced rank extrapolation."""
+    """The limit of the states x_0 … x_k (k + 1, 2, N) by reduced rank extrapolation."""
     k, size = len(states) - 1, states[0].size
     limit = np.zeros_like(states[0])
     extrapolation.reduced_rank(np.ascontiguousarray(states), np.zeros((k, size)), np.zeros((k, k)), limit)

@@ -1,4 +1,5 @@
-"""Refining an orbit that was found with the default step: a few more periods with a finer setting, or extrapolation."""
+"""Refining an orbit that was found with the default step, by a few more periods with a finer setting or extrapolation.
+"""
 
 from __future__ import annotations
 
@@ -12,25 +13,25 @@ from ..regime_criteria import changes
 from .advance import SettlingRun
 from .reduced_rank import reduced_rank, within_reach
 
-#: [no threshold] Fraction of the error asked for that the integration over an orbit may have, at the first try.
+#: [no threshold] Fraction of the requested error that the integration over an orbit may have on the first attempt.
 INTEGRATION_FRACTION = 0.1
-#: [no threshold] Fraction of the error asked for that the distance left to the orbit may have.
+#: [no threshold] Fraction of the requested error that the remaining distance to the orbit may have.
 _DISTANCE_FRACTION = 0.3
-#: [no threshold] An orbit is computed to this relative accuracy at worst, even if the scene asks for less.
+#: [no threshold] An orbit is computed at least to this relative accuracy, even if the scene requests less.
 LEAST_ACCURATE = 1e-4
-#: [no threshold] Smallest error of one period that is asked of a method: below it is rounding.
+#: [no threshold] Smallest error of one period that is requested of a method: below it are rounding errors.
 _LEAST_ERROR = 1e-13
 #: [no threshold] The method is too coarse if a round leaves more than this fraction of the distance.
 _STALLED_FRACTION = 0.3
 #: [period n] A chain that a finer method leaves farther from its orbit than this is not called periodic: the orbit may
-#: be stable with coarse steps alone. A batch leaves such a chain to be settled alone.
+#: be stable only with coarse steps. In a batch, such a chain is left undecided and then settled alone.
 FARTHEST_FROM_ORBIT = 1e-3
-#: [no threshold] Most rounds; each has as many orbits as one extrapolation uses.
+#: [no threshold] Maximum number of rounds; each has as many orbits as one extrapolation uses.
 _MOST_ROUNDS = 12
 
 
 def orbit_setting(scene: Scene, accuracy: float, contraction: float) -> MethodSetting:
-    """The first setting for an orbit to `accuracy`: one period's error e moves it by e/(1 − contraction).
+    """The first setting for an orbit to `accuracy`: an error e of one period moves it by e/(1 − contraction).
 
     It is rk4-split with finer steps; dop853 if tension is cut, or if one period's error must be below
     `FIXED_STEP_CHEAPER_ABOVE` (integrate/methods.py).
@@ -40,13 +41,13 @@ def orbit_setting(scene: Scene, accuracy: float, contraction: float) -> MethodSe
 
 
 def refined_orbit(settling: SettlingRun, accuracy: float, samples: int = 1) -> tuple[Engine, float]:
-    """An engine of the finer method on its own orbit, and the bound on the distance left.
+    """Return an engine of the finer method on its own orbit, and the bound on the remaining distance.
 
     The orbit that the chain settled on differs from the true one by the error of its steps; a few more periods remove
     it. With r the contraction of the regime (|μ| where it was computed, otherwise the observed factor) and `change` from
-    one n-period map to the next, the distance left is change·r/(1 − r), or `change` if that is larger: a map that is not
-    normal contracts by |μ| in the long run only. After an extrapolation the distance is known from the changes that
-    follow; if these are not smaller, the extrapolation is undone.
+    one n-period map to the next, the remaining distance is change·r/(1 − r), or `change` if that is larger: a map that
+    is not normal contracts by |μ| only in the long run. After an extrapolation, the distance is known from the changes
+    that follow; if these are not smaller, the extrapolation is undone.
     """
     scene, n = settling.scene, settling.regime.period
     assert n is not None
@@ -67,22 +68,22 @@ def refined_orbit(settling: SettlingRun, accuracy: float, samples: int = 1) -> t
             unproved, bound = None, change * max(1.0, contraction / (1.0 - contraction))
             if bound <= _DISTANCE_FRACTION * accuracy:
                 return engine, bound
-        if unproved is not None:  # the extrapolation did not lead nearer: back to where it began
+        if unproved is not None:  # the extrapolation did not come nearer: return to where it began
             engine.start(unproved[0])
             unproved, bound = None, np.inf
         elif bound > _STALLED_FRACTION * before and not setting.finest:
-            # the changes are the method's own: it has to be finer before it can come nearer
+            # the changes are due to the method: it has to be finer to come nearer
             setting, state = setting.finer(), engine.state
             engine = Engine(scene, setting, samples, stop=settling.stop)
             engine.start(state)
-        elif rounds < _MOST_ROUNDS - 1:  # after the last extrapolation there must be a change that proves it
+        elif rounds < _MOST_ROUNDS - 1:  # a change after the last extrapolation must prove it
             here = engine.state
             unproved = (here, change) if move_to_limit(engine, states, change, contraction) else None
     return engine, bound
 
 
 def move_to_limit(engine: Engine, states: np.ndarray, change: float, contraction: float) -> bool:
-    """Put the engine at the limit of successive states (k, 2, N), if that is within reach; True if it was."""
+    """Put the engine at the limit of successive states (k, 2, N) if it is within reach; return True if it was."""
     limit = reduced_rank(states)
     largest = np.abs(states).max(axis=(0, 2))[:, None]
     if not within_reach(states[-1] / largest, limit / largest, change, contraction):

@@ -1,8 +1,8 @@
 """Decisions on the regime of a motion that seems periodic, or that has not settled for a long time.
 
-A motion that seems settled is confirmed by the multipliers of its orbit. Otherwise a nearby orbit is
-examined: if the motion approaches it, the orbit is reported; if it departs, the departure is
-enlarged. A motion that does neither is classified by its Lyapunov exponent (steady/exponent_measurements.py).
+A motion that seems settled is confirmed by the multipliers of its orbit. Otherwise a nearby orbit is examined: if the
+motion approaches it, the orbit is reported; if the motion departs from it, the departure is enlarged. A motion that
+does neither is classified by its Lyapunov exponent (steady/exponent_measurements.py).
 """
 
 from __future__ import annotations
@@ -22,34 +22,36 @@ from .nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS, NEAR_AN_ORBIT, NearbyOrbi
 
 #: [followed] Drive periods after which the orbit near an unsettled motion is examined.
 EXAMINED_AFTER = 400
-#: [unsettled] Most drive periods.
+#: [unsettled] Maximum number of drive periods.
 MOST_SETTLING_PERIODS = 4000
-#: [quasi-periodic] Strobes on which the decision is based. A batch keeps a few more (`STROBES_KEPT` in
+#: [quasi-periodic] Number of strobes on which the decision is based. A batch keeps a few more (`STROBES_KEPT` in
 #: kernels/batch/record.py).
 REMEMBERED = 420
-#: [chaotic, quasi-periodic] A batch, or a motion that is not followed further (`run`): most measurements of the
-#: exponent.
+#: [chaotic, quasi-periodic] In a batch, or for a motion that is not continued (`run`), maximum number of measurements
+#: of the exponent.
 MOST_MEASUREMENTS = 3
-#: [chaotic, quasi-periodic] A chain alone: most parts of one measurement, each of `MEASURED_PERIODS`.
+#: [chaotic, quasi-periodic] For a chain settled alone, maximum number of parts of one measurement, each of
+#: `MEASURED_PERIODS`.
 _MOST_PARTS = 8
-#: [period n] A chain alone: up to this many beads multipliers confirm every claim of `settled`, in longer chains only
-#: unconfirmed ones.
+#: [period n] A chain alone: up to this many beads, multipliers confirm every claim that a motion is periodic; in longer
+#: chains, only unconfirmed ones.
 _CONFIRMED_BEADS = 30
 #: [period n] A chain alone: a claim is unconfirmed if the contraction factor per drive period is above this, or if the
-#: motion began from another state. A slowly unstable orbit may look like it.
+#: motion started from another state than rest. A slowly unstable orbit may look the same.
 CLEAR_CONTRACTION = 0.9
-#: [unsettled] Factor on the most drive periods for a motion that leaves an unstable orbit. Departures are slow too.
+#: [unsettled] Factor on the maximum number of drive periods for a motion that leaves an unstable orbit. Departures are
+#: slow too.
 _DEPARTURE_FACTOR = 4
-#: [period n] A chain alone: with a larger |μ| at the motion's own state, by differences, Newton's method finds the
-#: orbit.
+#: [period n] A chain alone: if |μ| at the motion's own state, by differences, is larger than this, the orbit is found
+#: by Newton's method.
 _CLEAR_MULTIPLIER = 0.97
-#: [followed] Most departures of one motion from an orbit that are enlarged.
+#: [followed] Maximum number of departures from an orbit that are enlarged in one motion.
 _MOST_DEPARTURES = 6
 
 
 @dataclass(frozen=True, eq=False)
 class Decision:
-    """A regime, or a scaled state (2N,) to go on from, or strobes of periods that were run meanwhile, or nothing."""
+    """A regime, a scaled state (2N,) to continue from, the strobes of periods that were run meanwhile, or nothing."""
 
     regime: Regime | None = None
     state: np.ndarray | None = None
@@ -57,7 +59,7 @@ class Decision:
 
 
 class Decisions:
-    """The decisions on one motion; `carried` if it began in a state taken over from another setting."""
+    """The decisions on one motion; `carried` if it started from a given state and not from rest."""
 
     def __init__(self, scene: Scene, carried: bool) -> None:
         self.scene, self._carried = scene, carried
@@ -65,7 +67,7 @@ class Decisions:
         self._measurements = ExponentMeasurements()
 
     def next(self, engine: Engine, strobes: np.ndarray, regime: Regime) -> Decision:
-        """The next decision from the last strobes (P, 2, N) of `engine` and the regime that they show."""
+        """Make the next decision from the last strobes (P, 2, N) of `engine` and the regime that they show."""
         if regime.name == "periodic":
             return self._confirmed(engine, strobes, regime)
         for orbit in _orbits_beside(engine, strobes):
@@ -82,11 +84,11 @@ class Decisions:
     def _confirmed(self, engine: Engine, strobes: np.ndarray, regime: Regime) -> Decision:
         """The decision on a motion that seems settled: on a stable orbit, or near one that it will leave.
 
-        A motion that settles alternating about an orbit is nearer to itself after two of its periods than after one,
-        and may be taken for one of twice the period: where a part of the period almost repeats it, Newton's method
-        finds the orbit and its least period.
+        A motion that alternates about an orbit while it settles is nearer to itself after two of its periods than after
+        one, and may be mistaken for one of twice the period. If it almost repeats after a fraction of the period,
+        Newton's method finds the orbit and its least period.
 
-        Where Newton's method finds no orbit near the motion, an unconfirmed claim is withdrawn, and a clear contraction
+        If Newton's method finds no orbit near the motion, an unconfirmed claim is withdrawn, and a clear contraction
         from rest is accepted.
         """
         assert regime.period is not None
@@ -105,7 +107,7 @@ class Decisions:
             replace(regime, name="unsettled", period=None, distance=None, observed_contraction=None))
 
     def _beside(self, orbit: NearbyOrbit, regime: Regime) -> Decision | None:
-        """The decision by an orbit near the motion, if it allows one."""
+        """The decision based on an orbit near the motion, or None if it does not decide."""
         if orbit.approached():
             return Decision(replace(regime, name="periodic", period=orbit.period, multiplier=orbit.modulus,
                                     observed_contraction=None, distance=orbit.orbit_error, followed=True,
@@ -128,34 +130,34 @@ class Decisions:
 
 
 def _may_repeat_sooner(strobes: np.ndarray, period: int) -> bool:
-    """Whether the state almost repeats after a part of the period."""
+    """Whether the state almost repeats after a fraction of the period."""
     return any(period % n == 0 and float(changes(strobes, n, n).max()) <= NEAR_AN_ORBIT for n in range(1, period))
 
 
 def _decays_clearly(regime: Regime) -> bool:
-    """Whether the observed contraction leaves no doubt of a periodic regime where the motion began at rest."""
+    """Whether the observed contraction leaves no doubt of a periodic regime, if the motion started from rest."""
     assert regime.period is not None
     return (regime.observed_contraction or 0.0) ** (1.0 / regime.period) <= CLEAR_CONTRACTION
 
 
 def _on(orbit: NearbyOrbit, regime: Regime) -> Regime:
     """The periodic regime of a motion on a stable orbit that Newton's method has found from it."""
-    # that of the longer period says nothing of a shorter one
+    # the contraction over a longer period says nothing about a shorter one
     seen = regime.observed_contraction if orbit.period == regime.period else None
     return replace(regime, period=orbit.period, multiplier=orbit.modulus, observed_contraction=seen)
 
 
 def _orbits_beside(engine: Engine, strobes: np.ndarray) -> Iterator[NearbyOrbit]:
-    """Orbits near the motion of `engine` with these last strobes (P, 2, N); none for long chains."""
+    """Yield orbits near the motion of `engine` with these last strobes (P, 2, N); none for long chains."""
     scene = engine.scaled.scene
     if scene.N <= MOST_BEADS_WITH_MULTIPLIERS:
         yield from orbits_beside(scene, strobes, _state_of(engine), engine.stop)
 
 
 def regime_without_continuing(engine: Engine, strobes: np.ndarray, regime: Regime) -> Regime:
-    """The regime of a motion that is not run any further: an orbit that it only approaches is not claimed.
+    """Decide the regime of a motion that is not continued: one only approaching an orbit is not called periodic.
 
-    `engine` is live and at the end of the strobes (P, 2, N); it goes on if a Lyapunov exponent is measured.
+    `engine` is at the end of the strobes (P, 2, N); it is advanced if a Lyapunov exponent is measured.
     """
     scene = engine.scaled.scene
     if regime.period is not None:
@@ -175,7 +177,8 @@ def regime_without_continuing(engine: Engine, strobes: np.ndarray, regime: Regim
 
 def _measured(engine: Engine, strobes: np.ndarray, regime: Regime,
               measurements: ExponentMeasurements) -> tuple[Regime | None, np.ndarray]:
-    """The regime, if one more measurement of the Lyapunov exponent decides it, and the strobes (P, 2, N) it ran."""
+    """The regime if one more measurement of the Lyapunov exponent decides it, and the measurement's strobes (P, 2, N).
+    """
     passed = strobes[:0]
     for part in range(_MOST_PARTS):
         growth, more, offset = growth_along(engine, MEASURED_PERIODS, measurements.offset)
@@ -188,7 +191,7 @@ def _measured(engine: Engine, strobes: np.ndarray, regime: Regime,
 
 
 def _classified_by_exponent(engine: Engine, strobes: np.ndarray, regime: Regime) -> Regime:
-    """Chaotic or quasi-periodic by its Lyapunov exponent, else unsettled."""
+    """Chaotic or quasi-periodic by its Lyapunov exponent, otherwise unsettled."""
     measurements = ExponentMeasurements()
     for _ in range(MOST_MEASUREMENTS):
         decided, passed = _measured(engine, strobes, regime, measurements)

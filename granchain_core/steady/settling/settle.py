@@ -1,4 +1,4 @@
-"""`settle` and `settling`: the steady state of a chain, at once or with the motion so far on the way."""
+"""`settle` and `settling`: the steady state of a chain, without or with previews of the motion on the way."""
 
 from __future__ import annotations
 
@@ -17,31 +17,31 @@ from .outcome import Settled
 from .recording import motion_so_far, recorded_orbit
 from .undriven import undriven_motion
 
-#: Samples a period of the recorded motion.
+#: Samples per drive period of the recorded motion.
 PICTURE_SAMPLES = 96
-#: Time after which a first result is given although nothing is decided yet [s].
+#: Time after which a first result is given even though nothing is decided yet [s].
 _PREVIEW_AFTER = 0.012
 
 
 def settling(scene: Scene, start: State | None = None, samples: int = PICTURE_SAMPLES,
              stop: Stop | None = None) -> Iterator[Settled]:
-    """Successive results of a settling chain: a quick preview first, the refined steady state last.
+    """Yield successive results of a settling chain: a quick preview first, the refined steady state last.
 
     Parameters
     ----------
     scene : Scene
         The chain.
     start : State, optional
-        Where the motion begins; at rest if not given.
+        Where the motion starts; by default at rest.
     samples : int
-        Samples a drive period of each result.
+        Samples per drive period of each result.
     stop : Stop, optional
         Ends the computation when another thread sets it.
 
     Yields
     ------
     Settled
-        About ten a second; `final` is set on the last.
+        About ten per second; `final` is set on the last.
 
     Raises
     ------
@@ -76,27 +76,27 @@ def settling(scene: Scene, start: State | None = None, samples: int = PICTURE_SA
 
 def settle(scene: Scene, start: State | None = None, samples: int = PICTURE_SAMPLES,
            stop: Stop | None = None) -> Settled:
-    """The steady state of a chain.
+    """Compute the steady state of a chain.
 
-    The chain runs by fixed steps, or by dop853 where tension is cut, until the distance to the orbit is bounded or the
-    regime is decided otherwise; a periodic orbit is then computed again with a setting fine enough for the accuracy
-    asked for (docs/regimes.md).
+    The chain runs with fixed steps, or with dop853 where tension is cut, until the distance to the orbit is bounded or
+    the regime is decided otherwise. A periodic orbit is then computed again with a setting fine enough for the
+    requested accuracy (docs/regimes.md).
 
     Parameters
     ----------
     scene : Scene
         The chain.
     start : State, optional
-        Where the motion begins; at rest if not given.
+        Where the motion starts; by default at rest.
     samples : int
-        Samples a drive period of the recorded orbit.
+        Samples per drive period of the recorded orbit.
     stop : Stop, optional
         Ends the computation when another thread sets it.
 
     Returns
     -------
     Settled
-        One orbit where the motion is periodic, else a few periods of it.
+        One orbit if the motion is periodic, otherwise a few drive periods.
 
     Raises
     ------
@@ -127,6 +127,6 @@ def settle(scene: Scene, start: State | None = None, samples: int = PICTURE_SAMP
 
 
 def _checked(scene: Scene, samples: int) -> int:
-    """The number of samples as an int. Raises `BadInput` for another number, or for no scene."""
+    """The number of samples as an int. Raises `BadInput` if it is out of range, or if `scene` is not a scene."""
     require_scene(scene)
     return whole_number("samples =", samples, 1, MOST_SAMPLES)

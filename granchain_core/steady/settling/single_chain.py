@@ -17,13 +17,13 @@ from ..steady_state import IRREGULAR_PERIODS, SteadyState
 from .advance import SettlingRun, run_until_settled
 from .refine_orbit import FARTHEST_FROM_ORBIT, refined_orbit
 
-#: Points of curves and maps that are settled alone are computed to this relative accuracy at best, even if the scene
-#: asks for more. A batch does not read the scene's accuracy.
+#: Points of curves and maps that are settled alone are computed at best to this relative accuracy, even if the scene
+#: requests more. A batch does not read the scene's accuracy.
 CURVE_ACCURACY = 1e-5
 
 
 def settle_to_forces(scene: Scene, start: State | None, stop: Stop, periods_run: int = 0) -> SteadyState:
-    """The steady state of `scene` from rest or from `start`, refined where it is periodic.
+    """Settle `scene` from rest or from `start`; refine the steady state if it is periodic.
 
     `periods_run` drive periods came before `start`.
     """
@@ -35,9 +35,9 @@ def settle_to_forces(scene: Scene, start: State | None, stop: Stop, periods_run:
 
 
 def _on_its_orbit(settling: SettlingRun) -> SteadyState:
-    """Largest forces on the refined orbit, and their errors by a finer computation.
+    """Largest forces on the refined orbit, and their errors from a finer computation.
 
-    A chain that the finer method does not bring to the orbit is unsettled.
+    If the finer method does not bring the chain to the orbit, it is unsettled.
     """
     engine, distance = refined_orbit(settling, max(settling.scene.accuracy, CURVE_ACCURACY))
     n = settling.regime.period
@@ -55,7 +55,7 @@ def _on_its_orbit(settling: SettlingRun) -> SteadyState:
 
 
 def settle_or_failure(scene: Scene, start: State | None, stop: Stop, periods_run: int = 0) -> SteadyState:
-    """A steady state, or one with a failure: a frequency that fails does not lose the curve."""
+    """Like `settle_to_forces`, but return a steady state with the failure, so that one failed point loses no curve."""
     try:
         return settle_to_forces(scene, start, stop, periods_run)
     except ComputationError as failed:
@@ -65,7 +65,6 @@ def settle_or_failure(scene: Scene, start: State | None, stop: Stop, periods_run
 
 
 def settled_alone(undecided: SteadyState, stop: Stop) -> SteadyState:
-    """The steady state of a chain that a batch left undecided or that failed in it, settled alone from its last state.
-    """
+    """Settle alone, from its last state, a chain that failed in a batch or was left undecided by it."""
     settled = settle_or_failure(undecided.scene, undecided.state, stop, undecided.regime.periods_run)
     return replace(settled, number=undecided.number)

@@ -1,4 +1,4 @@
-"""The motion of a chain without a drive, which has no steady state: from its start, to the accuracy asked for."""
+"""The motion of a chain without a drive, which has no steady state: from its start, to the requested accuracy."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from ...scene.state import State, checked_start, rest
 from ..orbit_errors import errors_between
 from .outcome import Settled
 
-#: Finest steps: number of steps in place of one default step.
+#: Finest steps: number of steps that replace one default step.
 _FINEST_REFINEMENT = 64
 
 
 def undriven_motion(scene: Scene, start: State | None, samples: int, began: float, stop: Stop | None) -> Settled:
-    """The motion of a chain without a drive from its start, over the time 1/f, to the accuracy asked for."""
-    begin = rest(scene) if start is None else replace(checked_start(scene, start), phase=0.0)  # nothing has a phase
+    """Compute the motion of a chain without a drive from its start, over the time 1/f, to the requested accuracy."""
+    begin = rest(scene) if start is None else replace(checked_start(scene, start), phase=0.0)  # there is no phase
     setting, total = following_setting(scene.cuts_tension), Counts()
 
     def recorded(chosen: MethodSetting) -> tuple[Engine, Samples]:
