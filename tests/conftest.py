@@ -17,8 +17,8 @@ import pytest
 from hypothesis import settings
 
 # Set before NumPy is imported, and inherited by every process that a test starts. OpenBLAS divides even small products
-# among all processors, and its threads wait for each other in busy loops. With as many workers as processors, this takes
-# twenty times as long.
+# among all processors, and its threads wait for each other in busy loops. With as many workers as processors, this
+# takes twenty times as long.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 # With a cold cache, kernels are compiled during the first example. That is not a sign of a slow test.
@@ -102,13 +102,12 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 def spread(items: list[pytest.Item], workers: int) -> list[pytest.Item]:
     """Return the tests in the order that `--dist worksteal` distributes best: longest first, browser tests apart.
 
-    xdist gives each worker a row of consecutive tests, all rows of the same length. An idle worker takes the last half of
-    the longest row. Half of the rows therefore begin with browser tests, for which a worker needs its own server and
+    xdist gives each worker a row of consecutive tests, all rows of the same length. An idle worker takes the last half
+    of the longest row. Half of the rows therefore begin with browser tests, for which a worker needs its own server and
     browser; the other rows begin with files that have a test marked `long`. The tests at the end of a row are short.
     When the tests were in the order of their folders, one worker got all browser tests, and ran the last 7 % of the
-    suite alone for 3 of its 10 minutes.
-    Files of these two kinds are never split: their tests share fixtures, and the server computes the curves of a page
-    only once.
+    suite alone for 3 of its 10 minutes. Files of these two kinds are never split: their tests share fixtures, and the
+    server computes the curves of a page only once.
     """
     files: dict[Path, list[pytest.Item]] = {}
     for item in items:

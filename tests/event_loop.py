@@ -13,7 +13,8 @@ Words = ParamSpec("Words")
 
 
 def run_async(work: Coroutine[object, object, Result]) -> Result:
-    """Call `asyncio.run` in a separate thread: while a browser is open, Playwright's event loop runs in the main thread.
+    """Call `asyncio.run` in a separate thread: while a browser is open, Playwright's event loop runs in the main
+    thread.
     """
     with ThreadPoolExecutor(1) as pool:
         return pool.submit(asyncio.run, work).result()

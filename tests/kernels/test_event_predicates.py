@@ -41,8 +41,8 @@ def nearer_in_long_chain(overlap: float, rate: float) -> bool:
 
 
 def test_all_signs_at_the_ends_of_a_step() -> None:
-    """An event is possible if the sign changes, or if the overlap first approaches zero and finally leaves it; otherwise
-    it is not.
+    """An event is possible if the sign changes, or if the overlap first approaches zero and finally leaves it;
+    otherwise it is not.
     """
     seen = {signs for signs in _ALL_SIGNS if may_change_of(*signs)}
     other_sign = {signs for signs in _ALL_SIGNS if signs[0] != signs[2]}
@@ -69,9 +69,9 @@ def test_the_form_of_a_long_chain_looks_at_one_state_at_a_time() -> None:
 
 @given(_STEP)
 def test_whatever_crosses_zero_is_looked_into(step: tuple[float, float, float, float]) -> None:
-    """No form misses a cubic that crosses zero and turns at most once: its values at 400 places say whether it does.
+    """No form misses a cubic that crosses zero and turns at most once; its values at 401 points decide whether it does.
 
-    One that turns twice within a step would need a step half as long.
+    A cubic that turns twice within a step would need a step half as long.
     """
     d0, s0, d1, s1 = step
     values = hermite_value(d0, s0, d1, s1, np.linspace(0.0, 1.0, 401))

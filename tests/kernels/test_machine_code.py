@@ -6,8 +6,8 @@ processor wherever the test runs, and never executed. With narrower registers, t
 step, and computes some values twice instead of storing them. Which ones depends on details of the source, so the counts
 would reflect the compiler's choices instead of the effects.
 
-The counts are those of one version of LLVM. Another version may choose differently, and the exact counts then need to be
-reviewed. They are kept in the folder of compiled kernels: nothing is compiled again until the kernels, the counting
+The counts are those of one version of LLVM. Another version may choose differently, and the exact counts then need to
+be reviewed. They are kept in the folder of compiled kernels: nothing is compiled again until the kernels, the counting
 program or the compiler change. Long chains and dop853-root are not examined, since they call the same functions of the
 effects.
 """
@@ -42,8 +42,8 @@ EFFECTS_BY_COST = ("foundation", "preload", "dissipation")
 x86 = pytest.mark.skipif(platform.machine() not in ("x86_64", "AMD64"), reason="reads x86-64 assembly")
 
 
-#: The processor whose code is read, by LLVM's name, with the features that a vector of eight doubles needs. With narrower
-#: registers or fewer scenes in a batch, the compiler recomputes values that it cannot keep or merge.
+#: The processor whose code is read, by LLVM's name, with the features that a vector of eight doubles needs. With
+#: narrower registers or fewer scenes in a batch, the compiler recomputes values that it cannot keep or merge.
 TARGET = {VARIABLE: "8", "NUMBA_CPU_NAME": "skylake-avx512", "NUMBA_CPU_FEATURES": "+avx2,+fma,+avx512f,+avx512dq,+avx512vl"}
 
 

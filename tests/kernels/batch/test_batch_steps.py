@@ -62,8 +62,8 @@ def run_batch(scenes, refine: float) -> tuple[np.ndarray, np.ndarray]:
 
 @functools.cache
 def true(case: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the same from rk4-split at a 32nd of the step, whose error is 1e-9 (tests/numerics/test_orders.py), and the
-    elastic output force at the very end (SCENES,).
+    """Return the same from rk4-split at a 32nd of the step, whose error is 1e-9 (tests/numerics/test_orders.py), and
+    the elastic output force at the very end (SCENES,).
     """
     engines = [Engine(one, MethodSetting("rk4-split", refine=32), 1) for one in scenes_of(case)]
     found = [engine.periods(PERIODS) for engine in engines]
@@ -83,9 +83,9 @@ def errors(case: str) -> np.ndarray:
 def test_batches_converge_with_order_three_over_a_decade_of_steps(case):
     """The kink where contacts open and close is corrected to order 3; where no contact opens, RK4 keeps its order 4.
 
-    The order is fitted to the geometric mean over the scenes. For one contact, the kink's next term falls with the power
-    5/2 and shows at the smallest steps, so the order may be up to 0.3 below 3. Where contacts seldom open or close, it
-    is still near 4.
+    The order is fitted to the geometric mean over the scenes. For one contact, the kink's next term falls with the
+    power 5/2 and shows at the smallest steps, so the order may be up to 0.3 below 3. Where contacts seldom open or
+    close, it is still near 4.
     """
     order = -np.polyfit(np.log(REFINED), np.log(errors(case)).mean(axis=1), 1)[0]
     print(f"{case}: order {order:.2f}, errors {errors(case)[0].max():.1e} to {errors(case)[-1].max():.1e}")

@@ -35,7 +35,8 @@ def seen(record: np.ndarray, before: float | None = None, **numbers: float) -> B
 
 
 def test_an_orbit_found_by_extrapolation_is_disturbed_before_it_is_believed() -> None:
-    """Repeated states count as periodic if the chain settled there; after an extrapolation, they are disturbed first."""
+    """Repeated states count as periodic if the chain settled there; after an extrapolation, they are disturbed first.
+    """
     batch = seen(np.ones(60))
     assert checks.check_coarse.py_func(batch.state, MEMBER)
     batch = seen(np.ones(60), slowest_contraction=0.9)
@@ -78,7 +79,8 @@ def test_an_extrapolation_is_kept_only_if_the_change_after_it_is_smaller(before:
 
 @pytest.mark.parametrize(("before", "slowest"), [(1e-3, 0.9), (1e-9, 0.0)])
 def test_after_an_undone_extrapolation_an_orbit_is_not_one_that_was_extrapolated_to(before: float, slowest: float) -> None:
-    """Such an orbit is neither disturbed nor marked as followed: the contraction is the one before the extrapolation."""
+    """Such an orbit is neither disturbed nor marked as followed: the contraction is the one before the extrapolation.
+    """
     state = seen(1.0 + 1e-3 * 0.9 ** np.arange(60), change_before=before, extrapolate_from=10_000,
                  slowest_contraction=0.9, contraction_before=0.0).state
     checks.check_coarse.py_func(state, MEMBER)

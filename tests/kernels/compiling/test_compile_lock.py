@@ -1,4 +1,5 @@
-"""One process compiles a kernel and the others load it. No process waits forever, and no lock has to be removed by hand.
+"""One process compiles a kernel and the others load it. No process waits forever, and no lock has to be removed by
+hand.
 """
 
 from __future__ import annotations

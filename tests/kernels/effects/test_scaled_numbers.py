@@ -34,8 +34,8 @@ def stiffness(a: Bead, b: Bead) -> float:
 @pytest.mark.parametrize("seed", range(5))
 @pytest.mark.parametrize("law", ["none", "linear"])
 def test_unlike_beads_move_as_the_equations_say(law: str, seed: int) -> None:
-    """Forces, du/dt = v, m ẇ = F_left − F_right − k u and the stored energy agree with formulas in SI units; the kernels
-    run uncompiled.
+    """Forces, du/dt = v, m ẇ = F_left − F_right − k u and the stored energy agree with formulas in SI units; the
+    kernels run uncompiled.
     """
     chosen = dimer(law)
     beads = [chosen.bead(i) for i in range(1, 7)]

@@ -24,7 +24,8 @@ def chain() -> ScaledChain:
 
 
 def numbers(monkeypatch: pytest.MonkeyPatch, module: Any, name: str, answer: int) -> list[int]:
-    """Replace a module's term by one that returns its argument `answer`, and list the bead numbers it is called with."""
+    """Replace a module's term by one that returns its argument `answer`, and list the bead numbers it is called with.
+    """
     asked: list[int] = []
 
     def term(slots: Any, i: int, *values: Any) -> Any:

@@ -1,5 +1,5 @@
-"""The right-hand side in w is equivalent to the paper's (u, v) equations for every law, tension, foundation, preload and
-wall.
+"""The right-hand side in w is equivalent to the paper's (u, v) equations for every law, tension, foundation, preload
+and wall.
 """
 
 from __future__ import annotations
@@ -123,7 +123,8 @@ def test_a_nan_in_a_bead_is_seen_in_both_its_contacts(law, preload, where):
 
 
 def test_rest_without_overlap_is_an_equilibrium_and_preload_keeps_it_one():
-    """With the driver in its middle position, nothing moves. Without preload there is no force, with it F0 everywhere."""
+    """With the driver in its middle position, nothing moves. Without preload there is no force, with it F0 everywhere.
+    """
     for preload in (0.0, 7.0):
         chosen = scene("sec2").evolve(F0=preload, D=0.0, wall="rigid")
         scaled, _, _, dy, total = evaluated(chosen, np.zeros(11), np.zeros(11), 0.0)

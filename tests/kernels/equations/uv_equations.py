@@ -1,4 +1,5 @@
-"""An independent version of the equations of motion, in (u, v) with SI units and plain loops, for comparison in tests."""
+"""An independent version of the equations of motion, in (u, v) with SI units and plain loops, for comparison in tests.
+"""
 
 from __future__ import annotations
 

@@ -55,7 +55,8 @@ def test_the_end_that_stays_is_halved() -> None:
 
 @pytest.mark.parametrize("factor", [1.0, -1.0])
 def test_the_largest_value_inside_is_found(factor: float) -> None:
-    """It lies between two roots of the cubic, where the slope is zero; its place is known to √ε, as a maximum is flat."""
+    """It lies between two roots of the cubic, where the slope is zero; its place is known to √ε, as a maximum is flat.
+    """
     quantity = Cubic((0.1, 0.8, 3.0) if factor > 0.0 else (-2.0, 0.1, 0.8), factor, [])
     turns = np.roots(np.poly1d(np.poly(quantity.roots)).deriv())
     turn = float(next(x for x in turns if 0.1 < x < 0.8))

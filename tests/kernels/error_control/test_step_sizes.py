@@ -15,7 +15,8 @@ pytestmark = pytest.mark.quick
 
 
 class Scripted(NamedTuple):
-    """A method of order 8 whose attempts have these errors, the last one repeated; `tried` lists the attempted sizes."""
+    """A method of order 8 whose attempts have these errors, the last one repeated; `tried` lists the attempted sizes.
+    """
 
     errors: list[float]
     tried: list[float]

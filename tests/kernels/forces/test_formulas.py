@@ -28,7 +28,8 @@ OWN, PULL = 1.3, -0.7
 
 
 def overlap_at(s: float, speed: float) -> tuple[float, float]:
-    """Return overlap and rate at time s for a contact that closes at 0 with `speed`: δ̈ = PULL − OWN δ̇ while closed."""
+    """Return overlap and rate at time s for a contact that closes at 0 with `speed`: δ̈ = PULL − OWN δ̇ while closed.
+    """
     if s <= 0.0:
         return speed * s + 0.5 * PULL * s * s, speed + PULL * s
     end = PULL / OWN

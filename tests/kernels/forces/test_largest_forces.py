@@ -99,8 +99,8 @@ TRUTH = 0.1473283
 
 
 def test_every_part_of_the_program_gives_the_same_largest_force() -> None:
-    """A run, curves from rest and upward, a parameter map and a settled picture agree to five digits, and with the truth
-    to their stated errors.
+    """A run, curves from rest and upward, a parameter map and a settled picture agree to five digits, and with the
+    truth to their stated errors.
     """
     chain = scene("sec2").evolve(D=300.0, f=100.0)
     points = [resonance_curve(chain, [100.0, 101.0], start=start).points[0] for start in ("rest", "up")]

@@ -38,7 +38,8 @@ def random_rows(count: int, width: int) -> np.ndarray:
 
 @pytest.fixture(scope="module", params=WIDTHS)
 def vectors(request: pytest.FixtureRequest) -> tuple[np.ndarray, Any]:
-    """Two rows of a width, and a kernel for that width: (rows, lane, out) stores the vectors and returns the scalars."""
+    """Two rows of a width, and a kernel for that width: (rows, lane, out) stores the vectors and returns the scalars.
+    """
     read = LOADS[request.param]
 
     @kernel
@@ -130,7 +131,8 @@ def test_the_lowest_bit_is_that_of_a_mask_of_any_width() -> None:
 
 
 def test_the_inverse_sixteenth_root_is_right_to_about_four_percent() -> None:
-    """This covers all errors that a step may have, and densely sixteen factors of two, after which the error repeats."""
+    """This covers all errors that a step may have, and densely sixteen factors of two, after which the error repeats.
+    """
     values = np.concatenate([np.logspace(-290, 290, 5000), np.logspace(0, 16, 5000, base=2.0)])
     found = np.empty_like(values)
     inverse_roots(values, found)
