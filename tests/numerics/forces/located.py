@@ -7,8 +7,8 @@ Events    zeros of the overlap and, if tension is cut, of K δ^{3/2} + g(δ) δ�
           nine places and at the turning points between them, so that a touch shorter than a step is found; the step is
           then repeated so that it ends there
 Forces    of contact 0, of contact N, and of the latter's spring: the supremum over the recorded time, that is, the
-          largest of the values at the ends of steps, of the maxima between them, and of the right limits where a contact
-          closes (D δ̇ with the linear law)
+          largest of the values at the ends of steps, of the maxima between them, and of the right limits where a
+          contact closes (D δ̇ with the linear law)
 Scales    length A0, time 1/φ, so that the equations have the coefficients of the paper's equation (2)
 """
 
