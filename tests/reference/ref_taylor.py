@@ -2,8 +2,8 @@
 
 Between events, the set of pressed contacts is fixed and the motion is analytic.  Displacement and velocity are expanded
 to a high order (the 3/2 power by the recurrence for a power of a series), and the step is chosen from the last
-coefficients.  At an onset d = 0, the force contains d^{3/2}, so the motion is analytic not in t but in s = (t -
-t0)^{1/p}, with p = 2 (p = 4 for the Tsuji law).  The first step after an onset is therefore a series in s, with the
+coefficients.  At an onset d = 0, the force contains d^{3/2}.  The motion is then analytic not in t but in s, where t =
+t0 + s^p with p = 2 (p = 4 for the Tsuji law).  The first step after an onset is therefore a series in s, with the
 overlap written as d = s^p g(s).  Before a release, the steps shrink geometrically with the radius of convergence until
 the singular part is below the tolerance.
 """
