@@ -95,7 +95,7 @@ def test_a_clock_that_adds_its_steps_is_out_of_phase() -> None:
 
 
 def test_wrong_scaling_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The damping in scaled units grows with A0 by a power that should not be there."""
+    """The scaled damping gets a wrong, weak dependence on A0."""
     real = engine_module.scale_chain
 
     def wrong(chosen: Scene, *options: bool) -> ScaledChain:
