@@ -61,7 +61,7 @@ addEventListener("DOMContentLoaded", () => {
 
 
 def opened(page: Page, address: str) -> float:
-    """Request the page until it is answered, and return the time [s since 1970]."""
+    """Request the page until it is answered and return the time [s since 1970]."""
     while True:
         try:
             page.goto(address, wait_until="commit")

@@ -50,7 +50,7 @@ def pin(core: int | None = None) -> int | None:
 
 
 def unpin() -> int:
-    """Give the process back the cores that it was allowed before it was pinned, and return their number."""
+    """Undo the pinning and return the number of cores that the process may use."""
     if _allowed:
         os.sched_setaffinity(0, _allowed)
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

@@ -19,7 +19,7 @@ _BARE = "import json, tests.benchmarks.machine as m; print(json.dumps({'peak_mb'
 
 
 def child(command: list[str], cache: str) -> dict[str, Any]:
-    """Run a child process, and return what it printed together with its whole time [s]."""
+    """Run a child process and return its output and its total time [s]."""
     places = {"GRANCHAIN_CACHE": cache, "NUMBA_CACHE_DIR": cache, "JAX_COMPILATION_CACHE_DIR": f"{cache}/jax"}
     began = time.perf_counter()
     answer = subprocess.run([sys.executable, *command], cwd=_ROOT, env={**os.environ, **places}, capture_output=True,

@@ -1,4 +1,4 @@
-"""Every command has an example that its parser accepts and its help shows, and a hostile command line."""
+"""Every command has an example, which its parser accepts and its help shows, and a hostile command line."""
 
 from __future__ import annotations
 

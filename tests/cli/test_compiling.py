@@ -37,7 +37,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 def at_a_terminal() -> str:
-    """Run the program, and return what a user sees of its stderr."""
+    """Run the program and return what a user sees of its stderr."""
     mine, theirs = pty.openpty()
     done = subprocess.run([sys.executable, "-c", PROGRAM], cwd=ROOT, stderr=theirs, stdout=subprocess.PIPE, text=True,
                           timeout=120, check=True)

@@ -47,7 +47,7 @@ def copied(part: str, tree: Path) -> None:
 
 
 def edited_copy(page: Path, copy: Path, until: str = "") -> Path:
-    """Copy the repository, and make the page's edits before the heading `until`; each must fit at exactly one place."""
+    """Copy the repository and make the page's edits before the heading `until`; each must fit at exactly one place."""
     for part in _PARTS:
         copied(part, copy)
     edit_files(page, copy, until)
@@ -69,7 +69,7 @@ def edit_files(page: Path, tree: Path, until: str = "") -> None:
 
 
 def follow(tree: Path, *arguments: str, own_kernels: bool = True) -> str:
-    """Run a command in the edited tree, and return what it prints.
+    """Run a command in the edited tree and return what it prints.
 
     Its compiled kernels are kept: their folder is named by the sources, so an edited tree finds its own kernels again
     until a kernel or the page changes. Without optimisation (NUMBA_OPT=0), Numba could not keep them. Without

@@ -62,7 +62,7 @@ def code() -> dict:
 
 
 def measured(types: Types) -> bytes:
-    """Run machine_code.py with an empty kernel cache, and return its output."""
+    """Run machine_code.py with an empty kernel cache and return its output."""
     with tempfile.TemporaryDirectory() as cache:
         environment = {**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p), **TARGET, "GRANCHAIN_CACHE": cache}
         done = subprocess.run([sys.executable, PROGRAM], env=environment, input=pickle.dumps(types), capture_output=True,

@@ -15,7 +15,7 @@ from granchain_core.paper.results import SHOWN
 
 
 def written(folder: Path, text: str) -> str:
-    """Write this text to a file, and return its name."""
+    """Write this text to a file and return its name."""
     path = folder / "data.csv"
     path.write_text(text, encoding="utf-8")
     return str(path)

@@ -13,8 +13,9 @@ def points(frequencies: list[float]) -> list[dict[str, float]]:
 
 
 def drawn_of_33(periods: dict[float, int | None], others: int) -> list[float]:
-    """Return the frequencies from 100 to 420 Hz in the order taken; each finishes at once after a number of periods, or
-    never if this is None.
+    """Return the frequencies from 100 to 420 Hz in the order taken.
+
+    Each finishes as soon as it is taken, after its number of periods, or never if that is None.
     """
     frequencies = [100.0 + 10.0 * i for i in range(33)]
     order, drawn = LongestFirst(points([frequencies[i] for i in coarse_first(33)])), []

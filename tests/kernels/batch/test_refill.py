@@ -1,4 +1,4 @@
-"""A free lane of a batch takes the next scene, and keeps nothing of the previous one."""
+"""A free lane of a batch takes the next scene and keeps nothing of the previous one."""
 
 from __future__ import annotations
 

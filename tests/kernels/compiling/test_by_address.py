@@ -27,14 +27,14 @@ class Numbers(NamedTuple):
 
 @numba.njit
 def raise_value(numbers, i):
-    """Add the limit to a value, and return whether the sum is positive."""
+    """Add the limit to a value and return whether the sum is positive."""
     numbers.values[i] += numbers.limits[i]
     return numbers.values[i] > 0.0
 
 
 @numba.njit
 def positive(numbers, kernel):
-    """Call a kernel for every value, and count how many are positive."""
+    """Call a kernel for every value and count how many are positive."""
     count = 0
     for i in range(numbers.values.size):
         if call_at(kernel, (numbers, i)):

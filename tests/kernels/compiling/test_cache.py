@@ -87,7 +87,7 @@ def test_what_is_called_compiled_is_so_for_its_content_alone(tmp_path: Path) -> 
 
 
 def touched(tree: Path) -> Path:
-    """Copy the core, and change the times of the kernels' files."""
+    """Copy the core and change the times of the kernels' files."""
     for path in (copied_core(tree) / "granchain_core" / "kernels").rglob("*.py"):
         os.utime(path, ns=(0, 0))
     return tree

@@ -19,7 +19,7 @@ from numba.core.errors import TypingError
 from granchain_core.kernels.compiling import cache, compile_lock
 from granchain_core.kernels.compiling.compile_lock import CompileLock
 
-#: Obtains one small kernel, and prints how many versions were loaded and how many compiled.
+#: Obtains one small kernel and prints how many versions were loaded and how many compiled.
 _COMPILE = """
 import numpy as np
 from granchain_core.kernels.forces.peaks import reset_peaks

@@ -120,7 +120,7 @@ def _keep_closing(law, y, c, time, t, counts, closings):
 
 @jit
 def _sample(y, t, h, step, rows, row, period, samples):
-    """Store displacements at the sampling times within the step, and return the row of the next one."""
+    """Store displacements at the sampling times within the step and return the row of the next one."""
     n = y.size // 2
     while row <= samples and period * row / samples <= t + h:
         x = (period * row / samples - t) / h
