@@ -27,9 +27,9 @@ def roots_of_four(values, out):
         store(out, row, root_by_series(load4(values, row)))
 
 
-#: By vector width: the kernel, the smallest and largest exponents of ten, and the first omitted term of the series. An
-#: inverse root of 14 bits leaves |e| ≤ 2^{−13}; one in floats, accurate to 1.5 · 2^{−12}, leaves |e| ≤ 3 · 2^{−12} and
-#: its square.
+#: By vector width: the kernel, the smallest and largest exponents of ten, and the first omitted term of the series.
+#: An inverse root of 14 bits leaves |e| ≤ 2^{−13}; one in floats, accurate to 1.5 · 2^{−12}, leaves |e| ≤ 3 · 2^{−12}
+#: and its square.
 CASES = {
     BLOCK_WIDTH: (roots_of_eight, -200.0, 10.0, 5.0 / 16.0 * 2.0**-39),
     4: (roots_of_four, -30.0, 10.0, 35.0 / 128.0 * (3.0 * 2.0**-12) ** 4),
