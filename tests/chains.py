@@ -1,4 +1,4 @@
-"""Scenes that several tests need: the cases of the stored reference."""
+"""Scenes shared by several tests: the cases of the stored reference."""
 
 from __future__ import annotations
 
@@ -11,29 +11,29 @@ import numpy as np
 from granchain_core import Scene, scene
 from granchain_core.scene.laws import LAWS as DAMPING_LAWS
 
-#: What the knob `dissipation` may be.
+#: The values of the knob `dissipation`.
 LAWS = (*DAMPING_LAWS, "none")
 _REFERENCE = np.load(Path(__file__).parent / "reference" / "reference.npz")
 
 
 def reference_names() -> list[str]:
-    """Names of the stored cases."""
+    """Return the names of the stored cases."""
     return sorted({key.split("/")[0] for key in _REFERENCE})
 
 
 def reference(name: str) -> dict:
-    """Arrays of one stored case, its `record` read as JSON."""
+    """Return the arrays of one stored case, with its `record` parsed from JSON."""
     arrays = {key.split("/")[1]: _REFERENCE[key] for key in _REFERENCE if key.startswith(name + "/")}
     return {**arrays, "record": json.loads(str(arrays["record"]))}
 
 
 def reference_scene(name: str) -> Scene:
-    """The stored case as a scene of the product, knob by knob."""
+    """Build the scene of a stored case with granchain's own functions, knob by knob."""
     return recorded_scene(reference(name)["record"]["scene"])
 
 
 def recorded_scene(given: dict) -> Scene:
-    """The scene in a record of tests/reference as one of the product, knob by knob."""
+    """Build the scene in a record of tests/reference with granchain's own functions, knob by knob."""
     base = scene("rig" if given["name"].startswith("rig") else "sec2")
     chosen = base.evolve(f=given["frequency"], A0=given["amplitude"], D=given["damping"], N=given["beads"],
                          kappa=given["kappa"], wall=given["wall"], dissipation=given["law"],

@@ -1,4 +1,4 @@
-"""Runs a coroutine, or a whole test, whatever ran in the same process before."""
+"""Run a coroutine, or a whole test, in a thread without an event loop."""
 
 from __future__ import annotations
 
@@ -13,15 +13,17 @@ Words = ParamSpec("Words")
 
 
 def run_async(work: Coroutine[object, object, Result]) -> Result:
-    """As `asyncio.run`, in a thread of its own: Playwright's event loop runs in the main thread as long as a browser is
-    open.
+    """Call `asyncio.run` in a separate thread: while a browser is open, Playwright's event loop runs in the main
+    thread.
     """
     with ThreadPoolExecutor(1) as pool:
         return pool.submit(asyncio.run, work).result()
 
 
 def in_a_thread(test: Callable[Words, Result]) -> Callable[Words, Result]:
-    """The test in a thread of its own, for one that lets Bokeh or Tornado run an event loop; reason as above."""
+    """Run a test in a separate thread, for the same reason: a decorator for tests in which Bokeh or Tornado runs an
+    event loop.
+    """
     @wraps(test)
     def threaded(*words: Words.args, **named: Words.kwargs) -> Result:
         with ThreadPoolExecutor(1) as pool:

@@ -1,8 +1,9 @@
-"""Python commands in processes of their own that begin with the large libraries imported.
+"""Run Python commands in separate processes that start with the large libraries already imported.
 
-To import Numba takes a third of a second, Panel a second, and tests that follow a page of docs or look at a cache of
-kernels start a hundred processes. Here a server without any module of granchain imports the libraries once, and each
-command is a fork of it. A test about the start of a process itself, or about its signals, starts one in the usual way.
+Importing Numba takes a third of a second and Panel a second, and the tests that follow a page of docs or examine a
+kernel cache start about a hundred processes. Here a server process, which has imported no module of granchain, imports
+the libraries once, and each command runs in a fork of it. Tests about the start of a process or about its signals start
+processes in the usual way.
 """
 
 from __future__ import annotations
@@ -19,8 +20,8 @@ from pathlib import Path
 from subprocess import CompletedProcess
 from typing import IO
 
-#: The server: it reads a command in each line, and answers with its status and what it has printed. In a child the
-#: `for` ends, and the command runs.
+#: The server reads one command per line, and answers with the command's exit status and output. In a child process, the
+#: `for` loop ends and the command runs.
 _SERVER = """
 import gc, importlib, json, os, runpy, sys, types
 from concurrent.futures import ThreadPoolExecutor
@@ -95,7 +96,7 @@ def _opened(stream: IO[str] | None) -> IO[str]:
 
 def python(*arguments: str, folder: Path, environment: Mapping[str, str],
            libraries: tuple[str, ...] = ("numba",)) -> CompletedProcess[str]:
-    """What `python ARGUMENTS` does in a folder, the first argument being `-c` or `-m`."""
+    """Run `python ARGUMENTS` in a folder; the first argument is `-c` or `-m`."""
     server, umask = _server(libraries), os.umask(0)
     os.umask(umask)
     asked = {"arguments": arguments, "folder": str(folder), "environment": dict(environment), "umask": umask}

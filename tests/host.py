@@ -1,4 +1,4 @@
-"""A fake host of a dashboard, which queues callbacks until the test runs them."""
+"""A fake dashboard host, which queues callbacks until the test runs them."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from granchain_core import CurvePoint
 
 
 class Pending:
-    """A queue of callbacks, which the test runs in order. Any thread may add to `callbacks`."""
+    """A queue of callbacks that the test runs in order. Any thread may add to `callbacks`."""
 
     def __init__(self) -> None:
         self.callbacks: list[Callable[[], None]] = []
 
     def call_waiting(self) -> None:
-        """Run the callbacks queued so far; callbacks that they queue stay in the queue."""
+        """Run the callbacks queued so far; those that they add stay in the queue."""
         queued, self.callbacks = self.callbacks, []
         for callback in queued:
             callback()
 
     def run_callbacks_until(self, until: Callable[[], bool], seconds: float = 20.0) -> None:
-        """Run callbacks until a condition holds."""
+        """Run callbacks until a condition is true."""
         waiting.until(until, seconds, self._call_all)
 
     def _call_all(self) -> None:
@@ -34,7 +34,7 @@ class Pending:
 
 
 class FakeHost(Pending):
-    """A `WorkHost` for tasks and debouncing, and a part of `PageHost` (tests/session/test_host.py)."""
+    """A `WorkHost` for tasks and debouncing, and part of a `PageHost` (see tests/session/test_host.py)."""
 
     busy = awaiting_picture = curve_computing = False
 
@@ -46,7 +46,7 @@ class FakeHost(Pending):
         self.failures: list[Exception] = []
         self.faults: list[tuple[Exception, str]] = []
         self.fault_ids: list[str] = []
-        #: Computations that could not be finished, with the ids of their sentences.
+        #: Errors of computations that could not be finished, with their fault ids.
         self.failed_computations: list[tuple[Exception, str]] = []
         self.closing: list[Callable[[], object]] = []
 
@@ -55,7 +55,7 @@ class FakeHost(Pending):
         self.callbacks.append(lambda: action(*args))
 
     def call_later(self, seconds: float, action: Callable[..., None], *args: Any) -> None:
-        """Queue an action at once: the delay passes when the test runs the callbacks."""
+        """Queue an action immediately, whatever the delay: it runs when the test runs the callbacks."""
         self.next_tick(action, *args)
 
     def on_close(self, action: Callable[[], object]) -> None:
@@ -68,14 +68,14 @@ class FakeHost(Pending):
             action()
 
     def show_failure(self, error: Exception) -> None:
-        """Keep an error for which a page has no place."""
+        """Record an error that no page can show."""
         self.failures.append(error)
 
     def report_fault(self, error: Exception, sentence: str, fault: str = "") -> None:
-        """Keep an error of granchain itself, the message outside the page, and its id."""
+        """Record a fault of granchain itself, with its message and its fault id."""
         self.faults.append((error, sentence))
         self.fault_ids.append(fault)
 
     def log_failed_computation(self, error: Exception, fault: str) -> None:
-        """Keep a computation that could not be finished."""
+        """Record the error of a computation that could not be finished."""
         self.failed_computations.append((error, fault))

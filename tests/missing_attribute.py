@@ -1,4 +1,4 @@
-"""An attribute of a library that a later release might not have."""
+"""Remove attributes of a library that a later release might not have."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pytest
 
 
 def hide(monkeypatch: pytest.MonkeyPatch, module: ModuleType, owner: type, name: str) -> None:
-    """Take an attribute away from `module` alone: the library still needs its own."""
+    """Hide an attribute from `module` alone; the library itself still needs it."""
 
     def found(self: object, attribute: str) -> Any:
         if attribute == name and sys._getframe(1).f_globals.get("__name__") == module.__name__:
@@ -21,7 +21,7 @@ def hide(monkeypatch: pytest.MonkeyPatch, module: ModuleType, owner: type, name:
 
 
 def lose(monkeypatch: pytest.MonkeyPatch, owner: str, name: str) -> None:
-    """Take away what a row of a table `INTERNALS` names: from the class or module, and from what its instances set."""
+    """Remove a name in a table `INTERNALS` from its class or module, and from the attributes that instances set."""
     from app import library_internals
 
     found = library_internals._find(owner)

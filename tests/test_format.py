@@ -1,4 +1,4 @@
-"""Numbers in words: a prefix is chosen for the number as it is written, with three figures."""
+"""Numbers in texts: the prefix suits the number as it is printed, with three figures."""
 
 from __future__ import annotations
 

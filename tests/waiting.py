@@ -1,4 +1,4 @@
-"""Waiting for what must happen, with a generous limit: no test depends on speed."""
+"""Wait for an expected event, with a generous time limit: no test depends on speed."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 
 def until(holds: Callable[[], object], seconds: float = 60.0, pause: Callable[[], object] = lambda: time.sleep(0.002)) -> None:
-    """Call `pause` until something holds."""
+    """Call `pause` until `holds()` is true."""
     end = time.monotonic() + seconds
     while not holds():
         assert time.monotonic() < end, "did not come"

@@ -1,4 +1,4 @@
-"""What an effect costs in a step: kernels with and without it, timed by turns."""
+"""The cost of an effect per step: kernels with and without it are timed alternately."""
 
 from __future__ import annotations
 
@@ -17,10 +17,9 @@ CHAIN = scene("sec2")
 
 
 class Clocked:
-    """A chain whose steps take the nanoseconds written here: 90 with the dashpot and 60 without, more on a busy
-    machine.
+    """A chain whose steps take a known time: 90 ns with the dashpot and 60 ns without, and more on a busy machine.
 
-    Every third run a neighbour takes half of the processor, and every second chain lies badly in memory.
+    In every third run, another process uses half of the processor, and every second chain is badly placed in memory.
     """
 
     made = 0
@@ -32,7 +31,7 @@ class Clocked:
         self.runs = 0
 
     def nanoseconds_per_step(self) -> float:
-        """One run."""
+        """Return the time of one run."""
         self.runs += 1
         return self.own * (2.0 if self.runs % 3 == 0 else 1.0)
 
@@ -45,7 +44,7 @@ def test_an_effect_costs_the_difference_whatever_the_machine_does_meanwhile(monk
 
 
 def test_what_is_timed_are_the_steps_that_were_taken() -> None:
-    """Real kernels, no bound on how fast: a step takes a positive time, and the numbers fit together."""
+    """With real kernels, a step takes a positive time, without an upper limit, and the numbers are consistent."""
     found = effect_cost(Variant(CHAIN), Variant(CHAIN.evolve(dissipation="none")), CODE)
     assert min(found.with_it, found.without) > 0.0
     assert found.percent == pytest.approx(100.0 * found.difference / found.without)

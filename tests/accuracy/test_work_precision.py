@@ -1,4 +1,4 @@
-"""The picture of the trade: measured rows, a reference that two solvers agree on, and the lesson of naive methods."""
+"""Work against precision: measured rows, a reference on which two solvers agree, and the lesson of naive methods."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ from granchain_core.precompile.pieces import ACCURACY_KERNELS
 from granchain_core.precompile.warm import compile_piece
 
 SHORT = scene("sec2").evolve(N=2, f=2000.0)
-#: The module whose function has its name.
+#: The module, whose function has the same name.
 MEASURING = import_module("granchain_core.accuracy.work_precision")
 
 
 @pytest.fixture(scope="module", autouse=True)
 def timed_briefly() -> Iterator[None]:
-    """Each setting runs once a round, not up to nine times: no test here looks at how well its time is known."""
+    """Run each setting once per round instead of up to nine times: no test here needs accurate times."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(MEASURING, "_MOST_RUNS", 1)
         yield
@@ -68,7 +68,7 @@ def test_finer_settings_err_less(measured: WorkPrecision) -> None:
 
 
 def test_naive_methods_are_a_hundred_times_worse_at_the_same_step(measured: WorkPrecision) -> None:
-    # docs/method.md, w-variables: the dashpot's jump takes RK4 in (u, v) to order one
+    # docs/method.md, w-variables: the dashpot's jump reduces RK4 in (u, v) to order one
     assert error(measured, "rk4-naive", 0) > 50.0 * error(measured, "rk4", 0)
     assert error(measured, "rk4-naive", -1) > 1e-4
 
@@ -100,7 +100,7 @@ def test_progress_reaches_the_end_while_rows_are_added(monkeypatch: pytest.Monke
 
 @pytest.mark.long
 def test_what_fails_is_named_and_kept(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    """A solver that gives up and one that is too slow once: rows with their sentences, and the others go on."""
+    """One solver gives up and another is too slow once: their rows have sentences, and the others continue."""
     slow = iter([True])
 
     def solver(shown, name, tolerance, periods, samples, stop, located=False):
@@ -113,7 +113,7 @@ def test_what_fails_is_named_and_kept(monkeypatch: pytest.MonkeyPatch, capsys: p
         return solve(shown, name, tolerance, periods, samples, stop, located)
 
     monkeypatch.setattr(MEASURING, "solve", solver)
-    monkeypatch.setattr(MEASURING, "_ROW_LIMIT", 5.0)  # the other rows take tenths of a second on a quiet machine
+    monkeypatch.setattr(MEASURING, "_ROW_LIMIT", 5.0)  # the other rows take tenths of a second on an idle machine
     kept: list[WorkPrecision] = []
 
     def measuring(*words: Any) -> WorkPrecision:
@@ -131,7 +131,7 @@ def test_what_fails_is_named_and_kept(monkeypatch: pytest.MonkeyPatch, capsys: p
 
 
 def cancelled_in_the_middle(work: Callable[[Stop], object], reached: threading.Event) -> None:
-    """Run `work(stop)`, raise the flag as soon as it has reached its middle, and see it end as cancelled."""
+    """Run `work(stop)`, raise the flag as soon as `reached` is set, and check that it ends as cancelled."""
     stop = Stop()
     ended: list[BaseException] = []
 
@@ -151,7 +151,7 @@ def cancelled_in_the_middle(work: Callable[[Stop], object], reached: threading.E
 
 @pytest.mark.parametrize("solver", ["LSODA", "RK45", "DOP853"])
 def test_a_solver_of_scipy_stops_between_two_steps(solver: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A run of minutes; the flag goes up in its fifth step."""
+    """The run would take minutes; the flag is raised after five steps."""
     reached, steps = threading.Event(), itertools.count()
     step = getattr(scipy.integrate, solver).step
 
@@ -165,7 +165,7 @@ def test_a_solver_of_scipy_stops_between_two_steps(solver: str, monkeypatch: pyt
 
 
 def test_a_measurement_is_cancelled_in_its_middle() -> None:
-    """While rows of SciPy's solvers are measured, which take minutes with the rig."""
+    """This happens while rows of SciPy's solvers are measured, which takes minutes for the rig."""
     compile_piece(scene("rig"), ACCURACY_KERNELS)
     reached = threading.Event()
     cancelled_in_the_middle(lambda stop: entry(scene("rig"), stop, lambda part: reached.set() if part > 0.0 else None), reached)
@@ -183,15 +183,15 @@ def test_a_limit_raises_its_flag_after_its_time_and_with_the_outer_flag() -> Non
 
 
 def wait_for(stop: Stop) -> None:
-    """Until a flag is up."""
+    """Wait until a flag is raised."""
     end = time.monotonic() + 60.0
     while not stop:
-        assert time.monotonic() < end, "the flag stays down"
+        assert time.monotonic() < end, "the flag was not raised"
         time.sleep(0.001)
 
 
 def test_the_naive_force_is_wrong_and_names_where_it_blows_up() -> None:
-    """At natural steps the rig's naive force is off by a good part of itself, or is not there at all."""
+    """At natural steps, the rig's naive force is wrong by a large fraction, or the motion fails."""
     found = lesson(scene("rig"), Stop())
     drawn = {(one.method, one.steps): one for one in found.drawn}
     assert set(drawn) == {(m.name, n) for m in METHODS.values() if m.variables == "uv" for n in NATURAL_STEPS}
@@ -202,7 +202,7 @@ def test_the_naive_force_is_wrong_and_names_where_it_blows_up() -> None:
 
 
 def test_an_error_of_the_force_is_told_of_the_largest_pulse_and_the_pulse_is_shown() -> None:
-    """At 1130 Hz the wall is pressed hard once in three drive periods."""
+    """At 1130 Hz, the wall is pressed hard once in three drive periods."""
     found, whole = lesson(scene("sec2").evolve(f=1130.0), Stop()), settle(scene("sec2").evolve(f=1130.0)).run
     assert np.abs(found.force).max() == pytest.approx(whole.max_output_force, rel=0.1)  # ten periods from rest
     for one in found.drawn:
@@ -212,8 +212,8 @@ def test_an_error_of_the_force_is_told_of_the_largest_pulse_and_the_pulse_is_sho
 
 
 def test_a_second_reference_without_preload_or_damping_is_one_too() -> None:
-    """The overlaps at which SciPy's solver starts anew contain the preload; without damping there is no G."""
+    """The overlaps at which SciPy's solver restarts include the preload; without damping, there is no G."""
     for shown in (SHORT.evolve(F0=1.0), SHORT.evolve(dissipation="none"), SHORT.evolve(tension="cut")):
         plain, _ = solve(shown, "DOP853", 1e-12, 2, 16)
         located, _ = solve(shown, "DOP853", 1e-13, 2, 16, located=True)
-        assert np.abs(plain - located).max() < 1e-6 * np.abs(located).max()  # each alone is better than 1e-8
+        assert np.abs(plain - located).max() < 1e-6 * np.abs(located).max()  # each is more accurate than 1e-8

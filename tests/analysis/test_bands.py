@@ -1,4 +1,4 @@
-"""Band edges of precompressed chains against closed forms, long finite chains and a driven run."""
+"""Band edges of precompressed chains agree with closed forms, finite chains and driven motions."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ CHAIN = scene("precompressed")
 
 
 def test_equal_beads_have_one_band_up_to_the_cut_off() -> None:
-    """f_c = (1/π)√(k/m) with k = (3/2) K^{2/3} F0^{1/3}; a foundation raises the lower end to √(k_f/m)/2π."""
+    """f_c = (1/π)√(k/m) with k = (3/2) K^{2/3} F0^{1/3}; a foundation raises the lower edge to √(k_f/m)/2π."""
     cut_off = np.sqrt(1.5 * CHAIN.K ** (2 / 3) * CHAIN.F0 ** (1 / 3) / CHAIN.bead(1).mass) / np.pi
     np.testing.assert_allclose(bands(CHAIN), [(0.0, cut_off)], rtol=1e-12)
     founded = CHAIN.evolve(k=1e7)
@@ -23,7 +23,8 @@ def test_equal_beads_have_one_band_up_to_the_cut_off() -> None:
 
 
 def test_a_dimer_has_a_gap_between_its_acoustic_and_its_optical_band() -> None:
-    """Edges √(2k/m₁), √(2k/m₂) and √(2k(1/m₁ + 1/m₂)) over 2π (Nesterenko 2001; Boechler et al. 2010), m₂ < m₁."""
+    """Its edges are √(2k/m₁), √(2k/m₂) and √(2k(1/m₁ + 1/m₂)) over 2π, m₂ < m₁ (Nesterenko 2001; Boechler et al. 2010).
+    """
     chain = CHAIN.evolve(dimer=0.25)
     heavy, light = chain.bead(1).mass, chain.bead(2).mass
     spring = 1.5 * chain.contact_stiffness()[1] ** (2 / 3) * chain.F0 ** (1 / 3)
@@ -45,7 +46,7 @@ def test_the_driven_chain_passes_below_the_cut_off_and_not_above() -> None:
         matrix = np.diag(slope[:-1] + slope[1:]) - np.diag(slope[1:-1], 1) - np.diag(slope[1:-1], -1)
         answer = np.linalg.solve(matrix - omega**2 * np.diag(chain.masses()), np.eye(chain.N)[0] * slope[0] * chain.A0)
         passed.append(spring[-1] * abs(answer[-1]))
-    assert passed[3] < 1e-2 * min(passed[:2])  # the cut-off is there at all
+    assert passed[3] < 1e-2 * min(passed[:2])  # the cut-off exists
     # the next term of the force is a quarter of dynamic over static overlap, 1e-9 over 1e-6 m and less; the curve's
     # own error, 1e-5 of the largest displacement A0, is added where the last bead hardly moves
     np.testing.assert_allclose(found.column("max_output_force_elastic") - chain.F0, passed, rtol=2e-3,
@@ -59,7 +60,7 @@ def test_chains_without_bands_are_refused(knobs: dict[str, float], words: str) -
 
 
 def test_the_diode_is_reciprocal_while_it_is_linear() -> None:
-    """Small waves pass both ways alike (reciprocity of linear systems); the light bead's mode is above the cut-off."""
+    """Small waves pass equally in both directions (linear reciprocity); the light bead's mode is above the cut-off."""
     small = [scene(name).evolve(A0=1e-9, f=4000.0) for name in ("diode", "diode-reverse")]
     forward, backward = (resonance_curve(one, [one.f]).points[0].max_output_force_elastic - one.F0 for one in small)
     # the force's next term is a quarter of dynamic over static overlap, a few 1e-3
@@ -73,10 +74,11 @@ def test_the_diode_is_reciprocal_while_it_is_linear() -> None:
 
 
 def test_the_diode_lets_the_drive_through_one_way_once_its_orbit_is_unstable() -> None:
-    """Its orbit loses a pair of multipliers; the strongest line at the wall has the frequency of the pair's angle.
+    """A pair of its multipliers leaves the unit circle; the strongest line at the wall has the frequency of their
+    angle.
 
-    The multipliers are those of the fixed-step method's map, whose kernels are there; `granchain branch` has the point
-    itself.
+    The multipliers are those of the fixed-step method's map, whose kernels are compiled anyway; `granchain branch`
+    finds the point itself.
     """
     chain = scene("diode")
     below, above = (settle(chain.evolve(A0=amplitude)) for amplitude in (7.3e-7, 7.7e-7))
@@ -92,5 +94,5 @@ def test_the_diode_lets_the_drive_through_one_way_once_its_orbit_is_unstable() -
     strongest = lines.frequency[1 + int(lines.amplitude[1:].argmax())]
     multipliers = np.linalg.eigvals(unstable.derivative)
     turned = abs(np.angle(multipliers[np.abs(multipliers).argmax()])) / (2.0 * np.pi) * chain.f
-    # the record of 200 periods tells lines 54 Hz apart
+    # the record of 200 periods resolves lines 54 Hz apart
     assert strongest == pytest.approx(turned, abs=54.0)

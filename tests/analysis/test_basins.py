@@ -1,4 +1,4 @@
-"""Basins of a plane: each start's own long run ends on the attractor that its cell names."""
+"""Basins in a plane: a long run from each start ends on the attractor that its cell names."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from granchain_core.steady.settling.single_chain import settle_to_forces
 
 #: A motion of period 4 and a quasi-periodic one, both with many starts in the plane of docs/analysis.md.
 SHARED = scene("sec2").evolve(f=1641.0, A0=0.53e-6)
-#: Relative difference of the largest forces of one motion, where no error is stated: those of the quasi-periodic one,
-#: over 100 periods, differ by 0.2 %. The forces of the two motions differ by a factor of four.
+#: Allowed relative difference of the largest forces of one motion if no error is stated: those of the quasi-periodic
+#: one, over 100 periods, differ by 0.2 %. The forces of the two motions differ by a factor of four.
 _FORCE_DIFFERENCE = 0.01
 
 
@@ -21,7 +21,7 @@ def test_each_start_ends_where_its_cell_says() -> None:
     found = basins(SHARED, ("u1", u), ("v11", v))
     assert found.number.shape == (3, 3) and found.shares.sum() == pytest.approx(1.0)
     assert [(one.regime.name, one.regime.period) for one in found.attractors] == [("periodic", 4), ("quasi-periodic", None)]
-    # the file states the share of the plane that leads to each attractor; no random state was drawn, so it has no error
+    # the file has the share of the plane that leads to each attractor, without an error, since no state is random
     table = found.to_xarray("attractors")
     assert set(table["share_of"].values) == {"starts of the plane"}
     assert table["share"].values.tolist() == found.shares.tolist() and np.isnan(table["share_error"]).all()

@@ -1,4 +1,5 @@
-"""Strobe diagrams: as many strobes as the period, the same regimes as the resonance curve, and failures reported."""
+"""Bifurcation diagrams have as many strobes as the period and the regimes of the resonance curve, and report failures.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +10,7 @@ from granchain_core import BadInput, Scene, bifurcation_diagram, iter_curve, sce
 
 
 def test_there_are_as_many_strobes_as_periods() -> None:
-    """Section 2's chain from rest: periods 1, 2, 3 and 4 near its first peaks."""
+    """Section 2's chain from rest has periods 1, 2, 3 and 4 near its first peaks."""
     found = bifurcation_diagram(scene("sec2"), "f", [1130.0, 340.0, 1576.0, 615.0], start="rest", keep=24)
     assert [point.value for point in found.points] == [340.0, 615.0, 1130.0, 1576.0]
     assert [point.regime.period for point in found.points] == [1, 2, 3, 4]
@@ -29,7 +30,7 @@ def test_the_cloud_has_every_strobe_in_si() -> None:
     values, states = found.cloud(2, velocity=True)
     assert values.tolist() == [4e-7] * 6 + [5e-7] * 6
     np.testing.assert_array_equal(states, np.concatenate([point.strobes[:, 1, 1] for point in found.points]))
-    assert 0.0 < np.abs(states).max() < 1.0  # metres per second, where the drive moves at some millimetres
+    assert 0.0 < np.abs(states).max() < 1.0  # [m/s]; the drive moves at some millimetres per second
 
 
 def test_what_is_no_diagram_is_refused() -> None:
@@ -45,13 +46,14 @@ CUT = scene("sec2").evolve(N=3, tension="cut", k=2e5)
 
 
 def test_strobes_of_a_cut_chain_show_no_structure_that_is_not_there() -> None:
-    """Period 1 at all of them. Fixed steps, of order 1 with the cut, gave 58 strobes at 1500 Hz that were distinct."""
+    """Both have period 1. Fixed steps, of order 1 with the cut, used to give 58 distinct strobes at 1500 Hz."""
     for point in bifurcation_diagram(CUT, "f", [1250.0, 1500.0], start="rest").points:
         assert point.regime.period == 1 and [point.distinct(bead) for bead in (1, 2, 3)] == [1, 1, 1]
 
 
 def apart(strobes: np.ndarray, exact: np.ndarray, period: int) -> float:
-    """Largest difference of two orbits' strobes, relative to the largest displacement or velocity, best shift."""
+    """Return the largest relative difference of two orbits' strobes in displacements and velocities, at the best shift.
+    """
     one, other = strobes[:period], exact[:period]
     scale = np.abs(other).max(axis=(0, 2), keepdims=True)
     return min(float((np.abs(np.roll(one, k, axis=0) - other) / scale).max()) for k in range(period))

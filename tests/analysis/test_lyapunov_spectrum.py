@@ -1,5 +1,5 @@
-"""The Lyapunov spectrum against multipliers, Liouville's formula, the pairs of a Hamiltonian system, and Benettin's
-way.
+"""The Lyapunov spectrum agrees with multipliers, Liouville's formula, the pairs of a Hamiltonian system, and Benettin's
+method.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ def undamped() -> LyapunovSpectrum:
 
 
 def test_on_an_orbit_the_exponents_are_those_of_its_multipliers() -> None:
-    """Pairs of complex multipliers turn, so that single exponents swing about their mean: within some 1 / PERIODS."""
+    """Pairs of complex multipliers rotate, so single exponents oscillate about their mean, within about 1 / PERIODS."""
     chain = scene("sec2").evolve(N=3, f=1200.0)
     found, there = lyapunov_spectrum(chain, PERIODS), orbit(chain)
     assert there.stable
@@ -43,7 +43,7 @@ def test_on_an_orbit_the_exponents_are_those_of_its_multipliers() -> None:
 ])
 @pytest.mark.parametrize("f", [340.0, 1000.0])
 def test_stated_errors_hold_on_orbits_with_complex_multipliers(knobs: dict[str, Any], f: float) -> None:
-    """Where blocks hold whole half turns their scatter was as little as a 150th of the error."""
+    """If blocks contain whole half turns, their scatter used to be as little as a 150th of the error."""
     chain = scene("sec2").evolve(f=f, **knobs)
     found, of_orbit = lyapunov_spectrum(chain, 200), orbit(chain)
     exact = np.sort(np.log(np.abs(of_orbit.multipliers)) / of_orbit.period)[::-1]
@@ -52,7 +52,8 @@ def test_stated_errors_hold_on_orbits_with_complex_multipliers(knobs: dict[str, 
 
 
 def test_the_sum_of_exponents_is_the_mean_trace(undamped: LyapunovSpectrum) -> None:
-    """Without damping volumes are kept: the trace is 0, and the sum is what rounding and the tolerance of 1e-13 leave.
+    """Without damping, volumes are conserved: the trace is 0, and so is the sum, up to rounding and the tolerance of
+    1e-13.
     """
     assert undamped.resolved == 6 and undamped.mean_trace == 0.0
     assert undamped.liouville_error is not None and undamped.liouville_error < 1e-9
@@ -65,7 +66,7 @@ def test_with_damping_their_sum_is_the_mean_trace_too() -> None:
 
 
 def test_exponents_are_in_descending_order(undamped: LyapunovSpectrum) -> None:
-    """The table calls them ranks, and the dimension adds them up from the largest."""
+    """The table numbers them as ranks, and the dimension adds them up from the largest."""
     for found in (undamped, lyapunov_spectrum(scene("sec2").evolve(N=3, f=1000.0, A0=2e-6), 60)):
         assert np.all(np.diff(found.exponents[:found.resolved]) <= 0.0)
 
@@ -73,13 +74,11 @@ def test_exponents_are_in_descending_order(undamped: LyapunovSpectrum) -> None:
 def test_a_hamiltonian_system_has_pairs(undamped: LyapunovSpectrum) -> None:
     apart = undamped.exponents + undamped.exponents[::-1]
     assert np.abs(apart).max() < 3.0 * undamped.errors.max() + 10.0 / PERIODS
-    assert undamped.exponents[0] > 3.0 * undamped.errors[0]  # and is chaotic at this drive
+    assert undamped.exponents[0] > 3.0 * undamped.errors[0]  # it is chaotic with this drive
 
 
 def test_the_largest_is_that_of_two_trajectories(undamped: LyapunovSpectrum) -> None:
-    """Two computations that share the equations and the start: without damping the energy grows, and with it the
-    exponent.
-    """
+    """Both computations use the same start, since without damping, the energy grows, and the exponent with it."""
     engine = Engine(UNDAMPED, fixed_step_setting(), 1)
     engine.start(run_until_settled(UNDAMPED, None, None).engine.state)
     engine.periods(50)
@@ -89,7 +88,7 @@ def test_the_largest_is_that_of_two_trajectories(undamped: LyapunovSpectrum) -> 
 
 
 def test_without_damping_the_dimension_is_that_of_the_whole_space(undamped: LyapunovSpectrum) -> None:
-    assert undamped.dimension is not None and undamped.dimension > 5.9  # 6 where rounding leaves the sum above 0
+    assert undamped.dimension is not None and undamped.dimension > 5.9  # 6 if rounding leaves the sum above 0
 
 
 @pytest.mark.parametrize(("exponents", "resolved", "dimension"), [
@@ -103,7 +102,7 @@ def test_the_dimension_is_kaplan_and_yorkes(undamped: LyapunovSpectrum, exponent
 
 
 def test_the_dimension_of_a_closed_curve_is_one() -> None:
-    """Its largest exponent is 0, so that the sign of what is measured for it decides nothing."""
+    """Its largest exponent is 0, so the sign of the measured value is irrelevant."""
     found = lyapunov_spectrum(scene("sec2").evolve(f=1700.0), 400)
     assert found.regime == "quasi-periodic" and abs(found.exponents[0]) < 3.0 * found.errors[0]
     assert found.dimension == 1.0 and found.dimension_range == (1.0, 1.0) and found.dimension_resolved
@@ -111,7 +110,7 @@ def test_the_dimension_of_a_closed_curve_is_one() -> None:
 
 
 def test_a_torus_that_is_no_closed_curve_has_no_such_dimension(undamped: LyapunovSpectrum) -> None:
-    """Two exponents near 0: a torus of the section, or a curve that is hardly attracting."""
+    """Two exponents near 0 mean a torus in the section, or a weakly attracting curve."""
     found = replace(undamped, exponents=np.array([0.001, -0.001, -0.5]), errors=np.full(3, 0.002), resolved=3,
                     regime="quasi-periodic")
     assert not found.on_closed_curve and not found.dimension_resolved
@@ -135,13 +134,15 @@ def test_the_spectrum_is_cancelled_by_its_stop() -> None:
 
 
 @pytest.mark.parametrize(("exponents", "errors", "low", "high", "words"), [
-    ([-0.1, -0.2], [0.01, 0.01], 0.0, 0.0, "0.000"),              # an orbit: a point, whatever the errors
-    ([0.001, -0.2], [0.01, 0.01], 0.0, 1.0 + 0.011 / 0.19, "not resolved, 0.000 to 1.058"),  # zero within its error: point or curve
+    ([-0.1, -0.2], [0.01, 0.01], 0.0, 0.0, "0.000"),              # an orbit is a point, whatever the errors
+    ([0.001, -0.2], [0.01, 0.01], 0.0, 1.0 + 0.011 / 0.19, "not resolved, 0.000 to 1.058"),  # zero within its error: a point or a curve
     ([0.1, -0.2], [0.01, 0.01], 1.0 + 0.09 / 0.21, 1.0 + 0.11 / 0.19, "1.500 (1.429 to 1.579)"),
 ])
 def test_the_dimension_has_a_range(undamped: LyapunovSpectrum, exponents: list[float], errors: list[float], low: float,
                                    high: float, words: str) -> None:
-    """One standard error down and up; where the sign of the largest exponent decides it is not resolved."""
+    """The range is one standard error down and up; if it depends on the sign of the largest exponent, the dimension is
+    not resolved.
+    """
     found = replace(undamped, exponents=np.array(exponents), errors=np.array(errors), resolved=2)
     assert found.dimension_range == pytest.approx((low, high))
     assert found.dimension_resolved is not words.startswith("not resolved")

@@ -1,4 +1,4 @@
-"""Rotation numbers of maps of which they are known, and of section 2's chain against the lines of its force."""
+"""Rotation numbers of maps with known ones, and of section 2's chain compared with the lines of its force."""
 
 from __future__ import annotations
 
@@ -30,17 +30,17 @@ COUNT = 4001
 
 
 def circle(theta: np.ndarray) -> np.ndarray:
-    """Angles in turns as states (P, 2, 1) on the unit circle."""
+    """Return angles in turns as states (P, 2, 1) on the unit circle."""
     return np.stack([np.cos(2 * np.pi * theta), np.sin(2 * np.pi * theta)], axis=1)[:, :, None]
 
 
 def rigid(rho: float, count: int = COUNT) -> np.ndarray:
-    """Angles of a rigid rotation."""
+    """Return the angles of a rigid rotation."""
     return np.asarray(0.1 + rho * np.arange(count))
 
 
 def circle_map(omega: float, strength: float, count: int = COUNT) -> np.ndarray:
-    """Angles of Arnold's circle map θ + Ω − (K / 2π) sin 2πθ."""
+    """Return the angles of Arnold's circle map θ + Ω − (K / 2π) sin 2πθ."""
     theta = np.zeros(count)
     for p in range(1, count):
         theta[p] = theta[p - 1] + omega - strength / (2 * np.pi) * np.sin(2 * np.pi * theta[p - 1])
@@ -48,9 +48,10 @@ def circle_map(omega: float, strength: float, count: int = COUNT) -> np.ndarray:
 
 
 def omega_of(rho: float, strength: float) -> float:
-    """Ω for which the circle map has the rotation number ρ: its conjugacy to a rotation as a Fourier series.
+    """Return the Ω with which the circle map has the rotation number ρ, from its conjugacy to a rotation.
 
-    h(φ + ρ) = h(φ) + Ω − (K / 2π) sin 2πh(φ) with h(φ) = φ + u(φ), solved for Ω and u by iteration.
+    h(φ + ρ) = h(φ) + Ω − (K / 2π) sin 2πh(φ) with h(φ) = φ + u(φ) is solved for Ω and the Fourier series u by
+    iteration.
     """
     phi, modes = np.arange(64) / 64, np.fft.fftfreq(64, 1 / 64)
     divisor = np.exp(2j * np.pi * modes * rho) - 1.0
@@ -66,7 +67,7 @@ def omega_of(rho: float, strength: float) -> float:
 
 
 def off(found: Winding, rho: float) -> float:
-    """Distance from the known ρ, which must be within the stated error."""
+    """Return the distance from the known ρ, which must be within the stated error."""
     assert found.value is not None and found.error is not None, found.reason
     distance = abs(found.value - rho)
     assert distance <= found.error < 1e-2
@@ -74,7 +75,7 @@ def off(found: Winding, rho: float) -> float:
 
 
 def test_the_weights_are_those_of_the_source() -> None:
-    """Their sum is 1, they are symmetric, and the average of a smooth function on a rotation is exact to rounding."""
+    """Their sum is 1, they are symmetric, and averages of smooth functions on a rotation are exact up to rounding."""
     assert weights(1000).sum() == pytest.approx(1.0, abs=1e-14)
     np.testing.assert_allclose(weights(1000), weights(1000)[::-1], atol=1e-15)
     assert weights(3)[1] / weights(3)[0] == pytest.approx(np.exp(-4.0 + 16.0 / 3.0))
@@ -99,13 +100,13 @@ def test_the_circle_map(strength: float) -> None:
 
 
 def test_the_circle_map_by_its_conjugacy_far_from_linear() -> None:
-    """h(φ) = φ + 0.8 sin(2πφ) / 2π takes a rotation to a map whose steps differ by a factor of nine."""
+    """h(φ) = φ + 0.8 sin(2πφ) / 2π transforms a rotation into a map whose steps differ by a factor of nine."""
     phi = rigid(GOLDEN)
     assert off(winding_of(circle(phi + 0.8 * np.sin(2 * np.pi * phi) / (2 * np.pi))), GOLDEN) < 1e-10
 
 
 def test_the_average_converges_faster_than_any_power() -> None:
-    """From 500 to 2000 states the difference of halves falls by more than 4⁴. The mean of equal weights is 1e-6 off."""
+    """From 500 to 2000 states, the difference of halves falls by more than 4⁴. The unweighted mean is wrong by 1e-6."""
     theta = circle_map(omega_of(GOLDEN, 0.5), 0.5)
     found = winding_of(circle(theta))
     assert found.convergence is not None
@@ -115,7 +116,7 @@ def test_the_average_converges_faster_than_any_power() -> None:
 
 
 def test_sign_time_and_whole_turns_make_no_difference() -> None:
-    """ρ is known up to its sign and whole numbers: reversed in time, mirrored, or turned once more it is the same."""
+    """ρ is known up to its sign and a whole number: reversing time, mirroring or adding turns does not change it."""
     states = circle(circle_map(omega_of(GOLDEN, 0.3), 0.3))
     mirrored = states * np.array([1.0, -1.0])[:, None]
     for same in (states[::-1], mirrored, circle(rigid(1.0 - GOLDEN)), circle(rigid(GOLDEN + 2.0))):
@@ -123,7 +124,7 @@ def test_sign_time_and_whole_turns_make_no_difference() -> None:
 
 
 def test_any_linear_change_of_coordinates_gives_the_same() -> None:
-    """In eight coordinates, mixed at random, with harmonics by which the curve crosses itself in every plane."""
+    """Eight coordinates are mixed at random, with harmonics that make the curve cross itself in every plane."""
     rng, theta = np.random.default_rng(3), rigid(GOLDEN)
     waves = np.concatenate([np.exp(2j * np.pi * k * theta)[:, None] / k for k in range(1, 5)], axis=1)
     curve = np.concatenate([waves.real, waves.imag], axis=1)
@@ -132,7 +133,7 @@ def test_any_linear_change_of_coordinates_gives_the_same() -> None:
 
 
 def test_a_curve_whose_strongest_line_is_twice_the_rotation_number() -> None:
-    """Most coordinates go round twice in a turn: half of the strongest line, or that and a half, is ρ."""
+    """Most coordinates go around twice per turn, so ρ is half of the strongest line, or that plus a half."""
     theta = rigid(GOLDEN)
     states = np.concatenate([circle(2 * theta), 0.2 * circle(theta)], axis=2)
     assert off(winding_of(states), GOLDEN) < 1e-12
@@ -148,7 +149,7 @@ def test_curves_that_are_visited_in_turn(curves: int) -> None:
 
 
 def test_noise_is_in_the_error() -> None:
-    """Of measured states with noise the error is larger than without, and holds."""
+    """With noise in the states, the error is larger than without, and is still a bound."""
     rng, states, errors = np.random.default_rng(0), circle(rigid(GOLDEN)), []
     for noise in (1e-6, 1e-3, 3e-2):
         found = winding_of(states + noise * rng.standard_normal(states.shape))
@@ -159,14 +160,14 @@ def test_noise_is_in_the_error() -> None:
 
 @pytest.mark.parametrize("seed", range(8))
 def test_a_rotation_whose_phase_diffuses_has_a_large_error_or_none(seed: int) -> None:
-    """The angle is a random walk around its mean advance: the error falls as 1/√P, to some 1e-4 at these steps."""
+    """The angle is a random walk around its mean advance: the error falls as 1/√P, to about 1e-4 here."""
     rng = np.random.default_rng(seed)
     found = winding_of(circle(rigid(GOLDEN) + 5e-3 * rng.standard_normal(COUNT).cumsum()))
     assert found.value is None or found.error > 1e-5
 
 
 def test_chaos_is_not_decided() -> None:
-    """Hénon's map at a = 1.4, b = 0.3, and white noise."""
+    """Examples are Hénon's map with a = 1.4 and b = 0.3, and white noise."""
     states = np.zeros((COUNT, 2, 1))
     for p in range(1, COUNT):
         x, y = states[p - 1, :, 0]
@@ -178,7 +179,9 @@ def test_chaos_is_not_decided() -> None:
 
 @pytest.mark.parametrize("f", [594.0, 1090.0])
 def test_the_strobes_of_a_chaotic_chain_are_not_decided(f: float) -> None:
-    """Whatever the regime is called: six and three bands visited in turn, with exponents of 0.09 per period."""
+    """This does not depend on the regime's label; six or three bands are visited in turn, with exponents of 0.09 per
+    period.
+    """
     engine = Engine(scene("sec2").evolve(f=f), fixed_step_setting(), 1)
     engine.periods(1000)
     found = winding_of(engine.periods(6000)[0])
@@ -199,7 +202,7 @@ def test_three_frequencies_are_not_decided() -> None:
 @pytest.mark.parametrize("fraction", [Fraction(0), Fraction(1, 2), Fraction(1, 3), Fraction(1, 4), Fraction(2, 5), Fraction(1, 6),
                                       Fraction(3, 7)], ids=str)
 def test_near_a_fraction_a_multiple_is_not_taken_for_the_number(fraction: Fraction) -> None:
-    """Curves with six harmonics of known ρ that the record goes round 0.5 to 30 times: right or not decided."""
+    """For curves with six harmonics, known ρ and 0.5 to 30 turns in the record, the result is right or not decided."""
     random, decided = np.random.default_rng(0), 0
     for _ in range(40):
         rho = float(fraction) + random.uniform(0.5, 30.0) / 4000 / fraction.denominator
@@ -214,7 +217,7 @@ def test_near_a_fraction_a_multiple_is_not_taken_for_the_number(fraction: Fracti
 
 
 def test_near_a_fraction_the_record_may_be_too_short() -> None:
-    """A third and 1e-4: in 4000 states the angle advances by 1.2 of the distances between three places."""
+    """With a third plus 1e-4, the angle advances in 4000 states by 1.2 times the distance between three places."""
     found = winding_of(circle(rigid(1.0 / 3.0 + 1e-4)))
     assert found.value is None
     assert found.reason.startswith("the rotation number is within 1.0e-04 of 1/3, and the record is too short")
@@ -245,7 +248,7 @@ def three() -> RotationNumber:
 
 
 def peaks_of_the_force(chain: Scene, least: float) -> tuple[np.ndarray, float]:
-    """Frequencies of the output force's peaks above this part of the largest [Hz], and the resolution."""
+    """Return frequencies [Hz] of the output force's peaks above this fraction of the largest, and the resolution."""
     found = spectrum(run(chain, 0, 600, 64, start=settle(chain).state))
     size = found.amplitude
     inner = (size[1:-1] > size[:-2]) & (size[1:-1] >= size[2:]) & (size[1:-1] > least * size[1:].max())
@@ -254,9 +257,9 @@ def peaks_of_the_force(chain: Scene, least: float) -> tuple[np.ndarray, float]:
 
 @pytest.mark.parametrize(("name", "orders", "least"), [("curve", 4, 1e-2), ("three", 3, 2e-3)])
 def test_the_lines_of_a_force_are_combinations(name: str, orders: int, least: float, request: pytest.FixtureRequest) -> None:
-    """Every strong line of the output force is at |m f/q + n f₂|, with q curves: so far as the spectrum resolves it.
+    """Every strong line of the output force is at |m f/q + n f₂|, for q curves, within the resolution of the spectrum.
 
-    By chance a line is as near to one of them with a probability of `by_chance`.
+    `by_chance` is the probability that a line is so near to one of them by chance.
     """
     found = request.getfixturevalue(name)
     assert found.value is not None and found.curves == (1 if name == "curve" else 3)
@@ -271,7 +274,7 @@ def test_the_lines_of_a_force_are_combinations(name: str, orders: int, least: fl
 
 
 def test_its_error_holds_for_finer_steps() -> None:
-    """By six times the default steps, where the error of the steps is a hundred times that of the average."""
+    """With the default steps, their error is a hundred times that of the average; six times as many steps show it."""
     chain = scene("sec2").evolve(f=1230.0)
     found = rotation_number(chain)
     engine = Engine(chain, fixed_step_setting(6), 1)
@@ -291,7 +294,7 @@ def test_what_is_said_of_it(curve: RotationNumber, three: RotationNumber) -> Non
 
 
 def test_from_another_start_it_is_the_same(curve: RotationNumber) -> None:
-    """The attractor is reached from other states too."""
+    """The attractor is reached from other states as well."""
     pushed = State(np.linspace(1e-8, 0.0, 11), np.zeros(11))
     again = rotation_number(CURVE, start=pushed)
     assert again.value is not None and abs(again.value - curve.value) < curve.error + again.error

@@ -1,4 +1,4 @@
-"""Spectra against the motion they are made of, a linear lattice solved by itself, and twice the samples."""
+"""Spectra agree with the underlying motion, with an independently solved linear lattice, and with finer samples."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from granchain_core import BadInput, Run, Scene, run, scene, spectrum, transfer
 from granchain_core.analysis.spectrum import cosines
 from granchain_core.results.regime import Regime
 
-#: Small waves on a chain that is precompressed by 50 N: every contact stays closed and is nearly a linear spring.
+#: Small waves in a chain with a preload of 50 N: every contact stays closed and is nearly a linear spring.
 PRESSED = scene("sec2").evolve(N=5, F0=50.0, A0=1e-9, f=4000.0, accuracy=1e-8)
 
 
@@ -30,7 +30,7 @@ def test_the_lines_of_an_orbit_add_up_to_its_force(period_3: Run) -> None:
 
 
 def test_a_window_gives_the_lines_their_height(period_3: Run) -> None:
-    """Four orbits lie in the record, so that Hann's window leaves neighbours without each other's leakage."""
+    """The record has four orbits, so with Hann's window, there is no leakage between neighbouring lines."""
     lines = spectrum(period_3)
     window = spectrum(replace(period_3, regime=Regime.unsettled(300)))
     assert window.period is None and window.resolution == pytest.approx(2.0 * 1130.0 / 12.0)
@@ -52,7 +52,7 @@ def test_what_is_folded_back_is_estimated() -> None:
 
 
 def lattice(chain: Scene, f: float) -> complex:
-    """F_out / F_in of the linear chain of masses, springs and dashpots, solved as a linear system."""
+    """Return F_out / F_in of the linear chain of masses, springs and dashpots, solved as a linear system."""
     bead, omega = chain.bead(1), 2.0 * np.pi * f
     stiffness, law = np.zeros(chain.N + 1), chain.contact_stiffness()
     overlaps = chain.static_overlap()
@@ -66,9 +66,9 @@ def lattice(chain: Scene, f: float) -> complex:
 
 @pytest.mark.parametrize("changes", [{"N": 4}, {"N": 5, "F0": 1.0, "dissipation": "tsuji"}], ids=["jumps", "pressed"])
 def test_gain_and_phase_are_known_to_the_errors_that_are_stated(changes: dict[str, object]) -> None:
-    """Against sixteen times the samples or more; without a jump the error is that of the motion.
+    """They are compared with at least sixteen times the samples; without a jump, the error is that of the motion.
 
-    Both chains are settled after 60 periods: after 300 no figure differs by more than 1e-10 of what is stated.
+    Both chains are settled after 60 periods: after 300, no value differs by more than 1e-10 of its stated error.
     """
     chain = scene("sec2").evolve(f=1200.0, **changes)
     fine = transfer(run(chain.evolve(accuracy=1e-9), periods=60, record=2, samples=4096))
@@ -79,12 +79,13 @@ def test_gain_and_phase_are_known_to_the_errors_that_are_stated(changes: dict[st
         turned = np.abs(np.angle(np.exp(1j * (found.phase - fine.phase[same]))))
         known = ~np.isnan(found.gain_error)
         assert (wrong[known] <= found.gain_error[known]).all() and (turned <= found.phase_error).all()
-        assert found.gain_error[1] < 0.1 * found.gain[1] and found.phase_error[1] < 0.1  # bounds that say something
+        assert found.gain_error[1] < 0.1 * found.gain[1] and found.phase_error[1] < 0.1  # meaningful bounds
 
 
 @pytest.mark.parametrize("f", [2000.0, 4000.0, 6000.0])
 def test_small_waves_of_a_pressed_chain_pass_as_the_linear_lattice_says(f: float) -> None:
-    """The chain departs from the linear one as its amplitude over the static overlap, 1e-9 over 3e-6 m."""
+    """The deviation from the linear chain is of the order of the amplitude over the static overlap, 1e-9 over 3e-6 m.
+    """
     chain = PRESSED.evolve(f=f)
     through = transfer(run(chain, periods=400, record=2, samples=64))
     expected = lattice(chain, f)

@@ -1,4 +1,4 @@
-"""The imports of the project's Python files, for the tests of its architecture."""
+"""Read the imports of the project's Python files, for the tests of its architecture."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ ROOT = Path(__file__).parents[2]
 
 
 class Import(NamedTuple):
-    """One import: the module, dotted and absolute, and the names taken from it with what they are called here.
+    """One import: the absolute dotted module, and the names imported from it, each with its local name.
 
-    `import …` takes no names.
+    For `import …`, there are no names.
     """
 
     module: str
@@ -23,18 +23,18 @@ class Import(NamedTuple):
 
 @functools.cache
 def parsed(path: Path) -> ast.Module:
-    """A file as a syntax tree, which the tests share and leave as it is."""
+    """Return the syntax tree of a file, which the tests share and do not change."""
     return ast.parse(path.read_text(encoding="utf-8"))
 
 
 @functools.cache
 def nodes(path: Path) -> tuple[ast.AST, ...]:
-    """All nodes of a file's syntax tree."""
+    """Return all nodes of a file's syntax tree."""
     return tuple(ast.walk(parsed(path)))
 
 
 def by_folder(paths: Iterable[Path]) -> dict[str, list[Path]]:
-    """The files of each folder, by its name from the root: one test looks at a folder, and its words name the file."""
+    """Group files by folder, relative to the root: one test examines a folder, and its message names the file."""
     found: dict[str, list[Path]] = {}
     for path in paths:
         found.setdefault(path.parent.relative_to(ROOT).as_posix(), []).append(path)
@@ -43,7 +43,7 @@ def by_folder(paths: Iterable[Path]) -> dict[str, list[Path]]:
 
 @functools.cache
 def imports_in(path: Path, everywhere: bool = True) -> tuple[Import, ...]:
-    """What a file imports: everywhere, in functions and for type checking too, or only at its top."""
+    """Return what a file imports: everywhere, including functions and type checking, or only at the top level."""
     package = path.relative_to(ROOT).parts[:-1]
     found: list[Import] = []
     for node in nodes(path) if everywhere else parsed(path).body:

@@ -1,4 +1,4 @@
-"""Only tests of the browser that move a pointer to coordinates are repeated, and they are listed."""
+"""Only browser tests that move a pointer to coordinates are repeated, and they are listed."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ FOLDER = ROOT / "tests" / "browser"
 
 
 def moves_the_pointer(node: ast.AST, helpers: set[str]) -> bool:
-    """Whether a function uses the mouse or a finger, hovers, or calls a helper that does."""
+    """Return whether a function uses the mouse or a touch screen, hovers, or calls a helper that does."""
     return any((isinstance(one, ast.Attribute) and one.attr in ("mouse", "touchscreen", "hover"))
                or (isinstance(one, ast.Name) and one.id in helpers) for one in ast.walk(node))
 
 
 def pointer_tests(path: Path) -> tuple[str, ...]:
-    """The names of the tests of a file that move the pointer."""
+    """Return the names of the tests in a file that move the pointer."""
     functions = [one for one in parsed(path).body if isinstance(one, ast.FunctionDef)]
     helpers = {"hover"} | {one.name for one in functions if not one.name.startswith("test_") and moves_the_pointer(one, {"hover"})}
     return tuple(one.name for one in functions if one.name.startswith("test_") and moves_the_pointer(one, helpers))

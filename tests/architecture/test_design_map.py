@@ -1,4 +1,4 @@
-"""The map in docs/design.md is the map of the code: every folder is on it, and each imports only what it says."""
+"""The map in docs/design.md is that of the code: every folder is on it, and imports only what the map says."""
 
 from __future__ import annotations
 
@@ -14,31 +14,30 @@ PAGE = (ROOT / "docs" / "design.md").read_text(encoding="utf-8")
 #: Folder → the folders of its last column.
 ROWS = {row[1]: re.findall(r"`(\w+)`", row[2])
         for row in re.finditer(r"^\| `([\w/]+)` \| [^|]+ \| ([^|]+) \|$", PAGE, re.MULTILINE)}
-#: Module beside the folders → what it uses: a module, a folder, or one module of a folder.
+#: Module next to the folders → what it uses: a module, a folder, or one module of a folder.
 MODULES = {row[1]: set(re.findall(r"`([\w.]+)`", row[2]))
            for row in re.finditer(r"^\| `(\w+)\.py` \| [^|]+ \| ([^|]+) \|$", PAGE, re.MULTILINE)}
-#: Modules of the kernels beside their folders, and those that compile them.
+#: Modules next to the folders of the kernels, and those that compile them.
 KERNELS = set(re.findall(r"^\| `(\w+)\.py` \| [^|]+ \|$", PAGE, re.MULTILINE))
-#: Folder with folders of its own, which the map orders → each of these → the others that it uses.
+#: Folder whose own folders the map orders → each of these → the others that it uses.
 FAMILIES = {family: {folder.split("/")[2]: uses for folder, uses in ROWS.items()
                      if re.fullmatch(rf"granchain_core/{family}/\w+", folder)} for family in ("kernels", "steady")}
-#: The core's folders at the top, whose imports the map orders.
+#: The core's top folders, whose imports the map orders.
 LAYERS = {folder.split("/")[1]: uses for folder, uses in ROWS.items() if re.fullmatch(r"granchain_core/\w+", folder)}
 
 
-#: Powers and factors of Hertz's law: p = 3/2, p + 1, what they are divided by, and those of contact times and waves.
+#: Powers and factors of Hertz's law: p = 3/2 and p + 1, their reciprocals, and those of contact times and waves.
 _POWERS = {1.5, 2.5, 0.4, 0.25, 2.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0, -1.0 / 3.0, -1.0 / 6.0}
 _FACTORS = {1.5, 2.5, 0.4}
-#: The powers as texts have them.
+#: The powers as written in texts.
 _POWERS_IN_TEXTS = ("{3/2}", "{2/3}", "{5/2}")
-#: Where such a number means something else: a share of a record's samples, a reserve of time, parts of a speed and of a
-#: record, an error that falls as the fourth power of the step, the part of a change that is stated, the √2 of
-#: Butterworth's low-pass.
+#: Places where such a number means something else: a fraction of a record's samples, of a speed, of a record or of a
+#: change, a reserve of time, an error that falls as the fourth power of the step, the √2 of a Butterworth low-pass.
 _OTHER_NUMBERS = {
     ("experiment/grid.py", "_decoded"), ("runs/budget.py", "refuse_long_picture"), ("orbits/response.py", "RETURNS_IN_STEP"),
     ("observers/twin.py", "_TRANSIENT"), ("integrate/methods.py", "method_for"), ("analysis/pulse.py", "_ERROR_OVER_CHANGE"),
     ("experiment/sensors.py", "shortest_pulse"), ("experiment/sensors.py", "response")}
-#: Where the law stands without such a number: as δ times its root, as a polynomial or a constant, or as an order.
+#: Places where the law is written without such a number: as δ times its root, a polynomial, a constant, or an order.
 _WITHOUT_NUMBER = {
     ("kernels/effects/contact.py", "elastic_force"), ("kernels/effects/contact.py", "three_halves"),
     ("kernels/batch/step.py", "contact"), ("kernels/equations/chain_in_vector.py", "chain_slope"),
@@ -54,12 +53,12 @@ _WITHOUT_NUMBER = {
 
 
 def allowed(layer: str, layers: dict[str, list[str]] = LAYERS) -> set[str]:
-    """The layer, what it uses, and what those use."""
+    """Return the layer and all layers that it uses, directly or indirectly."""
     return {layer}.union(*(allowed(one, layers) for one in layers[layer]))
 
 
 def imported(path: Path) -> set[str]:
-    """The core's modules that a file imports, dotted, without `granchain_core`."""
+    """Return the core's modules that a file imports, dotted, without `granchain_core`."""
     found: set[str] = set()
     for module, names in imports_in(path):
         if module.split(".")[0] == "granchain_core":
@@ -69,7 +68,7 @@ def imported(path: Path) -> set[str]:
 
 
 def used(layer: str) -> set[str]:
-    """What the files of a layer import, the first word of each."""
+    """Return the top-level names of the core that the files of a layer import."""
     return {name.split(".")[0] for path in (ROOT / "granchain_core" / layer).rglob("*.py") for name in imported(path)}
 
 
@@ -86,7 +85,7 @@ def test_a_folder_imports_only_what_the_map_says(layer: str) -> None:
 
 @pytest.mark.parametrize("family, layer", [(family, layer) for family, layers in FAMILIES.items() for layer in layers])
 def test_a_folder_of_a_family_imports_only_what_the_map_says(family: str, layer: str) -> None:
-    """Of the other folders; a module beside them may be used by any that it does not use itself."""
+    """This is about other folders of the family; any folder may use a module next to them that does not use it."""
     home = ROOT / "granchain_core" / family
     names = {name.split(".")[1] for path in (home / layer).rglob("*.py") for name in imported(path)
              if name.startswith(f"{family}.")}
@@ -102,7 +101,7 @@ def test_every_module_of_the_kernels_is_named() -> None:
 
 
 def test_the_map_has_no_circle() -> None:
-    """Each layer is drawn below all it uses."""
+    """Each layer is below all those that it uses."""
     for layers in (LAYERS, *FAMILIES.values()):
         order = list(layers)
         assert all(order.index(above) < order.index(layer) for layer, uses in layers.items() for above in uses)
@@ -118,7 +117,8 @@ def test_every_module_beside_the_folders_is_on_the_map_with_what_it_uses() -> No
 
 @pytest.mark.parametrize("layer", LAYERS)
 def test_a_folder_uses_no_module_that_uses_it(layer: str) -> None:
-    """Of the modules beside the folders, kernels use `errors` only; `precompile`, which uses most folders, is for none.
+    """Of the modules next to the folders, the kernels use only `errors`; no folder uses `precompile`, which uses most
+    of them.
     """
     beside = used(layer) & set(MODULES)
     assert layer == "precompile" or "precompile" not in used(layer)
@@ -127,7 +127,7 @@ def test_a_folder_uses_no_module_that_uses_it(layer: str) -> None:
 
 
 def constant(node: ast.expr) -> float | None:
-    """The value of an expression of numbers, such as 2.0 / 3.0; None for any other."""
+    """Return the value of a numeric expression, e.g. 2.0 / 3.0; None for any other expression."""
     try:
         return float(eval(compile(ast.Expression(node), "", "eval"), {"__builtins__": {}}))
     except (NameError, TypeError, ValueError, ZeroDivisionError):
@@ -135,7 +135,7 @@ def constant(node: ast.expr) -> float | None:
 
 
 def without_docstrings(part: ast.AST) -> Iterator[ast.AST]:
-    """All nodes of a part of a file but the texts that stand alone."""
+    """Yield all nodes of a part of a file except docstrings."""
     yield part
     for node in ast.iter_child_nodes(part):
         if not (isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)):
@@ -143,14 +143,14 @@ def without_docstrings(part: ast.AST) -> Iterator[ast.AST]:
 
 
 def is_root(node: ast.AST) -> bool:
-    """Whether a node is a call of `root` or `sqrt`."""
+    """Return whether a node is a call of `root` or `sqrt`."""
     return isinstance(node, ast.Call) and ast.unparse(node.func).rpartition(".")[2] in ("root", "sqrt")
 
 
 def writes_the_exponent(node: ast.AST) -> bool:
-    """Whether a node has a power or a factor of Hertz's law, gives such a power a name, or compares with its exponent.
+    """Return whether a node has a power or factor of Hertz's law, names such a power, or compares with the exponent.
 
-    A root of something with a root in it is such a power, √2 a factor of the wall's stiffness; a text may have powers.
+    Nested roots count as such a power, and √2 as a factor of the wall's stiffness; a text may contain powers.
     """
     if isinstance(node, ast.Call) and is_root(node):
         inside = [one for argument in node.args for one in ast.walk(argument)]
@@ -169,7 +169,7 @@ def writes_the_exponent(node: ast.AST) -> bool:
 
 
 def named_parts(path: Path) -> Iterator[tuple[str, ast.stmt]]:
-    """The functions, methods and constants of a file by name; what a class does in `__init__` is by its name."""
+    """Yield the functions, methods and constants of a file by name; `__init__` goes by the name of its class."""
     for node in parsed(path).body:
         for part in node.body if isinstance(node, ast.ClassDef) else (node,):
             if isinstance(part, ast.FunctionDef):
@@ -179,7 +179,7 @@ def named_parts(path: Path) -> Iterator[tuple[str, ast.stmt]]:
 
 
 def listed_places() -> set[tuple[str, str]]:
-    """File and name of every place in the table of the page."""
+    """Return file and name of every place in the page's table."""
     table = PAGE.partition("### The exponent 3/2\n")[2].partition("Independent references")[0]
     rows = re.findall(r"^\|.*\|$", table, re.MULTILINE)
     return {(file, name) for row in rows for file, names in re.findall(r"`([\w/]+\.py)`(?: \(([^)]*)\))?", row)
@@ -187,7 +187,7 @@ def listed_places() -> set[tuple[str, str]]:
 
 
 def event_places() -> set[tuple[str, str]]:
-    """File and function in the tables of events in docs/method.md: a function is in the last file named in its row."""
+    """Return file and function from the tables of events in docs/method.md; in a row, functions follow their file."""
     page = (ROOT / "docs" / "method.md").read_text(encoding="utf-8")
     found, file = set(), ""
     for row in re.findall(r"^\|.*\|$", page.partition("### Events, integrator by integrator\n")[2].partition("\n##")[0], re.MULTILINE):
@@ -221,7 +221,7 @@ def test_the_places_of_the_exponent_exist(file: str) -> None:
 
 
 def test_the_table_of_bodies_registered_from_above_is_that_of_the_code() -> None:
-    """Function → families above its own that give it a body (`.of`). Those of the effects' slots are too many."""
+    """The table lists functions to which other families give a body (`.of`), except those for the effects' slots."""
     kernels = ROOT / "granchain_core" / "kernels"
     defined = {name: path.relative_to(kernels) for path in kernels.rglob("*.py")
                for name in re.findall(r"^@by_\w+\ndef (\w+)", path.read_text(encoding="utf-8"), re.MULTILINE)}

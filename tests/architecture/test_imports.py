@@ -1,4 +1,5 @@
-"""Who imports whom: no circle anywhere, the layers of `app`, and private attributes of libraries where the table says.
+"""Imports: there are no circles, `app` keeps to its layers, and private attributes of libraries are used only where the
+tables say.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from granchain_core.kernels.compiling import cache, link_only
 
 
 def module_name(path: Path) -> str:
-    """The dotted name of a file; a package is its `__init__`."""
+    """Return the dotted name of a file; an `__init__` is its package."""
     parts = path.relative_to(ROOT).with_suffix("").parts
     return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
 
@@ -35,7 +36,7 @@ FOLDERS = {folder: [module_name(path) for path in paths] for folder, paths in by
 
 
 def imports(module: str) -> set[str]:
-    """The modules a file imports wherever it does: at the top, in a function, for type checking."""
+    """Return all modules that a file imports: at the top, in functions, and for type checking."""
     found: set[str] = set()
     for base, names in imports_in(MODULES[module]):
         found |= {f"{base}.{name}" if f"{base}.{name}" in MODULES else base for name, _ in names} or {base}
@@ -43,7 +44,7 @@ def imports(module: str) -> set[str]:
 
 
 def circles(graph: dict[str, set[str]]) -> list[list[str]]:
-    """Modules that can be reached from each other (Tarjan's strongly connected components of more than one)."""
+    """Return groups of modules that can be reached from each other (Tarjan's strongly connected components)."""
     number: dict[str, int] = {}
     lowest: dict[str, int] = {}
     stack: list[str] = []
@@ -71,7 +72,7 @@ def circles(graph: dict[str, set[str]]) -> list[list[str]]:
 
 
 def test_a_circle_is_found() -> None:
-    """The search itself: two circles, one of a module with itself, and a tail that belongs to none."""
+    """The graph has two circles, one of them a module that imports itself, and a tail in no circle."""
     graph = {"a": {"b"}, "b": {"c", "d"}, "c": {"a"}, "d": {"e"}, "e": set(), "f": {"f", "a"}}
     assert circles(graph) == [["a", "b", "c"], ["f"]]
 
@@ -83,25 +84,28 @@ def test_no_import_goes_in_a_circle() -> None:
 #: The folders of `app` in the map of docs/design.md, dotted, with what its last column says they use.
 USES = {folder.replace("/", "."): re.findall(r"`(\w+)`", uses) for folder, uses in re.findall(
     r"^\| `app/([\w/]+)` \| [^|]+ \| ([^|]+) \|$", (ROOT / "docs" / "design.md").read_text(encoding="utf-8"), re.MULTILINE)}
-#: Modules beside the folders that any folder may use; the others are above all.
+#: Modules next to the folders that any folder may use; the other modules are above all folders.
 SHARED = {"format", "former_names", "frames", "library_internals", "scripts"}
 
 
-#: Folders whose own folders the map orders. Others may use all of them; of a folder of `pages`, `dashboard` alone.
+#: Folders whose own folders the map orders. Other folders may use all of these, except that only `dashboard` may use
+#: the folders of `pages`.
 FAMILIES = {folder.split(".")[0] for folder in USES if "." in folder} - {"plots"}
 
 
 def layer(module: str) -> str:
-    """The folder of a module of `app`, with that inside a family; of a module beside the folders its name."""
+    """Return the folder of a module of `app`, including the inner one in a family; for a module next to the folders,
+    its name.
+    """
     parts = module.split(".")[1:]
     return ".".join(parts[:2]) if parts[0] in FAMILIES and len(parts) > 2 else parts[0]
 
 
 @functools.cache
 def allowed(folder: str) -> set[str]:
-    """The folders that a folder may import: itself, what it uses, and what those use.
+    """Return the folders that a folder may import: itself, those it uses, and those they use.
 
-    One of a family uses what its family does, too, and others of the family by their last name.
+    A member of a family may also use what its family uses, and names other members by their last name.
     """
     family, _, inside = folder.partition(".")
     used = [f"{family}.{one}" if inside and f"{family}.{one}" in USES else one for one in USES[folder]]
@@ -110,7 +114,7 @@ def allowed(folder: str) -> set[str]:
 
 
 def test_the_order_of_the_map_is_read() -> None:
-    """A family's own folders, and those that other folders use with it."""
+    """Families have their own folders, and folders that use a family may use its members."""
     assert {"serve", "parts", "pages"} == FAMILIES
     assert allowed("serve.compiling") == {"serve.compiling", "serve.computing", "serve.monitoring"}
     assert {"parts.toolkit", "serve.document", "plots"} <= allowed("parts.time_figures")
@@ -120,7 +124,8 @@ def test_the_order_of_the_map_is_read() -> None:
 
 @pytest.mark.parametrize("folder", [folder for folder in FOLDERS if folder.startswith("app")])
 def test_a_folder_of_the_app_imports_only_what_the_map_says(folder: str) -> None:
-    """Pages know their host and not the controller, parts know no page, the command line only plots and the server.
+    """Pages import their host but not the controller, parts import no page, and the command line only plots and the
+    server.
     """
     pairs = [(module, name) for module in FOLDERS[folder] if module != "app"
              for name in sorted(imports(module)) if name.startswith("app.")]
@@ -138,7 +143,7 @@ def test_a_folder_of_the_app_imports_only_what_the_map_says(folder: str) -> None
 
 @pytest.mark.parametrize("name", FILES)
 def test_a_script_imports_only_from_folders_that_the_map_allows(name: str) -> None:
-    """As the Python beside it; what puts the dashboard together may import pages, too."""
+    """The rules are those for Python; the folder that assembles the dashboard may also import pages."""
     folder = FILES[name].parent
     theirs = {(folder / url).resolve().parent.relative_to(ROOT / "app").as_posix().replace("/", ".")
               for url in re.findall(r'^import [^"]*"([^"]+)";$', FILES[name].read_text(encoding="utf-8"), re.MULTILINE)}
@@ -147,7 +152,7 @@ def test_a_script_imports_only_from_folders_that_the_map_allows(name: str) -> No
 
 
 def components(of: type) -> Iterator[type]:
-    """All classes of components of the page."""
+    """Yield all component classes of the page."""
     for one in of.__subclasses__():
         yield from components(one)
         yield one
@@ -156,7 +161,7 @@ def components(of: type) -> Iterator[type]:
 @pytest.mark.parametrize("part", sorted({one for one in components(Component) if one.__module__.startswith("app.")},
                                         key=lambda one: one.__name__))
 def test_a_component_loads_only_styles_of_folders_that_it_may_import(part: Any) -> None:
-    """A page has the styles of app/parts and its own, none of another page's."""
+    """A page uses the styles of app/parts and its own, but not those of another page."""
     folders = {path.read_text(encoding="utf-8"): path.parent for path in (ROOT / "app").rglob("*.css")}
     mine = layer(part.__module__)
     fits = allowed(mine) | ({one for one in USES if one.startswith("pages.")} if mine == "dashboard" else set())
@@ -176,20 +181,20 @@ def test_every_folder_says_in_one_line_what_it_is_for() -> None:
         assert purpose.split("\n")[0].endswith("."), f"{init} does not say what its folder is for"
 
 
-#: What Panel documents for components of one's own, underscore and all.
+#: Names with an underscore that Panel documents for custom components.
 DOCUMENTED = {"_esm", "_stylesheets", "_handle_msg", "_send_msg"}
 
 
-#: Public, whatever their names begin with.
+#: Public names that begin with an underscore.
 _OF_NAMED_TUPLES = {"_fields", "_replace", "_asdict", "_make"}
 
 
-#: Private names that are passed as keyword arguments, where `private_uses` does not look.
+#: Private names that are passed as keyword arguments, which `private_uses` does not examine.
 PARAMETERS = {"_with_props"}
 
 
 def private_uses(module: str) -> Iterator[str]:
-    """Private attributes of other objects than a class's own, by a dot or by name."""
+    """Yield private attributes of other objects that a module uses, with a dot or by name."""
     for node in nodes(MODULES[module]):
         if isinstance(node, ast.Attribute):
             if not node.attr.startswith("_") or ast.unparse(node.value) in ("self", "cls", "os"):
@@ -205,7 +210,7 @@ def private_uses(module: str) -> Iterator[str]:
 
 
 def documented(page: str, folder: str) -> dict[str, set[str]]:
-    """The private names in a page's tables, by the module in the second column."""
+    """Return the private names in a page's tables, by the module in the second column."""
     rows: dict[str, set[str]] = {}
     for what, where in re.findall(r"^\| ([^|]+) \| ([^|]+) \| [^|]+ \|$",
                                   (ROOT / "docs" / page).read_text(encoding="utf-8"), re.MULTILINE):
@@ -215,12 +220,12 @@ def documented(page: str, folder: str) -> dict[str, set[str]]:
     return rows
 
 
-#: What is used of Tornado, Bokeh, Panel and Param beyond their documentation, by the only modules that use it.
+#: Undocumented names of Tornado, Bokeh, Panel and Param, by the only module that uses them.
 INTERNALS = {module: {name for row in table for name in row.names} for module, table in library_internals.tables().items()}
-#: Those of these names that are private.
+#: The private ones among these names.
 PRIVATE = {module: {name for name in names if re.match("_[a-z]", name)} for module, names in INTERNALS.items()}
-#: Those of Numba, by the modules of the core; among them names that a class uses of the one it is derived from, which
-#: `private_uses` does not find.
+#: Private names of Numba, by module of the core, including names that a class inherits, which `private_uses` does not
+#: find.
 PRIVATE_OF_NUMBA = {f"granchain_core.{module}": names for module, names in documented("compiling.md", "kernels").items()}
 
 
@@ -241,7 +246,7 @@ def test_the_tables_name_modules_that_are_there() -> None:
 
 @pytest.mark.parametrize("module", INTERNALS)
 def test_a_module_uses_what_is_in_its_table(module: str) -> None:
-    """By a dot, by name, or as what it imports; of the logger of another module only its name."""
+    """It uses them with a dot, by name, or by importing them; for another module's logger, only the name is used."""
     tree = ast.parse(MODULES[module].read_text(encoding="utf-8"))
     tree.body = [node for node in tree.body if not isinstance(node, ast.Assign) or ast.unparse(node.targets[0]) != "INTERNALS"]
     words = {word for node in ast.walk(tree) for word in (
@@ -250,8 +255,8 @@ def test_a_module_uses_what_is_in_its_table(module: str) -> None:
     assert INTERNALS[module] <= words | ({"log"} if module == "app.serve.monitoring.logs" else set())
 
 
-#: Attributes that app/serve/document/changes.py uses of documented classes: Bokeh's documents, models and their events,
-#: Panel's state, Tornado's streams and locks, NumPy's arrays and what Python has.
+#: Attributes of documented classes that app/serve/document/changes.py uses: Bokeh's documents, models and their events,
+#: Panel's state, Tornado's streams and locks, NumPy's arrays, and Python's own classes.
 DOCUMENTED_ATTRIBUTES = {
     "acquire", "add_done_callback", "append", "closed", "done", "result", "rpartition", "write", "state", "loaded",
     "char", "dtype", "nbytes", "shape", "tobytes", "attr", "cols", "data", "document", "event_name", "id", "model",
@@ -260,7 +265,7 @@ DOCUMENTED_ATTRIBUTES = {
 
 
 def test_the_table_names_what_is_used_of_bokeh_without_an_underscore() -> None:
-    """Most attributes without one are documented; those that changes.py uses beyond that are in its table."""
+    """Most of these are documented; changes.py lists the others in its table."""
     module = "app.serve.document.changes"
     tree = ast.parse(MODULES[module].read_text(encoding="utf-8"))
     names = [alias.asname or alias.name for node in tree.body if isinstance(node, ast.Import) for alias in node.names]
@@ -271,14 +276,14 @@ def test_the_table_names_what_is_used_of_bokeh_without_an_underscore() -> None:
 
 
 def test_the_documentation_names_what_is_used_of_numba() -> None:
-    """With the names that classes of the core use of the ones of Numba they are derived from."""
+    """This includes names that classes of the core inherit from Numba's classes."""
     for module, names in (("cache", cache._NEEDED), ("link_only", link_only._NEEDED)):
         private = {name for name in names if name.startswith("_")}
         assert private <= PRIVATE_OF_NUMBA[f"granchain_core.kernels.compiling.{module}"]
 
 
 def test_parts_override_of_panel_only_what_is_documented() -> None:
-    """In their own classes and in those they are mixed from; what takes a shortcut is in one module."""
+    """This applies to their own classes and to the mixins; exceptions are in the table of one module."""
     parts = [Component, *Component.__subclasses__(), *StreamedFigure.__subclasses__(),
              *ResultFigure.__subclasses__()]
     assert len(parts) > 10

@@ -1,4 +1,4 @@
-"""Locals and parameters are called by what they hold: a curve, a sentence, the rows of a case."""
+"""Local variables and parameters are named by their content: a curve, a sentence, the rows of a case."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ import re
 import pytest
 from source import ROOT, by_folder, nodes
 
-#: Words that say nothing of what a variable holds.
+#: Words that say nothing about the content of a variable.
 RIDDLES = ("found", "there", "told", "said", "held", "whole")
-#: More of them, by package. `asked` is a keyword of `granchain.figure`.
+#: Further ones by package. `asked` is a keyword of `granchain.figure`.
 MORE_RIDDLES = {"app": ("one", "least", "tell"), "granchain_core": ("asked", "way")}
-#: Where a script names a variable: a declaration, or the parameter of a function.
+#: Places where a script names a variable: a declaration, or a parameter of a function.
 _DECLARED = re.compile(rf"""(?:\b(?:const|let)\s+|[(,]\s*)({'|'.join((*RIDDLES, *MORE_RIDDLES['app']))})\b
                            (?=\s*(?:=[^=]|of\b|,[^()]*\)\s*=>|\)\s*(?:=>|\{{)))""", re.VERBOSE)
 

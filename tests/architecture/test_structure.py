@@ -37,7 +37,7 @@ def test_files_are_short_and_have_docstrings(folder: str) -> None:
 
 @pytest.mark.parametrize("folder", by_folder(sorted((ROOT / "tests").rglob("test_*.py"))))
 def test_files_of_tests_have_tests(folder: str) -> None:
-    """One that is emptied by mistake fails nowhere else."""
+    """No other test would notice a file that was emptied by mistake."""
     assert [path.name for path in (ROOT / folder).glob("test_*.py")
             if not re.search(r"^ *def test_", path.read_text(encoding="utf-8"), re.MULTILINE)] == []
 
@@ -49,13 +49,13 @@ def test_scripts_are_short_and_begin_with_a_comment(folder: str) -> None:
 
 
 def lines_of_docstrings(path: Path) -> int:
-    """Lines that are documentation: the better a file is documented, the longer it may be."""
+    """Count the lines of docstrings: the better a file is documented, the longer it may be."""
     return sum(node.body[0].end_lineno - node.body[0].lineno + 1 for node in nodes(path)
                if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef)) and ast.get_docstring(node))
 
 
 def test_the_cache_is_named_by_the_sources_of_all_kernels() -> None:
-    """What changes that hash is tested in tests/kernels/compiling/test_sources.py."""
+    """tests/kernels/compiling/test_sources.py tests what changes that hash."""
     from granchain_core.kernels.compiling.cache_folder import CACHE_FOLDER
     from granchain_core.kernels.compiling.sources import sources_hash
 
@@ -63,7 +63,7 @@ def test_the_cache_is_named_by_the_sources_of_all_kernels() -> None:
 
 
 def test_code_inlined_by_numba_has_one_caller_or_one_of_each_kind_of_step() -> None:
-    """Inlined into two callers, code is compiled twice. Two kernels of which a scene needs one may share it."""
+    """Code inlined into two callers is compiled twice. Two kernels may share it if a scene needs only one of them."""
     parts: set[str] = set()
     calls: list[tuple[str, str]] = []
     for path in CORE:
@@ -83,7 +83,7 @@ def test_code_inlined_by_numba_has_one_caller_or_one_of_each_kind_of_step() -> N
 
 
 def test_a_batch_takes_every_slot_in_the_order_of_its_field() -> None:
-    """`batch_slots` fills `Slots` by place: one that it left out would be None, and the effect absent from curves."""
+    """`batch_slots` fills `Slots` by position: an omitted slot would be None, and the effect missing from curves."""
     tree = parsed(ROOT / "granchain_core" / "kernels" / "equations" / "motion.py")
     (slots,) = (node for node in tree.body if isinstance(node, ast.ClassDef) and node.name == "Slots")
     fields = [node.target.id for node in slots.body if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name)]
@@ -94,7 +94,7 @@ def test_a_batch_takes_every_slot_in_the_order_of_its_field() -> None:
 
 
 def test_kernels_take_few_arguments() -> None:
-    """At most 8: values that belong together are a named tuple, such as a step or the arrays that are written."""
+    """They take at most 8: related values form a named tuple, for example a step or the output arrays."""
     many = {f"{_dotted(path)}.{node.name}": len(node.args.args) for path in CORE if "kernels" in path.parts
             for node in nodes(path)
             if isinstance(node, ast.FunctionDef) and len(node.args.args) > 8}
@@ -102,7 +102,7 @@ def test_kernels_take_few_arguments() -> None:
 
 
 def test_an_error_is_read_by_a_name_with_one_meaning() -> None:
-    """`error_estimate` is the error of the displacements of one result and that of the output force of another."""
+    """`error_estimate` would be the displacement error in one result and the output-force error in another."""
     assert [_dotted(path) for path in ALL for node in nodes(path)
             if isinstance(node, ast.Attribute) and node.attr == "error_estimate"] == []
 
@@ -112,7 +112,7 @@ def _dotted(path: Path) -> str:
 
 
 def test_the_folders_of_quick_tests_are_there() -> None:
-    """A folder of another name would drop out of the inner loop silently."""
+    """A renamed folder would silently drop out of the inner loop."""
     tests = ROOT / "tests"
     (quick,) = (ast.literal_eval(statement.value) for statement in parsed(tests / "conftest.py").body
                 if isinstance(statement, ast.Assign) and ast.unparse(statement.targets[0]) == "QUICK")
@@ -120,6 +120,6 @@ def test_the_folders_of_quick_tests_are_there() -> None:
 
 
 def test_files_of_tests_have_names_of_their_own() -> None:
-    """Those of two folders with one name are one module to pytest, which then refuses the second."""
+    """pytest treats files of the same name in two folders as one module, and refuses the second."""
     names = [path.name for path in (ROOT / "tests").rglob("test_*.py")]
     assert sorted({name for name in names if names.count(name) > 1}) == []

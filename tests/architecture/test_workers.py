@@ -1,4 +1,4 @@
-"""What runs in a worker thread takes what it needs as arguments, and hands its results over (`Job.next_tick`)."""
+"""Work in a worker thread gets everything it needs as arguments, and hands over its results (`Job.next_tick`)."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from pathlib import Path
 import pytest
 from source import ROOT, parsed
 
-#: Where the state of a page is, which is used with the document locked.
+#: Folders with the state of pages, which is used only while the document is locked.
 FOLDERS = ("curve", "dashboard", "pages", "parts", "session")
 PAGES = sorted(path for folder in FOLDERS for path in (ROOT / "app" / folder).rglob("*.py"))
-#: Parameters by which a function is given to a thread. `Task` itself is such work, and writes nothing.
+#: Types of parameters that only the work of a thread has.
 OF_A_THREAD = {"Job", "TurnFlag"}
 SESSION = {"session", "_session"}
 
 
 def faults(tree: ast.AST) -> Iterator[str]:
-    """What the work of threads in a module writes of `self`, and where it reads the session."""
+    """Yield the places where thread work in a module writes to `self` or reads the session."""
     for function in ast.walk(tree):
         if not isinstance(function, ast.FunctionDef) or not OF_A_THREAD & {
                 ast.unparse(one.annotation) for one in function.args.args if one.annotation is not None}:

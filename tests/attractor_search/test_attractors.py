@@ -1,4 +1,5 @@
-"""All attractors of one setting: found from rest, sweeps and random states, each once, with shares that add up."""
+"""All attractors of one setting are found from rest, sweeps and random states, each once, with shares that add up to 1.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +19,7 @@ from granchain_core.results.regime import Regime
 from granchain_core.scene.state import State, rest
 from granchain_core.steady.steady_state import SteadyState
 
-#: Where rest, a sweep up and a sweep down lead to three different motions of sec2.
+#: Frequency [Hz] at which rest, a sweep up and a sweep down lead to three different motions of sec2.
 MANY = 893.0
 
 
@@ -28,7 +29,7 @@ def many() -> list[Attractor]:
 
 
 def named(found: list[Attractor], name: str) -> Attractor:
-    """The attractor that a start leads to."""
+    """Return the attractor that a start leads to."""
     return next(one for one in found if name in [origin.name for origin in one.origins])
 
 
@@ -36,7 +37,7 @@ def test_rest_up_and_down_lead_to_three_attractors(many: list[Attractor]) -> Non
     rest, up, down = (named(many, name) for name in ("rest", "up", "down"))
     assert rest is not up and up is not down and rest is not down
     assert rest.regime.period == 3 and down.regime.period == 3 and up.regime.name == "quasi-periodic"
-    # the curves computed by themselves end at the same forces: periodic ones to the errors claimed for both
+    # separately computed curves end at the same forces: periodic motions agree to the stated errors of both
     frequencies = MANY * np.linspace(0.92, 1.08, 9)
     for direction, one in (("rest", rest), ("down", down)):
         point = resonance_curve(scene("sec2"), frequencies, direction).points[4]
@@ -56,7 +57,7 @@ def test_every_start_leads_to_one_attractor_and_shares_add_up(many: list[Attract
 
 
 def test_every_origin_leads_there_by_itself(many: list[Attractor]) -> None:
-    # rk4-split and dop853 know nothing of batches: they start from the state that is listed
+    # `settle` does not use batches: it starts from the listed state
     for one in (named(many, "rest"), named(many, "down")):
         origin = next(o for o in one.origins if o.name.startswith("random"))
         alone = settle(one.scene, origin.state)
@@ -88,13 +89,13 @@ def test_the_same_seed_gives_the_same_answer_and_another_seed_the_same_attractor
 
 @pytest.mark.parametrize(("frequency", "period"), [(340.0, 1), (615.0, 2), (1130.0, 3)])
 def test_shifted_copies_of_an_orbit_are_one_attractor(frequency: float, period: int) -> None:
-    # a period-n orbit has n stroboscopic copies, and random states end on all of them
+    # an orbit of period n has n stroboscopic copies, and random states end on all of them
     found = attractors(scene("sec2").evolve(f=frequency), random_states=32)
     assert [one.regime.period for one in found] == [period] and found[0].share == 1.0
 
 
 def test_what_only_seems_to_rest_is_not_an_attractor() -> None:
-    # At 1936 Hz a sweep down arrives on a period-1 orbit with |μ| = 1.003: left to itself it goes elsewhere.
+    # At 1936 Hz, a sweep down arrives at a period-1 orbit with |μ| = 1.003, which the chain leaves in the long run.
     found = attractors(scene("sec2").evolve(f=1936.0), random_states=24)
     assert all(one.stable is not False for one in found)
     assert {one.regime.period for one in found} == {5, None}
@@ -103,7 +104,7 @@ def test_what_only_seems_to_rest_is_not_an_attractor() -> None:
 @pytest.mark.parametrize(("chain", "comes"), [
     (scene("sec2").evolve(N=2, f=2000.0), True), (scene("sec2").evolve(N=3, D=0.0, f=2000.0), False)])
 def test_what_was_called_irregular_and_comes_to_an_orbit_is_noticed(chain: Scene, comes: bool) -> None:
-    """A chain that settles within a few periods, and one without damping, which has no attractor."""
+    """One chain settles within a few periods, and one without damping has no attractor."""
     regime = Regime("quasi-periodic", None, None, None, 400, (1e-4, 1e-4), lyapunov_periods=400)
     result = SteadyState(chain, np.ones(3), regime, None, rest(chain))
     assert _locks(Candidate(result, np.zeros((1, 2, chain.N))), None) is comes
@@ -112,7 +113,9 @@ def test_what_was_called_irregular_and_comes_to_an_orbit_is_noticed(chain: Scene
 @pytest.mark.parametrize(("mean", "error", "name"), [
     (0.0, 1e-4, "quasi-periodic"), (3e-3, 2e-3, "quasi-periodic"), (2e-2, 1e-3, "unsettled"), (4e-2, 1e-3, "chaotic")])
 def test_a_group_with_several_names_is_judged_by_the_rule_for_one(mean: float, error: float, name: str) -> None:
-    """Their mean's standard error is smaller than one's, but what a finite record leaves is the same in all."""
+    """The standard error of their mean is smaller than that of each, but the bias of a finite record is the same in
+    all.
+    """
     group = [Regime(one, None, None, None, 800, (mean, error)) for one in ("quasi-periodic", "chaotic", "unsettled") * 3]
     assert irregular_regime(group).name == name
 
@@ -131,7 +134,9 @@ def test_shares_without_a_single_hit_still_have_an_error() -> None:
 @pytest.mark.parametrize(("count", "of", "low", "high"), [
     (6, 6, 0.6097, 1.0), (0, 6, 0.0, 0.3903), (37, 64, 0.4561, 0.6914), (0, 64, 0.0, 0.0566)])
 def test_the_interval_of_a_share_is_wilsons(count: int, of: int, low: float, high: float) -> None:
-    """SciPy's `binomtest(count, of).proportion_ci(method="wilson")`, and the first by hand: 6 / (6 + 1.96²)."""
+    """It agrees with SciPy's `binomtest(count, of).proportion_ci(method="wilson")`, and the first case with 6 / (6 +
+    1.96²).
+    """
     assert share_interval(count, of) == pytest.approx((low, high), abs=1e-4)
     expected = binomtest(count, of).proportion_ci(method="wilson")
     assert share_interval(count, of) == pytest.approx((expected.low, expected.high), rel=1e-12, abs=1e-15)
@@ -139,7 +144,7 @@ def test_the_interval_of_a_share_is_wilsons(count: int, of: int, low: float, hig
 
 
 def test_a_share_is_shown_with_its_interval() -> None:
-    """± a standard error went beyond 100 %."""
+    """A share with ± one standard error used to exceed 100 %."""
     found = attractors(scene("sec2").evolve(N=2, f=2000.0), random_states=6)
     assert [one.share_words for one in found] == ["100 % (61 to 100 %)"]
     assert found.to_xarray()["share_low"].values == pytest.approx(0.6097, abs=1e-4)
@@ -153,11 +158,11 @@ def test_without_random_states_no_share_is_stated() -> None:
 
 
 def test_failed_starts_are_named_and_count_among_the_random_states(monkeypatch: pytest.MonkeyPatch) -> None:
-    """One of two random states presses bead 2 a metre into the wall, and its numbers overflow at once."""
+    """One of two random states presses bead 2 a metre into the wall, and its numbers overflow immediately."""
     chain = scene("sec2").evolve(N=2, f=2000.0)
     pressed = State(np.array([0.0, 1.0]), np.zeros(2))
     origins = [Origin("rest", rest(chain)), Origin("random 0", rest(chain)), Origin("random 1", pressed)]
-    # the package has a function of the name of the module
+    # the package has a function with the name of the module
     monkeypatch.setattr(sys.modules["granchain_core.attractor_search.attractors"], "_origins", lambda *_: origins)
     found = attractors(chain, random_states=2)
     assert [one.share for one in found] == [0.5]
@@ -166,7 +171,7 @@ def test_failed_starts_are_named_and_count_among_the_random_states(monkeypatch: 
 
 
 def test_the_error_has_the_status_of_the_failure_that_occurred(monkeypatch: pytest.MonkeyPatch) -> None:
-    """All starts fail, for another reason than an overflow."""
+    """All starts fail, for a reason other than an overflow."""
     module = sys.modules["granchain_core.attractor_search.attractors"]
     chain = scene("sec2").evolve(N=2, f=2000.0)
     failed = SteadyState(chain, np.full(3, np.nan), Regime("unsettled", None, None, None, 0, None), None, rest(chain),

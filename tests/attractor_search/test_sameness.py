@@ -1,4 +1,4 @@
-"""Which results are one attractor: states that agree after a shift by periods, and nothing that only forces hide."""
+"""Results are one attractor if their states agree after a shift by periods; uncertain forces do not make them one."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from granchain_core.scene.state import rest
 from granchain_core.steady.settling.single_chain import settle_to_forces
 from granchain_core.steady.steady_state import SteadyState
 
-#: Newton's method knows no orbits of it, so that results are compared as they are.
+#: Newton's method cannot compute its orbits, so results are compared as they are.
 CUT = scene("sec2").evolve(tension="cut")
 SECTION = np.random.default_rng(1).uniform(-1.0, 1.0, (2, 2, CUT.N))
 
 
 def result(section: np.ndarray, error: float) -> Candidate:
-    """A motion of period 2 with these strobes, and this relative error of its forces."""
+    """Return a motion of period 2 with these strobes and this relative error of its forces."""
     regime = Regime("periodic", 2, 0.5, 1e-7, 100)
     return Candidate(SteadyState(CUT, np.ones(3), regime, np.full(3, error), rest(CUT)), section)
 
@@ -34,7 +34,7 @@ def test_the_two_copies_of_a_period_two_orbit_are_one() -> None:
 
 @pytest.mark.parametrize("error", [1e-9, 1e-2, np.inf])
 def test_orbits_a_hundredth_apart_are_two_however_large_the_error_of_their_forces(error: float) -> None:
-    """An output force of zero has an infinite relative error, which says nothing of the states."""
+    """An output force of zero has an infinite relative error, which says nothing about the states."""
     assert len(merged([result(SECTION, error), result(SECTION * 1.01, error)])) == 2
 
 
@@ -44,7 +44,7 @@ def test_states_within_their_stated_errors_are_one() -> None:
 
 @pytest.mark.parametrize("place", range(3))
 def test_the_largest_error_of_the_three_forces_is_that_of_the_states(place: int) -> None:
-    """The output force may be known better than the states of the beads before the last."""
+    """The output force may be more accurate than the states of the other beads."""
     errors = np.full(3, 1e-9)
     errors[place] = 1e-5
     pair = [result(SECTION, 0.0), result(SECTION * (1.0 + 1e-5), 0.0)]
@@ -54,13 +54,13 @@ def test_the_largest_error_of_the_three_forces_is_that_of_the_states(place: int)
 
 
 def closed_curve(states: int, turns: float, first: float, radius: float = 1.0) -> np.ndarray:
-    """Strobes (states, 2, N) of a rotation by `turns` per period on a circle, from the angle `first`."""
+    """Return strobes (states, 2, N) of a rotation by `turns` per period on a circle, from the angle `first`."""
     angle = first + 2.0 * np.pi * turns * np.arange(states)
     return radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)[:, :, None] * np.ones(CUT.N)
 
 
 def quasi_periodic(turns: float, first: float, radius: float = 1.0) -> Candidate:
-    """A motion on that circle, with its longer sections."""
+    """Return a motion on that circle, with its longer sections."""
     regime = Regime("quasi-periodic", None, None, None, 400, (1e-4, 1e-4))
     shortest, *longer = (closed_curve(states, turns, first, radius) for states in (400, 1600, 6400))
     return Candidate(SteadyState(CUT, np.ones(3), regime, None, rest(CUT)), shortest,
@@ -68,15 +68,18 @@ def quasi_periodic(turns: float, first: float, radius: float = 1.0) -> Candidate
 
 
 def test_arcs_of_one_closed_curve_are_one_once_they_are_long_enough() -> None:
-    """A rotation by 1/5 + 2e-5: 400 states lie on five arcs of 2.9 degrees each, 6400 states on 46 degrees; other arcs
-    that begin 6 degrees further on overlap these and not those. A circle one per cent larger is another motion."""
+    """With a rotation by 1/5 + 2e-5, 400 states lie on five arcs of 2.9 degrees each, and 6400 states on arcs of 46
+    degrees. Arcs that begin 6 degrees further overlap the long ones, but not the short ones. A circle 5 % larger is a
+    different motion.
+    """
     one, further = quasi_periodic(0.2 + 2e-5, 0.0), quasi_periodic(0.2 + 2e-5, np.radians(6.0))
     assert len(merged([one, further])) == 1
     assert len(merged([one, quasi_periodic(0.2 + 2e-5, 0.0, 1.05)])) == 2
 
 
 def test_an_orbit_is_found_from_states_that_are_known_less_well_than_their_forces() -> None:
-    """Both are 2e-4 from one stable orbit, on two sides, with forces known to 1e-9: Newton's method joins them."""
+    """Both are 2e-4 from one stable orbit, on different sides, with forces known to 1e-9: Newton's method joins them.
+    """
     chain = scene("sec2").evolve(N=2, f=2000.0)
     orbit = granchain_core.orbit(chain)
     regime = Regime("periodic", 1, 0.5, 1e-7, 100)
@@ -91,8 +94,9 @@ def test_an_orbit_is_found_from_states_that_are_known_less_well_than_their_force
     (scene("sec2").evolve(N=2, tension="cut", dissipation="tsuji", f=1241.221241217652, A0=1.533564291882614e-06,
                           D=30.039042891685526, k=81388.67421059022, F0=0.028166385379778485), 4)], ids=["2", "4"])
 def test_copies_of_one_cut_orbit_that_begin_in_other_periods_are_one(chain: Scene, period: int) -> None:
-    """No Newton's method brings them together: their sections must be as exact as their forces. Fixed steps are wrong
-    by 1e-3 to 1e-1 with the cut."""
+    """Newton's method cannot join them, so their sections must be as accurate as their forces. With the cut, fixed
+    steps have errors of 1e-3 to 1e-1.
+    """
     first = settle_to_forces(chain, None, Stop())
     engine = Engine(chain, dop853_setting(1e-11), 1)
     engine.start(first.state)

@@ -1,1 +1,1 @@
-"""Benchmarks: granchain beside other solvers, on the same equations, in one run. `python -m tests.benchmarks`."""
+"""Benchmarks of granchain and other solvers, on the same equations, in one run: `python -m tests.benchmarks`."""

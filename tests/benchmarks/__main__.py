@@ -1,4 +1,4 @@
-"""All benchmarks by one command: `python -m tests.benchmarks [part …] [--quick] [--only PEER …]`."""
+"""All benchmarks in one command: `python -m tests.benchmarks [part …] [--quick] [--only PEER …]`."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ PARTS = ("trajectory", "curve", "growth", "orbits", "startup", "memory")
 
 
 def tell(word: str) -> None:
-    """Say on the error stream what is being measured."""
+    """Show on the error stream what is being measured."""
     print(f"\r\033[K… {word}", end="", file=sys.stderr, flush=True)
 
 
 def present(names: list[str]) -> tuple[list[str], list[str]]:
-    """The peers that can run here, and a sentence for each that cannot."""
+    """Return the peers that can run here, and a sentence for each that cannot."""
     absent = {name: peer(name).missing() for name in names}
     return [n for n in names if not absent[n]], [f"{n} skipped: {why}." for n, why in absent.items() if why]
 
 
 def heading(core: int | None) -> str:
-    """Processor, versions, core and how busy the machine is."""
+    """Return a heading with processor, core, load and versions."""
     known = ", ".join(f"{name} {version}" for name, version in machine.versions().items())
     pinned = "not pinned" if core is None else f"pinned to core {core}"
     return (f"{machine.processor()}, kernels for {batch_size.machine()}, {pinned}, load {machine.load()}\n"
@@ -40,15 +40,15 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m tests.benchmarks", description=__doc__)
     parser.add_argument("parts", nargs="*", metavar="part", help=", ".join(PARTS))
     parser.add_argument("--quick", action="store_true",
-                        help="about a minute: fewer points and repeats; trajectory and curve if no part is named")
-    parser.add_argument("--only", nargs="+", choices=list(PEERS), default=list(PEERS), help="these peers only")
-    parser.add_argument("--write", action="store_true", help="put the tables into docs/benchmarks.md as those of this machine")
+                        help="fewer points and repeats, about a minute; without parts, only trajectory and curve")
+    parser.add_argument("--only", nargs="+", choices=list(PEERS), default=list(PEERS), help="measure only these peers")
+    parser.add_argument("--write", action="store_true", help="put the tables into this machine's section of docs/benchmarks.md")
     options = parser.parse_args()
     parts = options.parts or list(PARTS[:2] if options.quick else PARTS)
     if wrong := [part for part in parts if part not in PARTS]:
         parser.error(f"there is no part {wrong[0]}; there are {', '.join(PARTS)}")
     if options.write and (options.parts or options.quick or options.only != list(PEERS)):
-        parser.error("--write replaces this machine's section, so it takes all parts of all peers: leave out the other options")
+        parser.error("--write replaces this machine's whole section, so it needs all parts and all peers: leave out the other options")
     began, core = time.perf_counter(), machine.pin()
     names, skipped = present(options.only)
     told = ["\n".join([heading(core), *skipped])]

@@ -1,10 +1,10 @@
-"""How fast the page answers: slider step to painted settled picture, and frames and lag of the live mode.
+"""Measure how fast the page responds: from a slider step to the painted settled picture, and frames and lag when live.
 
     python tests/benchmarks/browser_latency.py [--steps 60] [--seconds 60] [--address URL]
-    python tests/benchmarks/browser_latency.py --drags          long tasks alone, while f, A0, D and k are dragged
+    python tests/benchmarks/browser_latency.py --drags          only long tasks while f, A0, D and k are dragged
 
-Every figure is taken in the browser: from the slider's key event to the end of the animation frame in which the
-new picture was painted. Steps after which the pixels of the energy map were still the old ones are counted.
+All times are measured in the browser, from the slider's key event to the end of the animation frame in which the new
+picture was painted. Steps after which the pixels of the energy map had not changed are counted.
 """
 
 from __future__ import annotations
@@ -106,12 +106,12 @@ async (seconds) => {
 
 
 def quantile(values: list[float], share: float) -> float:
-    """The value below which `share` of the values lie."""
+    """Return the value below which this share of the values lies."""
     return statistics.quantiles(values, n=100, method="inclusive")[round(100 * share) - 1]
 
 
 def settled_latency(page: Page, steps: int) -> dict[str, Any]:
-    """Slider steps of 0.1 Hz around 340 Hz, each begun when the page is quiet."""
+    """Measure slider steps of 0.1 Hz around 340 Hz, each made when the page is idle."""
     times, unchanged = [], 0
     for number in range(steps + 5):
         page.wait_for_timeout(250)
@@ -124,7 +124,7 @@ def settled_latency(page: Page, steps: int) -> dict[str, Any]:
 
 
 def curve_redraws(page: Page, seconds: float) -> dict[str, Any]:
-    """Resonance curves drawn while A0 is moved twenty times a second."""
+    """Count the resonance curves drawn while A0 is changed twenty times per second."""
     drawn = page.evaluate(DRAG, seconds)
     gaps = [b - a for a, b in pairwise(drawn)]
     return {"seconds": seconds, "curves_per_second": len(drawn) / seconds,
@@ -132,7 +132,8 @@ def curve_redraws(page: Page, seconds: float) -> dict[str, Any]:
 
 
 def live_figures(page: Page, seconds: float) -> dict[str, Any]:
-    """Frames a second and lag from computed on the server to painted, while nothing is touched."""
+    """Measure frames per second, and the lag from a computed frame on the server to a painted one, without any input.
+    """
     page.get_by_role("button", name="The run continues").click()
     page.wait_for_timeout(1500)
     frames = page.evaluate(FIXED_STEP, seconds)
@@ -143,8 +144,9 @@ def live_figures(page: Page, seconds: float) -> dict[str, Any]:
 
 
 def dragged(page: Page, name: str, seconds: float) -> dict[str, Any]:
-    """A knob's slider dragged to and fro with the mouse, twice over a third of its length, and put back: pictures that
-    were painted, and the tasks of the page's main thread above 50 ms."""
+    """Drag a knob's slider back and forth with the mouse, twice over a third of its length, and reset it; return the
+    number of painted pictures and the tasks of the page's main thread above 50 ms.
+    """
     slider = page.locator(f'[data-knob="{name}"] input[type="range"]')
     box = slider.bounding_box()
     assert box is not None
@@ -166,11 +168,11 @@ def dragged(page: Page, name: str, seconds: float) -> dict[str, Any]:
 
 
 def main() -> None:
-    """Print the figures as one JSON object."""
+    """Print the results as one JSON object."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--steps", type=int, default=60)
     parser.add_argument("--seconds", type=float, default=60.0)
-    parser.add_argument("--address", help="a dashboard that runs already")
+    parser.add_argument("--address", help="a dashboard that is already running")
     parser.add_argument("--drags", action="store_true", help="only long tasks while knobs are dragged")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:

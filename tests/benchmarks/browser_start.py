@@ -1,13 +1,13 @@
-"""How soon the page is there: from `granchain serve` with compiled kernels to the page, its skeleton and the moving
-chain.
+"""Measure how soon the page appears: from `granchain serve` with compiled kernels to the page, its skeleton and the
+moving chain.
 
     python tests/benchmarks/browser_start.py [--runs 3] [--pictures FOLDER]
 
-The browser asks for the page from the start of the server's process on, again and again, as somebody does who cannot
-wait. Seconds since then: the first answer (`answer`), which may be what is shown while the server starts; the page's
-own document (`page`) and its first words (`skeleton`); the first picture is painted (`picture`), the chain has moved
-(`moving`), the whole curve is named (`curve`). With `--pictures`, one more run leaves what was on the screen at every
-fifth of a second.
+From the start of the server process, the browser requests the page again and again, like an impatient visitor. The
+output has seconds since then: to the first answer (`answer`), which may be the page that is shown while the server
+starts; to the page's own document (`page`) and its first text (`skeleton`); until the first picture is painted
+(`picture`), until the chain has moved (`moving`), and until the peaks of the whole curve are named (`curve`). With
+`--pictures`, one more run saves the screen every fifth of a second.
 """
 
 from __future__ import annotations
@@ -28,14 +28,14 @@ from playwright.sync_api import Browser, Error, Page, sync_playwright
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from browser.server import ROOT, free_port, launch
 
-#: Between two pictures [s].
+#: Time between two pictures [s].
 EVERY = 0.2
-#: Of the server: it may keep Python's compiled modules, as it does unless somebody forbids it.
+#: The server's environment: it may keep Python's compiled modules, which is the default.
 ENVIRONMENT = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
-#: Until the browser asks again for a page that was not answered [s].
+#: Time until the browser repeats a request that was not answered [s].
 AGAIN = 0.05
 
-#: Times of what happens, in milliseconds since 1970.
+#: Records the time of each stage, in milliseconds since 1970.
 WATCH = """
 window.times = {};
 const now = () => performance.timeOrigin + performance.now();
@@ -43,7 +43,7 @@ new PerformanceObserver((list) => {
   for (const one of list.getEntriesByName("first-contentful-paint")) times.skeleton = performance.timeOrigin + one.startTime;
 }).observe({ type: "paint", buffered: true });
 addEventListener("DOMContentLoaded", () => {
-  if (!window.granchain) return; // what is shown while the server starts
+  if (!window.granchain) return; // the page that is shown while the server starts
   times.page = now();
   granchain.on("painted", () => {
     times.picture ??= now();
@@ -61,7 +61,7 @@ addEventListener("DOMContentLoaded", () => {
 
 
 def opened(page: Page, address: str) -> float:
-    """Ask for the page until it is answered; returns when that was [s since 1970]."""
+    """Request the page until it is answered and return the time [s since 1970]."""
     while True:
         try:
             page.goto(address, wait_until="commit")
@@ -71,7 +71,7 @@ def opened(page: Page, address: str) -> float:
 
 
 def one_start(browser: Browser, folder: Path | None) -> dict[str, float]:
-    """The times of one start [s since the server's process]; the pictures of the screen into `folder`."""
+    """Return the times of one start [s since the start of the server process], and save screenshots in `folder`."""
     page = browser.new_page(viewport={"width": 1280, "height": 800})
     page.add_init_script(WATCH)
     frames: list[tuple[float, str]] = []
@@ -115,7 +115,7 @@ def main() -> None:
     options = parser.parse_args()
     with sync_playwright() as playwright:
         browser = launch(playwright)
-        one_start(browser, None)  # afterwards all that is compiled is kept: Python's modules, kernels
+        one_start(browser, None)  # from now on, Python's modules and the kernels are compiled
         found = [one_start(browser, None) for _ in range(options.runs)]
         if options.pictures is not None:
             one_start(browser, options.pictures)

@@ -1,4 +1,4 @@
-"""A row of the tables: one solver on one form of the equations, with its ladder of settings."""
+"""A row of the tables: one solver for one form of the equations, with its ladder of settings."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ import numpy as np
 from . import problem
 from .problem import Solved
 
-#: Solves one initial value problem from rest: drive rate β and times in, states and evaluations out.
+#: Solves one initial value problem from rest: takes the drive rate β and times, and returns states and evaluations.
 Solve = Callable[[float, np.ndarray], Solved]
 
 
 @dataclass(frozen=True)
 class Peaks:
-    """Peaks of some points of the curve, the seconds they took, and evaluations where they are known."""
+    """Peaks at some points of the curve, the seconds they took, and the number of evaluations if it is known."""
 
     values: np.ndarray
     seconds: float
@@ -27,11 +27,11 @@ class Peaks:
 
 @dataclass(frozen=True)
 class Case:
-    """One solver on one form.
+    """One solver for one form of the equations.
 
-    `ladder` goes from loose to tight. `prepare(setting)` sets up the trajectory outside the clock and gives what is
-    timed. `peaks(frequencies, setting)` computes points of the curve and times itself. `curve_ladder` are the
-    settings tried for the curve; of `stride` points one is timed where all would take too long.
+    `ladder` goes from loose to tight settings. `prepare(setting)` sets up the trajectory, untimed, and returns the
+    function to be timed. `peaks(frequencies, setting)` computes points of the curve and times itself. `curve_ladder`
+    lists the settings tried for the curve. If timing all points would take too long, every `stride`-th is timed.
     """
 
     label: str
@@ -44,19 +44,19 @@ class Case:
     unit: str = "tolerance"
 
 
-#: Steps of the programs with fixed steps that a curve tries, as parts of 0.2 in scaled time: the same for all.
+#: Step sizes that all fixed-step programs try for the curve: 0.2 in scaled time divided by these factors.
 CURVE_REFINES = tuple(0.5 * 1.05**k for k in range(55))
 
 
 def rungs(loose: float, tight: float, per_decade: int = 2) -> list[float]:
-    """Settings in equal ratios from loose to tight."""
+    """Return settings from loose to tight, in equal ratios."""
     steps = round(per_decade * math.log10(loose / tight))
     return [loose * 10.0 ** (-k / per_decade) for k in range(steps + 1)]
 
 
 def case_of(label: str, form: str, solver: Callable[[float], Solve], ladder: Sequence[float],
             curve_ladder: Sequence[float] = (), stride: int = 1, warm: int = 0) -> Case:
-    """A case from `solver(setting)`, which gives a function that solves one problem; `warm` runs are not timed."""
+    """Make a case of `solver(setting)`, which returns a function that solves one problem; `warm` runs are not timed."""
 
     def prepare(setting: float) -> Callable[[], Solved]:
         solve, times = solver(setting), problem.trajectory_times()
@@ -80,5 +80,5 @@ def case_of(label: str, form: str, solver: Callable[[float], Solve], ladder: Seq
 
 
 def rest() -> np.ndarray:
-    """The start: everything zero, in both forms."""
+    """Return the initial state: all zeros, in both forms."""
     return np.zeros(2 * problem.BEADS)

@@ -1,8 +1,8 @@
-"""One peer in its own process: seconds from start to its first trajectory, and the largest memory it took.
+"""Measure one peer in its own process: the time from the start to its first trajectory, and its largest memory.
 
     python -m tests.benchmarks.child numbalsoda
 
-Prints one JSON object. Only this peer is imported.
+Prints one JSON object. No other peer is imported.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ BEGAN = time.perf_counter()
 
 
 def main(name: str) -> None:
-    """Import the peer, solve the trajectory once at its loosest setting, then once more."""
+    """Import the peer, and solve the trajectory twice at its loosest setting."""
     case = next(c for c in peer(name).cases() if c.prepare is not None and c.form == "w")
     imported = time.perf_counter()
     run = case.prepare(case.ladder[0])

@@ -1,5 +1,4 @@
-"""The right-hand sides of `problem`, compiled by Numba: for SciPy, and as callbacks for solvers written in C and C++.
-"""
+"""The right-hand sides of `problem`, compiled by Numba for SciPy and as callbacks for solvers in C and C++."""
 
 from __future__ import annotations
 
@@ -14,7 +13,7 @@ from .problem import LAMBDA
 
 @njit(cache=True, error_model="numpy")
 def fill_uv(t, y, dy, n, beta):
-    """Right-hand side in (u, v), compiled; y and dy are anything that can be indexed."""
+    """Compute the right-hand side in (u, v); y and dy may be arrays or pointers."""
     u, v = math.sin(beta * t), beta * math.cos(beta * t)
     right, right_v = y[0], y[n]
     d = u - right
@@ -31,7 +30,7 @@ def fill_uv(t, y, dy, n, beta):
 
 @njit(cache=True, error_model="numpy")
 def fill_w(t, y, dy, n, beta):
-    """Right-hand side in w, compiled."""
+    """Compute the right-hand side in w."""
     right = y[0]
     left_d = max(math.sin(beta * t) - right, 0.0)
     left = left_d * math.sqrt(left_d)
@@ -46,7 +45,7 @@ def fill_w(t, y, dy, n, beta):
 
 @njit(cache=True)
 def slope_uv(t, y, beta):
-    """`fill_uv` that returns a new array, for SciPy."""
+    """Call `fill_uv` and return a new array, for SciPy."""
     dy = np.empty_like(y)
     fill_uv(t, y, dy, y.size // 2, beta)
     return dy
@@ -54,7 +53,7 @@ def slope_uv(t, y, beta):
 
 @njit(cache=True)
 def slope_w(t, y, beta):
-    """`fill_w` that returns a new array, for SciPy."""
+    """Call `fill_w` and return a new array, for SciPy."""
     dy = np.empty_like(y)
     fill_w(t, y, dy, y.size // 2, beta)
     return dy
@@ -64,9 +63,9 @@ _POINTER = types.CPointer(types.float64)
 
 
 def callback(form: str, order: str) -> Callable[..., None]:
-    """A C callback for solvers that call compiled code; `order` names its arguments, "t y dy p" or "dy t y p".
+    """Return a C callback for solvers that call compiled code; `order` lists its arguments, "t y dy p" or "dy t y p".
 
-    p points to N, β and a counter of evaluations.
+    p points to N, β and a counter of the evaluations.
     """
     fill = {"uv": fill_uv, "w": fill_w}[form]
     if order == "t y dy p":

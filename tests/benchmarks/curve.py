@@ -1,4 +1,5 @@
-"""The curve: 300 frequencies, 100 + 20 periods each from rest, the peak of the elastic output force over the last 20.
+"""Benchmark of a curve: the peak of the elastic output force at 300 frequencies, over the last 20 of 120 periods from
+rest.
 """
 
 from __future__ import annotations
@@ -19,18 +20,18 @@ from .case import Case, Peaks
 from .peers import granchain
 from .tables import count, ratio, seconds, table
 
-#: Largest relative difference of a peak from the accurate one at which answers count as equal.
+#: Answers count as equal if every peak differs from the accurate one by at most this relative amount.
 EQUAL = 1e-4
-#: A case is left when a setting takes longer than this on its points, seconds.
+#: A case is given up if one setting takes longer than this for its points [s].
 PATIENCE = 12.0
-#: Curves that are timed on all cores, and as many on one.
+#: Number of curves that are timed on all cores, and of those on one core.
 _TURNS = 9
 _ROOT = Path(__file__).resolve().parents[2]
 
 
 @dataclass(frozen=True)
 class Answer:
-    """One case on its points at the setting that gave equal answers, or at the tightest tried."""
+    """The result of one case, at the setting that gave equal answers or at the tightest one tried."""
 
     case: Case
     setting: float
@@ -44,22 +45,22 @@ class Answer:
 
 
 def work(frequencies: np.ndarray) -> float:
-    """Scaled time to be integrated for these points: what a part is scaled to the whole with."""
+    """Return the scaled time to be integrated for these points; a part is scaled to the whole in this proportion."""
     return float(sum(problem.period_of(f) for f in frequencies))
 
 
 def chosen(case: Case, points: int, quick: bool) -> np.ndarray:
-    """Indices of the points a case is timed on: every `stride`-th, from the middle of the first stride."""
+    """Return the indices of the points timed for a case: every `stride`-th, from the middle of the first stride."""
     stride = min(points // 5, case.stride * (2 if quick and case.stride > 1 else 1))
     return np.arange(stride // 2, points, stride)
 
 
 def answer(case: Case, frequencies: np.ndarray, accurate: np.ndarray, periodic: np.ndarray, quick: bool) -> Answer:
-    """Walk the ladder of settings until the peaks of the periodic points are equal to the accurate ones."""
+    """Climb the ladder of settings until the peaks of the periodic points are equal to the accurate ones."""
     picked = chosen(case, frequencies.size, quick)
     mine, compare = frequencies[picked], periodic[picked]
     assert case.peaks is not None
-    case.peaks(frequencies[-2:], case.curve_ladder[0])  # a compiler may be in the first run
+    case.peaks(frequencies[-2:], case.curve_ladder[0])  # the first run may compile
     for setting in case.curve_ladder:
         peaks = case.peaks(mine, setting)
         off = np.abs(peaks.values / accurate[picked] - 1.0)[compare]
@@ -77,7 +78,7 @@ def answer(case: Case, frequencies: np.ndarray, accurate: np.ndarray, periodic: 
 
 
 def report(cases: list[Case], quick: bool, tell: Callable[[str], None]) -> str:
-    """The table of the curve and the row of the product itself."""
+    """Return the tables of the curve and of granchain's own `resonance_curve`."""
     frequencies = problem.curve_frequencies(60 if quick else 300)
     tell("accurate peaks, all cores")
     machine.unpin()
@@ -91,13 +92,13 @@ def report(cases: list[Case], quick: bool, tell: Callable[[str], None]) -> str:
     found.sort(key=lambda one: one.whole)
     notes = [
         f"{periodic.sum()} of {periodic.size} points are periodic after {problem.PASSED + problem.WATCHED} periods; only "
-        "their peaks are compared, an irregular motion has no answer that two methods share.",
+        "their peaks are compared, since two methods cannot agree on an irregular motion.",
         "Rows with fewer points are scaled to the whole curve by the time integrated; a '!' marks a row whose answers "
-        f"are not equal to {EQUAL:g} at the tightest setting tried.",
-        "Times are medians of several runs, those marked 'n = 1' of one.",
+        f"do not agree to {EQUAL:g} even at the tightest setting tried.",
+        "Times are medians of several runs, except those marked 'n = 1'.",
     ]
     grids = [(frequencies, accurate, periodic)]
-    if not quick:  # every 10 Hz as well: what a curve costs depends on which slow transients its points meet
+    if not quick:  # every 10 Hz as well: the cost of a curve depends on which slow transients its points meet
         tell("accurate peaks every 10 Hz, all cores")
         machine.unpin()
         every_10_hz = problem.curve_frequencies(298)
@@ -122,9 +123,9 @@ def _table(found: list[Answer], points: int, notes: list[str]) -> str:
 
 
 def product(grids: list[tuple[np.ndarray, np.ndarray, np.ndarray]], tell: Callable[[str], None]) -> str:
-    """`resonance_curve` as a user calls it: settled states with proof, on all cores and on one (product.py).
+    """Time `resonance_curve` as a user calls it: settled states with proof, on all cores and on one (product.py).
 
-    `grids` are frequencies with their accurate peaks and whether these are periodic.
+    Each of the `grids` has frequencies, their accurate peaks, and whether the points are periodic.
     """
     machine.unpin()
     rows = []
@@ -134,7 +135,7 @@ def product(grids: list[tuple[np.ndarray, np.ndarray, np.ndarray]], tell: Callab
     machine.pin()
     return table("The product: settled or shown irregular at every point, not 120 periods",
                  ["call", "points", "cores", "median", "least", "periodic", "compared", "worst", "median error"], rows,
-                 [f"In a process of its own. Median and least of {_TURNS}, the two in turns."])
+                 [f"In a separate process. Median and least of {_TURNS}, on all cores and on one alternately."])
 
 
 def _product_rows(frequencies: np.ndarray, accurate: np.ndarray, periodic: np.ndarray) -> list[list[str]]:

@@ -1,4 +1,4 @@
-"""Growth with N: contact evaluations per second of a chain of 10 to 10 000 beads."""
+"""Benchmark of the growth with N: contact evaluations per second for chains of 10 to 10 000 beads."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ from .peers import c_program, numbalsoda
 from .tables import table
 
 BEADS = (10, 30, 100, 300, 1000, 3000, 10_000)
-#: Contact evaluations that one timing takes at least, roughly.
+#: Approximate minimum of contact evaluations per timing.
 _EVALUATIONS = 4e6
-#: The C program keeps its chain in registers and is unrolled over the beads: longer ones are not what it is for.
+#: The C program keeps its chain in registers and is unrolled over the beads, so it is not meant for longer chains.
 _LONGEST_C = 100
 
 
 def in_batches(beads: int, evaluations: float) -> float:
-    """Contact evaluations a second of the chains of a batch, from a chain already in motion."""
+    """Return the contact evaluations per second of all chains of a batch, which are already in motion."""
     batch = Batch(scene("sec2").evolve(N=beads, f=problem.FREQUENCY), Stop())
     steps = max(4, round(evaluations / (4 * BATCH_SIZE * (beads + 1))))
     stirred(batch.state.motion.y, beads)
@@ -42,7 +42,7 @@ def stirred(y: np.ndarray, beads: int) -> None:
 
 
 def along(beads: int, evaluations: float) -> float:
-    """Contact evaluations a second of one chain by the fixed-step method."""
+    """Return the contact evaluations per second of one chain with the fixed-step method."""
     engine = Engine(scene("sec2").evolve(N=beads, f=problem.FREQUENCY), MethodSetting("rk4-split"), 16)
     engine.record(1)
     rows = max(1, round(evaluations / (4 * (beads + 1) * engine.grid / 16)))
@@ -52,7 +52,7 @@ def along(beads: int, evaluations: float) -> float:
 
 
 def in_c(beads: int, evaluations: float) -> float:
-    """The same of the C program, on eight equal scenes."""
+    """Return the same for the C program, with one register of equal scenes."""
     period = problem.period_of(problem.FREQUENCY) / c_program.STEP
     periods = max(1, round(evaluations / (4 * BATCH_SIZE * (beads + 1) * period)))
     shape = (1, max(1, (beads + 1) // 3))
@@ -63,7 +63,7 @@ def in_c(beads: int, evaluations: float) -> float:
 
 
 def lsoda(beads: int, evaluations: float) -> float:
-    """The same of numbalsoda's LSODA in w at 1e-6."""
+    """Return the same for numbalsoda's LSODA in w at 1e-6."""
     import numbalsoda as package
 
     address, beta = numbalsoda.address("w"), problem.beta_of(problem.FREQUENCY)
@@ -75,7 +75,7 @@ def lsoda(beads: int, evaluations: float) -> float:
 
 
 def report(quick: bool, tell: Callable[[str], None]) -> str:
-    """The table."""
+    """Return the table."""
     evaluations = _EVALUATIONS / (4 if quick else 1)
     rows = []
     for beads in BEADS:
@@ -89,7 +89,7 @@ def report(quick: bool, tell: Callable[[str], None]) -> str:
     return table("Growth with N: millions of contact evaluations a second, one core",
                  ["N", "", "granchain batches", "granchain, one chain", "C lanes", "numbalsoda lsoda w"], rows,
                  [f"C is unrolled over the beads and measured up to N = {_LONGEST_C}; LSODA, which may build a Jacobian "
-                  "of (2N)² entries, up to N = 1000. One chain: the time of event splits is in it."])
+                  "of (2N)² entries, up to N = 1000. The time of one chain includes the splits at events."])
 
 
 def _millions(rate: float) -> str:

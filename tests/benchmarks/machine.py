@@ -1,4 +1,4 @@
-"""The machine: which processor and versions, pinning to one core, and times that survive a busy neighbour."""
+"""The machine: processor and versions, pinning to one core, and timings that are robust against other work."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-#: Load up to which the machine counts as one with nothing else to do.
+#: Load up to which the machine counts as idle.
 IDLE_LOAD = 0.5
-#: The cores that this process was allowed when it was first pinned.
+#: The cores that this process was allowed to use when it was first pinned.
 _allowed: set[int] = set()
 PACKAGES = ("numpy", "numba", "scipy", "numbalsoda", "CyRK", "heyoka", "jax", "diffrax")
 
 
 @dataclass(frozen=True)
 class Timed:
-    """Seconds of repeated runs: median, least, how many."""
+    """Times of repeated runs: median [s], shortest [s], and their number."""
 
     median: float
     least: float
@@ -30,7 +30,7 @@ class Timed:
 
 
 def timed(work: Callable[[], Any], seconds: float = 0.3, most: int = 15) -> Timed:
-    """Time `work` until `seconds` are spent, at least three times unless one run alone takes that long."""
+    """Time `work` repeatedly for at least `seconds`, and three times unless this would take three times as long."""
     times: list[float] = []
     while len(times) < most and (sum(times) < seconds or len(times) < 3) and sum(times) < 3.0 * seconds:
         began = time.perf_counter()
@@ -40,7 +40,7 @@ def timed(work: Callable[[], Any], seconds: float = 0.3, most: int = 15) -> Time
 
 
 def pin(core: int | None = None) -> int | None:
-    """Keep this process on one core, the last one if none is named; None where the system cannot."""
+    """Pin this process to one core, by default the last one, and return it; None if the system cannot do this."""
     if not hasattr(os, "sched_setaffinity"):
         return None
     _allowed.update(os.sched_getaffinity(0) if not _allowed else ())
@@ -50,14 +50,14 @@ def pin(core: int | None = None) -> int | None:
 
 
 def unpin() -> int:
-    """Give the process back the cores that it was allowed before it was pinned; how many it has."""
+    """Undo the pinning and return the number of cores that the process may use."""
     if _allowed:
         os.sched_setaffinity(0, _allowed)
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def processor() -> str:
-    """The processor's name."""
+    """Return the processor's name."""
     try:
         for line in Path("/proc/cpuinfo").read_text().splitlines():
             if line.startswith("model name"):
@@ -68,7 +68,7 @@ def processor() -> str:
 
 
 def has_flag(flag: str) -> bool:
-    """Whether the processor says it has this instruction set."""
+    """Return whether the processor reports this instruction set."""
     try:
         return f" {flag} " in Path("/proc/cpuinfo").read_text().replace("\n", " ")
     except OSError:
@@ -76,7 +76,7 @@ def has_flag(flag: str) -> bool:
 
 
 def versions() -> dict[str, str]:
-    """Versions of everything that is timed; absent packages are named as such."""
+    """Return the versions of everything that is timed; missing packages are "absent"."""
     found = {"python": platform.python_version()}
     for package in PACKAGES:
         try:
@@ -92,7 +92,7 @@ def versions() -> dict[str, str]:
 
 
 def commit() -> str:
-    """The commit that is measured, with a plus where the tree differs from it."""
+    """Return the commit that is measured, with a plus if the tree differs from it."""
     try:
         answer = subprocess.run(["git", "describe", "--always", "--dirty=+"], capture_output=True, text=True, check=True,
                                 cwd=Path(__file__).parent)
@@ -102,7 +102,7 @@ def commit() -> str:
 
 
 def peak_megabytes() -> float:
-    """Largest resident memory of this process so far; not `ru_maxrss`, which a child inherits from its parent."""
+    """Return this process's largest resident memory so far [MB]; `ru_maxrss` would be inherited from the parent."""
     try:
         for line in Path("/proc/self/status").read_text().splitlines():
             if line.startswith("VmHWM:"):
@@ -113,7 +113,7 @@ def peak_megabytes() -> float:
 
 
 def load() -> str:
-    """How busy the machine is; times taken beside other work are upper bounds, and marked so."""
+    """Return the load; times measured next to other work are upper bounds, and the text says so."""
     if not hasattr(os, "getloadavg"):
         return "unknown"
     average = os.getloadavg()[0]

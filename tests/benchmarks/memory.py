@@ -1,4 +1,4 @@
-"""Largest resident memory of whole commands; that of the dashboard is printed by `tools.visitors`."""
+"""Benchmark of memory: the largest resident set of whole commands. For the dashboard, `tools.visitors` prints it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pathlib import Path
 from .tables import table
 
 _ROOT = Path(__file__).resolve().parents[2]
-#: What is run: words for the table and the command's arguments; `{}` is a file to write.
+#: The commands: their text in the table, and their arguments; `{}` stands for an output file.
 COMMANDS = (
     ("granchain scenes", "scenes"),
     ("granchain run sec2", "run sec2"),
@@ -20,7 +20,7 @@ COMMANDS = (
     ("granchain orbit", "orbit sec2"),
     ("granchain map, 40 × 40", "map sec2 --x f=300:1500:40 --y A0=1e-7:1e-6:40 --out {}.h5"),
 )
-#: Ends with the memory [MB] of the one child that it ran.
+#: Prints the memory [MB] of the one child process that it runs.
 _MEASURE = """
 import resource, subprocess, sys
 subprocess.run(sys.argv[1:], stdout=subprocess.DEVNULL, check=True)
@@ -29,7 +29,8 @@ print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024)
 
 
 def of_command(arguments: str) -> float:
-    """Largest resident memory of a command and its children [MB], with compiled kernels: that of its second run."""
+    """Return the largest resident memory [MB] of a command and its children in its second run, with compiled kernels.
+    """
     for _ in range(2):
         with tempfile.TemporaryDirectory() as folder:
             words = [word.replace("{}", f"{folder}/result") for word in arguments.split()]
@@ -40,7 +41,7 @@ def of_command(arguments: str) -> float:
 
 
 def report(quick: bool, tell: Callable[[str], None]) -> str:
-    """The table."""
+    """Return the table."""
     rows = []
     for name, arguments in COMMANDS[:2] if quick else COMMANDS:
         tell(name)

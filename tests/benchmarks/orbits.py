@@ -1,4 +1,4 @@
-"""Orbits: what the whole derivative of the stroboscopic map costs beside the flow alone."""
+"""Benchmark of orbits: the cost of the stroboscopic map with its whole derivative, compared with the flow alone."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ BEADS = (5, 11, 30, 100)
 
 
 def report(quick: bool, tell: Callable[[str], None]) -> str:
-    """The table."""
+    """Return the table."""
     repeats = 5 if quick else 15
     rows = []
     for beads in BEADS:
@@ -32,7 +32,7 @@ def report(quick: bool, tell: Callable[[str], None]) -> str:
         rows.append([str(beads), f"{1e3 * flow.median:.2f}", f"{1e3 * derivative.median:.2f}",
                      f"{derivative.median / flow.median:.1f}", f"{2 * beads + 1}"])
     start = run_until_settled(scene("sec2"), None, None).engine.state
-    orbit(scene("sec2"), 1, start)  # a compiler may be in the first one
+    orbit(scene("sec2"), 1, start)  # the first call may compile
     newton = timed(lambda: orbit(scene("sec2"), 1, start), 0.05, repeats)
     return table("One drive period of sec2 at 340 Hz with a foundation, tolerance 1e-13, from one state of all contacts",
                  ["N", "flow ms", "with derivative ms", "ratio", "ratio of one-sided differences"], rows,

@@ -1,4 +1,4 @@
-"""docs/benchmarks.md: the tables of each machine that was measured, one section for a machine."""
+"""Write docs/benchmarks.md, which has one section of tables for each machine that was measured."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ PAGE = Path(__file__).resolve().parents[2] / "docs" / "benchmarks.md"
 
 
 def title() -> str:
-    """The heading of this machine's section: processor, how many, and what the kernels are compiled for."""
+    """Return the heading of this machine's section: processor, number of cores, and the kernels' target."""
     return f"## {machine.processor()}, {os.cpu_count()} cores, kernels for {batch_size.machine()}"
 
 
 def replaced(page: str, heading: str, section: str) -> str:
-    """The page with the section under `heading` put in the place of the earlier one, or at the end."""
+    """Return the page with the section under `heading` replaced, or added at the end."""
     lead, *sections = page.rstrip().split("\n## ")
     kept = [one for one in sections if not f"## {one}".startswith(f"{heading}\n")]
     at = next((i for i, one in enumerate(sections) if f"## {one}".startswith(f"{heading}\n")), len(kept))
@@ -28,7 +28,7 @@ def replaced(page: str, heading: str, section: str) -> str:
 
 
 def write(told: list[str]) -> Path:
-    """Put what was measured on the page, under this machine."""
+    """Put the measured tables into this machine's section of the page."""
     tables = "\n".join(told).strip()
     section = f"Taken on {datetime.date.today().isoformat()}.\n\n```text\n{tables}\n```"
     PAGE.write_text(replaced(PAGE.read_text(encoding="utf-8"), title(), section), encoding="utf-8")

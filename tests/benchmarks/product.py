@@ -1,9 +1,9 @@
-"""`resonance_curve` in a process of its own, as a user calls it: on all cores and on one, in turns.
+"""Time `resonance_curve`, as a user calls it, in a separate process: on all cores and on one, alternately.
 
     python -m tests.benchmarks.product 9 frequencies.json
 
-Other solvers that were loaded before take a fifth of its time away. Prints one JSON object: for each number of threads
-the seconds of every turn, the forces and which points are periodic.
+Other solvers that were loaded before would cost it a fifth of its time. The output is one JSON object: for each number
+of threads, the seconds of every turn, the forces, and which points are periodic.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ def main(turns: int, frequencies: np.ndarray) -> None:
         for workers in threads:
             machine.pin() if workers == 1 else machine.unpin()
             if turn == 0:
-                resonance_curve(scene("sec2"), frequencies[::25], workers=workers)  # a compiler may be in the first one
+                resonance_curve(scene("sec2"), frequencies[::25], workers=workers)  # the first call may compile
             began = time.perf_counter()
             curves[workers] = resonance_curve(scene("sec2"), frequencies, workers=workers)
             times[workers].append(time.perf_counter() - began)

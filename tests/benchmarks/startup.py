@@ -1,4 +1,4 @@
-"""Start-up cold and warm and memory: every peer in a process of its own, with an empty and with a filled cache."""
+"""Benchmark of start-up and memory: every peer in a separate process, with an empty and with a filled cache."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _BARE = "import json, tests.benchmarks.machine as m; print(json.dumps({'peak_mb'
 
 
 def child(command: list[str], cache: str) -> dict[str, Any]:
-    """What a child process printed, with the seconds from its start to its end."""
+    """Run a child process and return its output and its total time [s]."""
     places = {"GRANCHAIN_CACHE": cache, "NUMBA_CACHE_DIR": cache, "JAX_COMPILATION_CACHE_DIR": f"{cache}/jax"}
     began = time.perf_counter()
     answer = subprocess.run([sys.executable, *command], cwd=_ROOT, env={**os.environ, **places}, capture_output=True,
@@ -32,7 +32,7 @@ def _whole(one: dict[str, Any]) -> float:
 
 
 def report(names: list[str], quick: bool, tell: Callable[[str], None]) -> str:
-    """The table: cold is an empty cache of compiled code, warm the median of three further processes."""
+    """Return the table; cold means an empty cache of compiled code, warm the median of three further processes."""
     rows = []
     with tempfile.TemporaryDirectory() as cache:
         bare = child(["-c", _BARE], cache)
@@ -50,6 +50,6 @@ def report(names: list[str], quick: bool, tell: Callable[[str], None]) -> str:
         rows = [[*row[:3], "–", *row[4:]] for row in rows]
     return table("Start-up and memory: a new process, one trajectory twice",
                  ["peer", "form", "cold, whole", "warm, whole", "to first answer", "second answer", "peak MB"], rows,
-                 ["Cold: compiled code is nowhere on disk; the columns to the right are of a warm process (of the cold one with "
-                  "--quick). C compiles at every start. CyRK and "
-                  "numbalsoda bring wrappers that Numba compiles in every process. Peak: largest resident set."])
+                 ["Cold: no compiled code is on disk. The columns to the right are those of a warm process (with --quick, of the "
+                  "cold one). C is compiled at every start. CyRK and "
+                  "numbalsoda have wrappers that Numba compiles in every process. Peak: largest resident set."])

@@ -1,4 +1,4 @@
-"""Plain tables: columns as wide as they need to be, numbers to the right."""
+"""Plain text tables, with columns as wide as necessary and numbers aligned to the right."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 
 def table(title: str, head: Sequence[str], rows: Sequence[Sequence[str]], notes: Sequence[str] = ()) -> str:
-    """A table as text; the first two columns are words, the others numbers."""
+    """Return a table as text; the first two columns are words, the others numbers."""
     cells = [list(head), *[list(row) for row in rows]]
     widths = [max(len(row[i]) for row in cells) for i in range(len(head))]
 
@@ -19,7 +19,7 @@ def table(title: str, head: Sequence[str], rows: Sequence[Sequence[str]], notes:
 
 
 def seconds(value: float) -> str:
-    """A time in the unit that suits it."""
+    """Format a time in a suitable unit."""
     if value < 1e-3:
         return f"{1e6 * value:.0f} µs"
     if value < 1.0:
@@ -28,10 +28,10 @@ def seconds(value: float) -> str:
 
 
 def count(value: int | None) -> str:
-    """A number of evaluations."""
+    """Format a number of evaluations."""
     return "–" if value is None else f"{value:,}".replace(",", " ")
 
 
 def ratio(value: float) -> str:
-    """A time over the time it is compared with."""
+    """Format the ratio of two times."""
     return f"{value:.2f}" if value < 10 else f"{value:.0f}"

@@ -11,13 +11,13 @@ from tests.benchmarks import compiled, machine, page, problem
 from tests.benchmarks.peers import c_program, granchain, peer, scipy
 from tests.benchmarks.trajectory import error_of
 
-#: Frequencies whose motion is periodic after 120 periods, so that rounding does not grow.
+#: Frequencies at which the motion is periodic after 120 periods, so that rounding errors do not grow.
 PERIODIC = np.array([340.0, 470.0, 1130.0, 1600.0])
 
 
 @pytest.fixture(scope="module")
 def reference() -> np.ndarray:
-    """The trajectory by granchain's dop853."""
+    """The trajectory from granchain's dop853."""
     return granchain.reference().states
 
 
@@ -28,13 +28,12 @@ def test_the_compiled_equations_are_those_in_numpy(form: str) -> None:
     rng = np.random.default_rng(0)
     for t in rng.uniform(0.0, 100.0, 20):
         y = rng.standard_normal(2 * problem.BEADS)
-        # rounding of sums of a few numbers of size 1 to 10
+        # rounding of sums of a few numbers between 1 and 10
         assert np.allclose(in_numba(t, y, 0.3), in_numpy(t, y, 0.3), rtol=0.0, atol=1e-13)
 
 
 def test_both_forms_are_one_motion() -> None:
-    """The velocity is the slope of u in the w form, and its slope the force of the (u, v) form while no contact
-    changes.
+    """The slope of u in the w form is the velocity, whose slope is the force of the (u, v) form between contact events.
     """
     beta, t, step, n = 0.3, 5.0, 1e-5, problem.BEADS
     w = np.random.default_rng(1).standard_normal(2 * n)
@@ -72,7 +71,8 @@ class TestC:
 
     @pytest.mark.parametrize("shape", [c_program.SHAPES[0], (2, 3), (1, 12)])
     def test_the_peaks_are_those_of_the_lanes(self, shape: tuple[int, int]) -> None:
-        """The C program is plain RK4 in w, of order 2 at contact events: at a twelfth of the step it is 1e-5 off."""
+        """The C program is plain RK4 in w, of order 2 at contact events: at a twelfth of the step, its error is 1e-5.
+        """
         lanes = granchain.batch_peaks(PERIODIC, 6).values
         ours = c_program.sweep_peaks(PERIODIC, c_program.STEP / 12.0, shape).values
         assert np.allclose(ours, lanes, rtol=1e-5, atol=0.0)
@@ -86,7 +86,7 @@ def test_peaks_are_equal_to_the_accurate_ones() -> None:
 
 
 def test_the_page_has_one_section_for_each_machine() -> None:
-    """A machine measured again gets its section anew, in its place; the others stay as they are."""
+    """If a machine is measured again, its section is replaced where it is; the others stay unchanged."""
     one = page.replaced("# Benchmarks\n\nWords.\n", "## one, 2 cores", "first\n")
     both = page.replaced(one, "## other, 4 cores", "second")
     assert both == "# Benchmarks\n\nWords.\n\n## one, 2 cores\n\nfirst\n\n## other, 4 cores\n\nsecond\n"
@@ -97,7 +97,7 @@ def test_the_page_has_one_section_for_each_machine() -> None:
 
 @pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="the system does not pin processes")
 def test_an_unpinned_process_has_the_cores_that_it_was_allowed(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Under taskset or in a cpuset fewer than the machine has."""
+    """Under taskset or in a cpuset, these are fewer than the machine has."""
     now = {1, 3}
     monkeypatch.setattr(machine, "_allowed", set())
     monkeypatch.setattr(machine.os, "cpu_count", lambda: 8)

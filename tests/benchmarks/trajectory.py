@@ -1,4 +1,5 @@
-"""One trajectory: 340 Hz, 20 periods from rest, every solver at the cheapest setting that reaches an error."""
+"""Benchmark of one trajectory: 20 periods from rest at 340 Hz, every solver at its cheapest setting for a given error.
+"""
 
 from __future__ import annotations
 
@@ -16,13 +17,15 @@ from .problem import Solved
 from .tables import count, ratio, seconds, table
 
 TARGETS = (6e-5, 2e-6, 1e-8, 1e-10)
-#: A ladder is left when one run takes longer than this, seconds.
+#: A ladder is abandoned when one run takes longer than this [s].
 PATIENCE, QUICK_PATIENCE = 0.7, 0.1
 
 
 @dataclass(frozen=True)
 class Rung:
-    """One setting of one case: largest displacement error over the largest displacement, and seconds of one run."""
+    """One setting of one case: largest displacement error relative to the largest displacement, and time of one run
+    [s].
+    """
 
     setting: float
     error: float
@@ -32,7 +35,7 @@ class Rung:
 
 
 def error_of(states: np.ndarray, reference: np.ndarray) -> float:
-    """Largest error of any displacement sample over the largest displacement."""
+    """Return the largest error of any displacement sample, relative to the largest displacement."""
     n = problem.BEADS
     if not np.isfinite(states[:, :n]).all():
         return float("inf")
@@ -40,7 +43,8 @@ def error_of(states: np.ndarray, reference: np.ndarray) -> float:
 
 
 def climb(case: Case, reference: np.ndarray, quick: bool = False) -> list[Rung]:
-    """All rungs of a case's ladder, every third when in a hurry, until the smallest error or the patience is reached.
+    """Climb a case's ladder until the smallest error is reached or patience runs out; with `quick`, take every third
+    rung.
     """
     found: list[Rung] = []
     assert case.prepare is not None
@@ -58,13 +62,13 @@ def climb(case: Case, reference: np.ndarray, quick: bool = False) -> list[Rung]:
 
 
 def cheapest(rungs: Iterable[Rung], target: float) -> Rung | None:
-    """The fastest rung that reaches the error."""
+    """Return the fastest rung that reaches the error, or None."""
     good = [rung for rung in rungs if rung.error <= target]
     return min(good, key=lambda rung: rung.seconds) if good else None
 
 
 def second_opinion(reference: np.ndarray) -> str:
-    """How far other integrators, which share no code with the reference, are from it."""
+    """Return the distances from the reference of other integrators, which share no code with it."""
     from .peers import heyoka, scipy
 
     times, beta = problem.trajectory_times(), problem.beta_of(problem.FREQUENCY)
@@ -78,7 +82,7 @@ def second_opinion(reference: np.ndarray) -> str:
 
 
 def report(cases: list[Case], quick: bool, tell: Callable[[str], None]) -> str:
-    """The tables of all errors."""
+    """Return the tables for all target errors."""
     reference = granchain.reference().states
     rungs = {}
     for case in cases:
@@ -104,6 +108,6 @@ def _table(rungs: dict[tuple[str, str], tuple[Case, list[Rung]]], target: float,
     rows = [[case.label, case.form, f"{case.unit} {rung.setting:.3g}", f"{rung.error:.1e}", seconds(spent.median),
              seconds(spent.least), count(rung.evaluations), ratio(spent.median / base)] for case, rung, spent in found]
     patience = QUICK_PATIENCE if quick else PATIENCE
-    notes = [f"Not reached on their ladders (or not in {patience:g} s a run): {', '.join(missed)}."] if missed else []
+    notes = [f"Not reached by any setting (or not within {patience:g} s per run): {', '.join(missed)}."] if missed else []
     return table(f"Trajectory at error {target:g}",
                  ["solver", "form", "setting", "error", "median", "least", "evaluations", "× granchain"], rows, notes)

@@ -1,5 +1,4 @@
-"""Boundaries of stability in the plane of two knobs: where multipliers say they are, and where the scaling puts them.
-"""
+"""Stability boundaries in the plane of two knobs agree with multipliers and with the scaling law."""
 
 from __future__ import annotations
 
@@ -22,7 +21,7 @@ NEAR = {"period_doubling": (508.0, 1), "neimark_sacker": (1226.0, 1), "fold": (1
 
 
 def near(kind: str) -> tuple[Scene, np.ndarray, int]:
-    """A scene near such a point, its orbit's state and period."""
+    """Return a scene near such a point, and the state and period of its orbit."""
     frequency, period = NEAR[kind]
     shown = scene("sec2").evolve(f=frequency)
     return shown, granchain_core.orbit(shown, period).state, period  # type: ignore[return-value]
@@ -40,7 +39,7 @@ def test_the_orbit_there_has_the_critical_multiplier(points: dict[str, Bifurcati
     found = points[kind]
     assert abs(condition(found.multiplier)) <= 1e-6
     shown, start, period = near(kind)
-    if kind != "fold":  # at a fold Newton's method at fixed f has a singular matrix; elsewhere it is another way
+    if kind != "fold":  # at a fold, Newton's method at fixed f has a singular matrix; elsewhere it is an independent check
         orbit = granchain_core.orbit(shown.evolve(f=found.x), period, start)
         assert np.abs(condition(orbit.multipliers)).min() <= 1e-5
 
@@ -94,7 +93,8 @@ def test_a_fold_is_followed(points: dict[str, BifurcationPoint]) -> None:
 @pytest.mark.parametrize(("kind", "start", "end", "period"), [
     ("neimark_sacker", 1245.0, 1226.0, 1), ("period_doubling", 508.0, 515.0, 1), ("fold", 1951.0, 1956.0, 5)])
 def test_the_point_is_where_the_branch_encloses_one(kind: str, start: float, end: float, period: int) -> None:
-    """A branch encloses the change of stability by two orbits; a bifurcation curve finds it by secants of its own."""
+    """A branch encloses the change of stability between two orbits; a bifurcation curve finds it by separate secants.
+    """
     branch = granchain_core.branch(scene("sec2"), "f", start, end, period)
     [special] = [one for one in branch.special if one.kind == kind]
     begun = branch.points[0]  # 1.4 to 9 Hz from the special point
@@ -103,7 +103,7 @@ def test_the_point_is_where_the_branch_encloses_one(kind: str, start: float, end
     assert high - low < 2e-5 * special.knob
     before, after = (np.abs(one.multipliers[max(special.before.unstable_multipliers, special.after.unstable_multipliers) - 1])
                      for one in (special.before, special.after))
-    # the curve's |μ| is 1 to 1e-6; at a fold the knob turns, and such an error of μ moves it by the square of that
+    # the curve's |μ| is 1 to within 1e-6; at a fold, the knob turns, and such an error of μ moves it by its square
     unsure = 0.0 if kind == "fold" else 1e-6 * (high - low) / abs(after - before)
     assert unsure < high - low
     assert low - unsure <= found.x <= high + unsure
@@ -125,7 +125,7 @@ def test_a_diagram_shows_where_its_bifurcation_curves_are() -> None:
     found = parameter_map(scene("sec2"), ("f", np.linspace(480.0, 640.0, 9)), ("A0", [4.5e-7, 5e-7]))
     curves = bifurcation_curves(found, rows=[1])
     told = {(curve.kind, curve.period): curve for curve in curves}
-    # period 1 doubles at 512 Hz; the orbit of period 2 in its turn near 572 Hz, into one of period 4 or more
+    # period 1 doubles at 512 Hz, and the orbit of period 2 near 572 Hz, into one of period 4 or more
     first = told["period_doubling", 1]
     assert [point.y for point in first.points] == [4.5e-7, 5e-7]
     assert first.points[1].x == pytest.approx(bifurcation_point(*near("period_doubling")[:1], "period_doubling",
@@ -136,8 +136,9 @@ def test_a_diagram_shows_where_its_bifurcation_curves_are() -> None:
 
 
 def test_a_bifurcation_curve_is_followed_to_where_its_second_knob_is_zero() -> None:
-    """Three beads at 1300 Hz: from k = 2e4 N/m to a chain without foundation, whose period doubling a branch over D
-    finds as well."""
+    """Three beads at 1300 Hz are followed from k = 2e4 N/m to a chain without a foundation, whose period doubling a
+    branch over D finds as well.
+    """
     chain = scene("sec2").evolve(N=3, f=1300.0)
     found = bifurcation_curves(parameter_map(chain, ("D", np.linspace(70.0, 76.0, 5)), ("k", [0.0, 2e4])), rows=[1])
     (curve,) = [one for one in found if one.kind == "period_doubling" and one.period == 1]

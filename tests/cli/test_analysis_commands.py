@@ -1,5 +1,5 @@
-"""spectrum, lyapunov, rotation, bifurcation-diagram, attractors, basins, pulse, bands:
-words, pictures, and what they refuse.
+"""The commands spectrum, lyapunov, rotation, bifurcation-diagram, attractors, basins, pulse and bands: their output,
+pictures and refusals.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ COMMANDS = {
     "basins": [*SHORT, "--x", "u1=0:2e-7:2", "--y", "v1=0:1e-3:2"],
     "pulse": ["impact", "--set", "N=5"], "bands": ["precompressed"],
 }
-#: A source in the picture of each, where it has one.
+#: A data source in the picture of each command that has one.
 SOURCES = {"spectrum": "lines", "lyapunov": "exponents", "rotation": "convergence", "bifurcation-diagram": "strobes",
            "attractors": "period 1", "basins": "basin 1"}
-#: A group of the file of each that has `--out`.
+#: A group in the file of each command that has `--out`.
 GROUPS = {"spectrum": "spectrum", "lyapunov": "lyapunov", "rotation": "rotation", "bifurcation-diagram": "strobes", "basins": "basins",
           "pulse": "pulse", "orbit": "multipliers"}
 
@@ -40,7 +40,7 @@ def test_a_picture_has_its_points(command: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("command", [*GROUPS])
 def test_the_file_has_the_result(command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Its main group, with the scene at the root; the words are those without a file."""
+    """The file has the command's main group, and the scene at the root; the output is the same as without a file."""
     words = [command, *COMMANDS.get(command, SHORT)]
     assert main([*words, "--out", str(tmp_path / "a.h5")]) == 0
     printed = capsys.readouterr().out
@@ -86,7 +86,7 @@ def test_a_command_works_by_its_older_name(capsys: pytest.CaptureFixture[str]) -
 
 
 def test_starts_without_a_steady_state_are_counted_and_the_first_is_explained(capsys: pytest.CaptureFixture[str]) -> None:
-    """Two of four starts press bead 2 a metre into the wall, and their numbers overflow at once."""
+    """Two of four starts press bead 2 a metre into the wall, and their numbers overflow immediately."""
     assert main(["basins", *SHORT, "--x", "u1=-1e-3:1e-3:2", "--y", "u2=0:1:2"]) == 0
     *_, one, without = capsys.readouterr().out.splitlines()
     assert one.startswith("  50%") and "period 1" in one
@@ -95,7 +95,7 @@ def test_starts_without_a_steady_state_are_counted_and_the_first_is_explained(ca
 
 
 def test_attractors_are_those_of_the_function(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """The JSON and the file have what Python gives for the same seed; without random states no share is claimed."""
+    """JSON and file agree with the Python function for the same seed; without random states, no share is stated."""
     words = ["attractors", *SHORT, "--seed", "3", "--json"]
     assert main([*words, "--random-states", "2", "--out", str(tmp_path / "a.h5")]) == 0
     (told,) = json.loads(capsys.readouterr().out)["attractors"]

@@ -1,4 +1,4 @@
-"""Bad input beyond the common slips: odd paths, odd links, odd files. Always a sentence, never a traceback."""
+"""Unusual bad input: odd paths, links and files. The answer is always a sentence, never a traceback."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ SHORT = ["--set", "N=2", "--periods", "0", "--record", "1", "--samples", "4", "-
 
 @pytest.mark.parametrize("out", [".", "..", "/", "folder", "folder/", "/proc/granchain.h5", "a\nb/c.h5", "x" * 300])
 def test_an_out_that_is_no_writable_file_is_bad_input(out, tmp_path, monkeypatch, capsys):
-    """A folder, the root, a file system that takes no files, a name that is too long."""
+    """For example a folder, the root, a file system without files, or a name that is too long."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "folder").mkdir()
     assert main(["run", "sec2", *SHORT, "--out", out]) == 2
@@ -39,7 +39,7 @@ def test_an_out_that_is_no_writable_file_is_bad_input(out, tmp_path, monkeypatch
 
 
 def test_an_unwritable_out_is_said_before_the_work_and_not_after_it(tmp_path, monkeypatch, capsys):
-    """Hours of computing must not end with a misspelt folder: nothing is run when the file cannot be written."""
+    """Hours of computing must not be lost to a misspelt folder: nothing is run if the file cannot be written."""
     def computes(*_, **__):
         pytest.fail("computed before looking at --out")
 
@@ -54,7 +54,7 @@ def test_an_unwritable_out_is_said_before_the_work_and_not_after_it(tmp_path, mo
                                    ["--from", "1e9", "--to", "2e9", "--points", "2"], ["--from", "5", "--points", "2"],
                                    ["--from", "1", "--to", "9", "--points", "100001"]])
 def test_every_bad_number_of_a_curve_has_one_sentence(words, capsys):
-    """Not finite, not whole, not there, too large."""
+    """The numbers are not finite, not whole, missing or too large."""
     assert main(["curve", "sec2", *words]) == 2
     out, said = capsys.readouterr()
     assert out == ""
@@ -67,7 +67,7 @@ def test_every_bad_number_of_a_curve_has_one_sentence(words, capsys):
     (["--record", "100000", "--samples", "1000"], "at most 5e+07 are recorded: record 4545 periods."),
     (["--periods", "10000001"], "nearest valid value is 10000000.")])
 def test_sizes_that_cannot_be_kept_are_refused(words, sentence, capsys):
-    """Before anything is allocated."""
+    """They are refused before anything is allocated."""
     assert main(["run", "sec2", *words]) == 2
     assert sentence in capsys.readouterr().err
 
@@ -82,7 +82,7 @@ def test_a_long_run_keeps_only_the_states_that_decide_its_regime():
 
 
 def test_numbers_that_fail_in_a_run_exit_with_3_and_one_sentence(monkeypatch, capsys):
-    """Status 3 with which bead, when and why, from `run` as well."""
+    """`run`, too, ends with status 3, and says which bead failed, when and why."""
     def fails(*_, **__):
         raise ComputationError("The motion of bead 3 stopped being a finite number at about 1 s.", "not-finite")
 
@@ -96,13 +96,13 @@ def test_numbers_that_fail_in_a_run_exit_with_3_and_one_sentence(monkeypatch, ca
 @pytest.mark.parametrize("words", [["run", "sec2", "a\nb\x1b[31m"], ["figure", "5", "--out", "a\nb\x1b[31m"],
                                    ["observe", "sec2", "--input", "a\nb\x1b[31m"]])
 def test_a_sentence_repeats_no_control_characters(words, capsys):
-    """A line end would make two sentences of one, and a terminal obeys escapes."""
+    """A newline would split the sentence in two, and a terminal would execute escape sequences."""
     assert main(words) == 2
     assert r"a\nb\x1b[31m" in (sentence := capsys.readouterr().err) and sentence.count("\n") == 1
 
 
 def test_stdout_of_a_process_is_one_json_object_and_nothing_else():
-    """As a script sees it, --explain and all; progress and explanations go to stderr."""
+    """This is what a script reads, even with --explain: progress and explanations go to stderr."""
     words = [sys.executable, "-m", "app.cli", "run", "sec2", *SHORT, "--json", "--explain"]
     done = subprocess.run(words, capture_output=True, text=True, cwd=Path(__file__).parents[2], check=False, timeout=300)
     assert done.returncode == 0
@@ -112,7 +112,7 @@ def test_stdout_of_a_process_is_one_json_object_and_nothing_else():
 
 
 def test_explain_names_present_and_absent_effects_and_the_method(capsys):
-    """What is in, what is out, how it is computed and why."""
+    """It says which effects are compiled in and which are not, how the motion is computed, and why."""
     assert main(["run", "sec2", *SHORT, "--explain"]) == 0
     said = capsys.readouterr().out
     present, absent = said.splitlines()[:2]
@@ -126,14 +126,14 @@ def test_explain_names_present_and_absent_effects_and_the_method(capsys):
 
 
 def test_a_bad_kappa_does_not_take_a_good_k_with_it():
-    """Each bad field is refused by itself: with kappa unreadable, k counts."""
+    """Each bad field is refused separately: if kappa is unreadable, k is used."""
     found, _, refused = decode("v=1&scene=sec2&k=5000&kappa=abc")
     assert found.k == 5000.0
     assert len(refused) == 1
 
 
 def test_k_and_a_good_kappa_together_are_said():
-    """kappa is used and k is refused with its sentence."""
+    """kappa is used, and k is refused with a sentence."""
     found, _, refused = decode("v=1&scene=sec2&kappa=0.001&k=5000")
     assert found.kappa == pytest.approx(0.001, rel=1e-12)  # k = κK√A0 and back
     assert len(refused) == 1 and "kappa was used" in refused[0]
@@ -141,14 +141,14 @@ def test_k_and_a_good_kappa_together_are_said():
 
 @pytest.mark.parametrize("query", ["kappa=0.002&A0=1e-5", "A0=1e-5&kappa=0.002"])
 def test_kappa_in_a_link_means_the_links_own_amplitude(query):
-    """In whatever order the fields come."""
+    """The order of the fields does not matter."""
     found, _, refused = decode("v=1&scene=rig&" + query)
     assert refused == []
     assert (found.A0, found.kappa) == (1e-5, pytest.approx(0.002, rel=1e-12))
 
 
 def test_a_field_that_comes_twice_is_said():
-    """The command line refuses a knob set twice; a link must not choose in silence."""
+    """The command line refuses a knob that is set twice, and a link must not choose silently."""
     _, _, refused = decode("v=1&scene=sec2&f=300&f=400")
     assert len(refused) == 1
 
@@ -156,7 +156,7 @@ def test_a_field_that_comes_twice_is_said():
 @pytest.mark.parametrize("field", ["f=", "f=1e400", "f=-inf", "f=0x10", "N=1e1000", "N=3.5", "wall=", "wall=-1", "tension=",
                                    "dissipation=LINEAR", "k=%00", "A0=%F0%9F%98%80", "accuracy=0", "F0=1,5"])
 def test_every_bad_field_of_a_link_has_its_sentence(field):
-    """The other fields of the link are taken, and the refused one keeps the scene's own value."""
+    """The other fields of the link are used, and the refused one keeps the scene's own value."""
     found, _, refused = decode(f"v=1&scene=sec2&{field}&D=77")
     assert len(refused) == 1
     assert found == scene("sec2").evolve(D=77.0)
@@ -177,7 +177,7 @@ def stored(tmp_path_factory):
     ("no regime", "no attribute regime"), ("cost no json", "cost is .* not an object"), ("schema word", "granchain_schema"),
     ("time group", "/run/time is not a dataset"), ("displacement short", r"shape \(3,\), expected \(5, 2\)")])
 def test_a_harmed_file_is_bad_input(harm, about, stored, tmp_path):
-    """Whatever is missing or wrong in it, `load` says that it is not a run written by granchain."""
+    """Whatever is missing or wrong in the file, `load` says that it is not a run written by granchain."""
     path = tmp_path / "b.h5"
     path.write_bytes(stored.read_bytes())
     with h5py.File(path, "a") as file:
@@ -206,13 +206,13 @@ def test_a_harmed_file_is_bad_input(harm, about, stored, tmp_path):
 
 @pytest.mark.parametrize("option", ["--out", "--picture"])
 def test_an_empty_file_name_is_refused(option, capsys):
-    """What `--out "$FILE"` gives if the variable is not set: the result was computed and kept nowhere."""
+    """With `--out "$FILE"` and an unset variable, the result used to be computed and lost."""
     assert main(["run", "sec2", *SHORT, option, ""]) == 2
     assert capsys.readouterr().err == f"{option} is empty; name a file.\n"
 
 
 def test_a_negative_seed_of_an_orbit_is_bad_input(capsys):
-    """NumPy's own error was a traceback."""
+    """It used to end in a traceback from NumPy."""
     assert main(["orbit", "sec2", "--start", "random", "--seed", "-1"]) == 2
     assert capsys.readouterr().err == "--seed -1 is outside 0 to 9223372036854775807; the nearest valid value is 0.\n"
 
@@ -220,7 +220,7 @@ def test_a_negative_seed_of_an_orbit_is_bad_input(capsys):
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no device that is always full")
 @pytest.mark.parametrize("unbuffered", ["", "1"])
 def test_a_standard_output_that_takes_no_more_is_a_sentence(unbuffered):
-    """A disk that is full where stdout goes was a traceback, or Python's complaint with status 120."""
+    """With stdout on a full disk, there used to be a traceback, or Python's own message and status 120."""
     with open("/dev/full", "w") as full:
         done = subprocess.run([sys.executable, "-m", "app.cli", "scenes", "--json"], stdout=full, stderr=subprocess.PIPE,
                               text=True, env={**os.environ, "PYTHONUNBUFFERED": unbuffered}, check=False)
@@ -229,7 +229,7 @@ def test_a_standard_output_that_takes_no_more_is_a_sentence(unbuffered):
 
 @pytest.mark.parametrize("unbuffered", ["", "1"])
 def test_a_reader_that_has_gone_ends_the_command_quietly(unbuffered):
-    """As `granchain scenes | head -1` does."""
+    """An example is `granchain scenes | head -1`."""
     reading, writing = os.pipe()
     os.close(reading)
     done = subprocess.run([sys.executable, "-m", "app.cli", "scenes"], stdout=writing, stderr=subprocess.PIPE, text=True,

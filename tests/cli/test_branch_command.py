@@ -1,4 +1,4 @@
-"""What `granchain branch` prints: the number of unstable multipliers, kinds in words, the side of a grazing."""
+"""The output of `granchain branch`: the number of unstable multipliers, kinds in words, the side of a grazing."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ COMMAND = ["branch", "sec2", "--knob", "f", "--from", "262", "--to", "245", "--p
 
 @pytest.fixture(scope="module")
 def said() -> list[str]:
-    """The lines of the table and of the special points."""
+    """The lines of the table and the special points."""
     with pytest.MonkeyPatch.context() as patch:
         lines: list[str] = []
         patch.setattr("builtins.print", lambda *words, **_: lines.extend(" ".join(map(str, words)).splitlines()))

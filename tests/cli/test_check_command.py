@@ -1,4 +1,4 @@
-"""`granchain check` prints the rows of the contract and says with its status whether all passed."""
+"""`granchain check` prints a row for each hard case, and its exit status says whether all passed."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from granchain_core.hard_cases import CASES, Check, runner
 
 
 def pretend(figure: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Rows at once, the last case's with this value against a limit of 1."""
+    """Replace the computation by instant rows; the last case has this value, with a limit of 1."""
 
     def rows(quick: bool, workers: int | None = None):  # type: ignore[no-untyped-def]
         for case in CASES:
@@ -48,7 +48,7 @@ def test_without_json_a_student_reads_what_is_hard(monkeypatch: pytest.MonkeyPat
 
 
 def test_a_process_that_is_ended_from_outside_is_said(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    """As the kernel does it where memory is short: status 3 and a sentence, no traceback."""
+    """The kernel does this when memory is short. The command ends with status 3 and a sentence, without a traceback."""
     monkeypatch.setattr(runner, "_run", _end_itself)
     assert main(["check", "--quick", "--json"]) == 3
     told = capsys.readouterr()

@@ -1,4 +1,4 @@
-"""`granchain cite`: the software, the paper, Hertz, and the damping law where the scene has it."""
+"""`granchain cite` names the software, the paper, Hertz, and the source of the scene's damping law."""
 
 from __future__ import annotations
 
@@ -33,6 +33,6 @@ def test_what_a_scene_uses_is_cited(settings: list[str], named: list[str], capsy
 ])
 def test_the_sources_of_the_scenes_beyond_the_paper_are_cited(scene: str, named: list[str],
                                                              capsys: pytest.CaptureFixture[str]) -> None:
-    """The references of docs/scenes.md, for the scenes that show them."""
+    """These are the references of docs/scenes.md for the scenes that reproduce them."""
     assert main(["cite", scene, "--json"]) == 0
     assert [one["for"] for one in json.loads(capsys.readouterr().out)["citations"]][3:] == named

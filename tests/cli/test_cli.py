@@ -1,4 +1,4 @@
-"""The command line: numbers in its JSON, exit statuses, and one clear sentence for every wrong input."""
+"""The command line: numbers in its JSON, exit statuses, and a clear sentence for every wrong input."""
 
 from __future__ import annotations
 
@@ -46,7 +46,8 @@ def test_an_accuracy_that_a_batch_does_not_use_is_said(words: list[str], said: s
 
 
 def test_a_map_has_its_bifurcation_curves(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """As numbers, in words and in the picture; without an option nothing of it, and with tension cut a sentence."""
+    """They are in the JSON, the text and the picture, but only with the option; with a tension cut, they are refused.
+    """
     words = ["map", "sec2", "--set", "N=3", "--x", "f=1860:1900:2", "--y", "A0=4.5e-7:5e-7:2", "--out", str(tmp_path / "map.h5")]
     picture = tmp_path / "map.html"
     assert main([*words, "--json"]) == 0
@@ -165,7 +166,7 @@ def test_help_is_no_error(capsys: pytest.CaptureFixture[str]) -> None:
     assert left.value.code == 0 and "serve" in capsys.readouterr().out
 
 
-#: The command line, which says on stderr that the kernel is about to be called.
+#: Runs the command line, and announces on stderr that the kernel is about to be called.
 _ANNOUNCED = """
 import sys
 from app.cli import main
@@ -194,7 +195,7 @@ def test_an_interrupt_ends_a_long_run_with_130() -> None:
 
 
 def _interruptible() -> None:
-    """A shell's background jobs ignore interrupts, and their children inherit that."""
+    """Make a child process react to interrupts, which the background jobs of a shell and their children ignore."""
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
@@ -222,7 +223,7 @@ def test_a_failed_point_says_so_in_the_json_and_a_curve_of_them_in_the_exit_stat
 
 
 def test_a_curve_is_compared_with_a_measured_one(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """The measurement is half a newton below the computed elastic forces, so the misfit is +0.5 N."""
+    """The measurement is half a newton below the computed elastic forces, so the difference is +0.5 N."""
     words = ["curve", "sec2", "--set", "N=2", "--from", "1900", "--to", "2000", "--points", "2"]
     assert main([*words, "--json"]) == 0
     forces = json.loads(capsys.readouterr().out)["max_output_force_elastic"]
@@ -253,7 +254,7 @@ def test_words_say_whether_the_accuracy_was_reached_and_count_one_iteration(caps
 
 def test_an_orbit_starts_in_the_last_state_of_a_run_at_its_phase(tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
                                                                  capsys: pytest.CaptureFixture[str]) -> None:
-    """A run that began at phase 0.25 ends there; one of another chain is taken, and its values are said."""
+    """A run that began at phase 0.25 ends there. A run of another chain is accepted, and its values are reported."""
     chain, file = scene("sec2").evolve(N=2, f=2000.0), str(tmp_path / "run.h5")
     save(run(chain, periods=20, record=1, samples=8, start=State(np.zeros(2), np.zeros(2), 0.25)), file)
     starts = []
@@ -267,7 +268,7 @@ def test_an_orbit_starts_in_the_last_state_of_a_run_at_its_phase(tmp_path: Path,
 
 
 def test_the_json_of_a_curve_has_the_numbers_behind_a_regime(capsys: pytest.CaptureFixture[str]) -> None:
-    """Those of a quasi-periodic point decide what it is called (docs/regimes.md)."""
+    """For a quasi-periodic point, they are the numbers that decide the label (docs/regimes.md)."""
     assert main(["curve", "sec2", "--from", "1700", "--to", "1700", "--points", "1", "--json"]) == 0
     said = {name: values[0] for name, values in json.loads(capsys.readouterr().out).items() if isinstance(values, list)}
     assert said["regime"] == "quasi-periodic" and said["decay"] is None
@@ -278,7 +279,7 @@ def test_the_json_of_a_curve_has_the_numbers_behind_a_regime(capsys: pytest.Capt
 
 
 def test_the_json_of_a_run_says_what_was_run(capsys: pytest.CaptureFixture[str]) -> None:
-    """With the version and the scene's hash one line of JSON can be cited without the command that made it."""
+    """With the version and the scene's hash, a line of JSON can be cited without the command that produced it."""
     chain = scene("sec2").evolve(N=2, f=2000.0)
     words = ["--set", "N=2", "--set", "f=2000", "--periods", "3", "--record", "2", "--samples", "8"]
     assert main(["run", "sec2", *words, "--json"]) == 0

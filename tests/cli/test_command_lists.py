@@ -1,4 +1,4 @@
-"""Every command has an example that its parser takes and its help shows, and a hostile command line."""
+"""Every command has an example, which its parser accepts and its help shows, and a hostile command line."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def test_a_command_has_an_example(command: str, capsys: pytest.CaptureFixture[st
 
 @pytest.mark.parametrize("command", COMMANDS)
 def test_what_a_command_needs_is_in_its_form(command: str) -> None:
-    """The words that every call has stand in the table of README.md."""
+    """The required words of every command are in the table of README.md."""
     for action in parser_for([command]).commands[command]._actions:
         if action.required and action.nargs != "*":
             assert (action.option_strings or [action.metavar])[0] in COMMANDS[command].form.split(), action.dest
@@ -28,7 +28,7 @@ def test_what_a_command_needs_is_in_its_form(command: str) -> None:
 
 @pytest.mark.parametrize("command", COMMANDS)
 def test_a_hostile_base_of_every_command_gets_past_the_parser(command: str) -> None:
-    """Otherwise only the parser would be tested with words that are replaced, dropped, doubled or added."""
+    """Otherwise, command lines with replaced, dropped, doubled or added words would only test the parser."""
     def taken(base: list[str]) -> bool:
         try:
             parser_for(base).parse_args(base)

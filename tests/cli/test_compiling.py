@@ -1,4 +1,4 @@
-"""Who waits at a terminal is told of the compiler, once, and of the seconds; a script's stderr has nothing of it."""
+"""A user at a terminal is told once that kernels are compiled, and sees the seconds; a script's stderr has neither."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from granchain_core import scene
 from granchain_core.precompile import warm
 from granchain_core.precompile.pieces import FIXED_STEP_KERNELS
 
-#: Compiles two functions, as a first run does.
+#: Compiles two functions, like a first run.
 PROGRAM = """
 from numba import njit
 from app.cli import main
@@ -37,7 +37,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 def at_a_terminal() -> str:
-    """What a person sees of stderr."""
+    """Run the program and return what a user sees of its stderr."""
     mine, theirs = pty.openpty()
     done = subprocess.run([sys.executable, "-c", PROGRAM], cwd=ROOT, stderr=theirs, stdout=subprocess.PIPE, text=True,
                           timeout=120, check=True)
@@ -61,7 +61,7 @@ def test_a_script_reads_nothing_of_compiling() -> None:
 
 
 class Terminal(io.StringIO):
-    """A terminal that tells when it shows seconds."""
+    """A terminal that sets an event when it shows seconds."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -87,7 +87,7 @@ def test_seconds_are_counted_where_the_work_reports_nothing_itself(monkeypatch: 
 
 
 def compilers() -> list[BaseProcess]:
-    """The processes that compile for this one."""
+    """Return the processes that compile for this one."""
     return [one for one in multiprocessing.active_children() if one.name == "compiler"]
 
 
@@ -97,7 +97,7 @@ def test_a_second_process_compiles_only_where_numba_does_and_ends_with_the_block
     with compiling_beside(scene("sec2"), FIXED_STEP_KERNELS):
         assert compilers() == [], "nothing has been compiled yet"
         with event.trigger_event("numba:compile"), event.trigger_event("numba:compile"):
-            (process,) = compilers()  # one, however much is compiled
+            (process,) = compilers()  # only one, however much is compiled
     process.join(60)
     assert not process.is_alive()
     with event.trigger_event("numba:compile"):
@@ -105,7 +105,8 @@ def test_a_second_process_compiles_only_where_numba_does_and_ends_with_the_block
 
 
 def test_what_cannot_be_compiled_beside_leaves_no_word() -> None:
-    """The tangent flow refuses a chain that cuts tension; the command says so, and this process nothing."""
+    """The tangent flow refuses a chain with a tension cut; the command reports this, and the second process is silent.
+    """
     done = subprocess.run([sys.executable, "-c", f"""
 import os
 from app.cli.compiling import _compile

@@ -1,4 +1,6 @@
-"""Ctrl-C and SIGTERM at any instant: the status, one sentence, no traceback, and no process left; nor after a kill."""
+"""After Ctrl-C or SIGTERM at any instant, there is an exit status and a sentence, no traceback, and no process left; a
+kill leaves no process either.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +19,7 @@ from tools.kills.processes import ROOT, Command
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="descendants are found in /proc")
 
 SENTENCE = {signal.SIGINT: (130, "Cancelled"), signal.SIGTERM: (143, "Terminated")}
-#: Each computes for minutes.
+#: Commands that compute for minutes.
 LONG = {
     "run": ("run", "rig", "--periods", "1000000", "--record", "1"),
     "curve": ("curve", "sec2", "--from", "100", "--to", "3000", "--points", "50000"),
@@ -28,7 +30,7 @@ LONG = {
     "warm": ("warm",),
     "serve": ("serve", "--port", "0"),
 }
-#: `granchain` as pip writes it, and `python -m app.cli`.
+#: The script `granchain`, as pip writes it, and `python -m app.cli`.
 ENTRIES = {"granchain": ("-c", "import sys; from granchain_start import entry; sys.argv[0] = 'granchain'; sys.exit(entry())"),
            "python -m": ("-m", "app.cli")}
 
@@ -56,16 +58,16 @@ def ends_well(command: Command, number: signal.Signals) -> None:
     assert command.left() == []
 
 
-#: Every command and both signals; all pairs of them at random instants: `python -m tools.kills`.
-#: With compiled kernels `warm` has nothing to do; it ends while it compiles in the next test.
+#: All commands, with both signals in turn; `python -m tools.kills` tests all pairs at random instants. With compiled
+#: kernels, `warm` has nothing to do; the next test ends it while it compiles.
 BY_TURNS = [(name, list(SENTENCE)[i % 2]) for i, name in enumerate(LONG) if name != "warm"]
 
 
 @pytest.mark.parametrize(("name", "number"), BY_TURNS)
 def test_a_command_ends_while_it_computes_or_compiles(name: str, number: signal.Signals,
                                                       started: Callable[..., Command]) -> None:
-    """It has loaded everything after less than a second of processor time; then it computes, or compiles where the
-    machine has no kernels yet. `serve` says that it is ready.
+    """A command has loaded everything after less than 1.2 s of processor time. It then computes, or compiles if the
+    machine has no kernels yet. `serve` reports when it is ready.
     """
     command = started(*LONG[name])
     if name == "serve":
@@ -81,7 +83,7 @@ def test_a_command_ends_while_it_computes_or_compiles(name: str, number: signal.
 def test_a_command_ends_while_kernels_compile(name: str, number: signal.Signals, started: Callable[..., Command],
                                               tmp_path: Path) -> None:
     command = started(*LONG[name], GRANCHAIN_CACHE=str(tmp_path / "empty"))
-    while not list((tmp_path / "empty").rglob("*.nb?")):  # the first kernel is compiled, and another one being compiled
+    while not list((tmp_path / "empty").rglob("*.nb?")):  # the first kernel is compiled, and the next one is being compiled
         assert command.process.poll() is None
         time.sleep(0.05)
     command.send(number, to_all=number is signal.SIGINT)
@@ -90,7 +92,7 @@ def test_a_command_ends_while_kernels_compile(name: str, number: signal.Signals,
 
 @pytest.mark.parametrize(("after", "entry"), list(zip([0.0, 0.03, 0.1, 0.2, 0.4, 0.8], list(ENTRIES) * 3, strict=True)))
 def test_an_interrupt_in_the_first_second(after: float, entry: str, started: Callable[..., Command]) -> None:
-    """While it loads what it needs, from the instant on at which the entry has told the system of its handlers."""
+    """It arrives while the program loads, at any time after the signal handlers were installed."""
     command = started(*LONG["run"], program=ENTRIES[entry])
     while not command.listening():
         assert command.process.poll() is None
@@ -100,7 +102,7 @@ def test_an_interrupt_in_the_first_second(after: float, entry: str, started: Cal
 
 
 def test_the_entry_imports_next_to_nothing_before_it_listens() -> None:
-    """Ctrl-C during an import outside the guard would end in Python's own traceback."""
+    """Ctrl-C during an import before the handlers are installed would end in Python's own traceback."""
     program = ("import sys\nbefore = set(sys.modules)\nimport app.cli\nprint(sorted(set(sys.modules) - before))\n"
                "from app.cli import ending\nprint(any(name.split('.')[0] in {'numpy', 'numba', 'granchain_core', 'argparse'}"
                " for name in sys.modules))\n")
@@ -118,7 +120,7 @@ def test_nothing_is_left_of_a_command_that_is_killed(name: str, started: Callabl
     command.send(signal.SIGKILL)
     assert command.end() == -signal.SIGKILL
     assert command.left() == []
-    # Python's own words where a worker was still being started: a frame of ours would be a fault
+    # Python may print a traceback if a worker was still being started; a frame of granchain in it would be a fault
     assert not re.search(r'File "[^"]*/(granchain_core|app)/', command.err)
 
 
@@ -137,7 +139,7 @@ def test_the_page_of_hard_cases_leaves_no_process_either(started: Callable[..., 
 
 def test_a_second_signal_ends_at_once_what_does_not_listen(started: Callable[..., Command],
                                                                tmp_path: Path) -> None:
-    """The sentence on stderr says where the finished part is."""
+    """The sentence on stderr says where the finished part is kept."""
     (tmp_path / "out.h5.blocks").mkdir()
     program = ("import time\nfrom app.cli import ending\nending.begin()\nending.keeps('out.h5.blocks')\n"
                "with ending.asking():\n    print('inside', flush=True)\n    time.sleep(1000)\n")
@@ -145,14 +147,14 @@ def test_a_second_signal_ends_at_once_what_does_not_listen(started: Callable[...
     assert command.process.stdout is not None and command.process.stdout.readline() == "inside\n"
     command.send(signal.SIGTERM)
     time.sleep(0.2)
-    assert command.process.poll() is None  # it has some time to end
+    assert command.process.poll() is None  # it is given some time to end
     command.send(signal.SIGINT)
-    assert command.end() == 143  # that of the first
+    assert command.end() == 143  # the status of the first signal
     assert command.err == "Terminated: finished work is kept in out.h5.blocks; continue with --resume.\n"
 
 
 def test_a_signal_after_the_result_is_written_says_where_it_is(started: Callable[..., Command], tmp_path: Path) -> None:
-    """Its blocks are gone by then, and the table is still to be printed."""
+    """By then its blocks have been removed, but the table has not been printed yet."""
     program = ("import time\nfrom app.cli import ending\nfrom app.cli.common import unbroken\nending.begin()\n"
                "ending.keeps('out.h5.blocks')\nwith unbroken('out.h5'):\n    pass\nprint('written', flush=True)\n"
                "time.sleep(1000)\n")
@@ -165,7 +167,7 @@ def test_a_signal_after_the_result_is_written_says_where_it_is(started: Callable
 
 @pytest.mark.parametrize("number", SENTENCE)
 def test_a_signal_after_the_command_is_done_changes_nothing(number: signal.Signals, started: Callable[..., Command]) -> None:
-    """Python takes some time to leave, in which its default would end the process with another status."""
+    """Python takes some time to exit, and its default handlers would end the process with another status."""
     program = ("import atexit, os, time\nfrom app.cli import ending\nending.begin()\n"
                "atexit.register(lambda: (print('leaving', flush=True), time.sleep(0.3)))\n"
                "class Late:\n    def __del__(self, write=os.write, sleep=time.sleep):\n"
@@ -181,7 +183,7 @@ def test_a_signal_after_the_command_is_done_changes_nothing(number: signal.Signa
 
 
 def test_an_ignored_interrupt_stays_ignored(started: Callable[..., Command]) -> None:
-    """As in a shell's background jobs."""
+    """This is the case in a shell's background jobs."""
     program = ("import signal\nsignal.signal(signal.SIGINT, signal.SIG_IGN)\nfrom app.cli import ending\nending.begin()\n"
                "print(signal.getsignal(signal.SIGINT) is signal.SIG_IGN)\n")
     command = started(program=("-c", program))

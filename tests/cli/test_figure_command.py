@@ -1,4 +1,4 @@
-"""`granchain figure`: each kind of file, and what is refused before anything is computed."""
+"""`granchain figure`: every kind of file, and input that is refused before anything is computed."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def test_a_table_has_units_in_its_names_and_all_numbers(tmp_path: Path, capsys: 
 
 
 def test_a_page_needs_nothing_else_and_has_the_caption(tmp_path: Path) -> None:
-    # in a process of its own: Panel, which other tests import, puts its own scripts into every page of Bokeh's
+    # in a separate process, because Panel, which other tests import, adds its own scripts to every Bokeh page
     subprocess.run([sys.executable, "-m", "app.cli", "figure", "5"], cwd=tmp_path, check=True, capture_output=True,
                    env={**os.environ, "PYTHONPATH": str(ROOT)})
     page = (tmp_path / "figure-5.html").read_text(encoding="utf-8")
@@ -46,7 +46,7 @@ def test_a_png_is_the_figure_with_its_caption(theme: str, tmp_path: Path) -> Non
     out = tmp_path / "a.png"
     assert main(["figure", "1", "--out", str(out), "--theme", theme]) == 0
     with Image.open(out) as picture:
-        assert picture.size[0] == 1650 and picture.size[1] > 600  # one and a half times 1100 × 400 and two lines
+        assert picture.size[0] == 1650 and picture.size[1] > 600  # one and a half times 1100 × 400, plus two lines
         colours = picture.convert("RGB").getcolors(1_000_000) or []
     paper = max(colours)[1]
     assert paper == ((255, 255, 255) if theme == "light" else (22, 26, 33))

@@ -1,4 +1,4 @@
-"""`granchain fit`: parameters with intervals and a verdict, as a table, as JSON, in a file and as a picture."""
+"""`granchain fit`: parameters with intervals and a verdict, as a table, JSON, a file and a picture."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ CHAIN = ["sec2", "--set", "N=2"]
 
 @pytest.fixture()
 def data(tmp_path: Path) -> str:
-    """A curve of two beads with D = 115 N s/m and 3 % of noise, in kHz and mN with decimal commas."""
+    """A file with a curve of two beads, with D = 115 N s/m and 3 % noise, in kHz and mN with decimal commas."""
     curve = resonance_curve(scene("sec2").evolve(N=2, D=115.0), np.linspace(1500.0, 2600.0, 7))
     random = np.random.default_rng(3)
     rows = [(p.frequency / 1e3, 1e3 * p.max_output_force * (1 + 0.03 * random.standard_normal())) for p in curve.points]
@@ -44,7 +44,7 @@ def test_a_table_a_sentence_and_every_residual(data: str, tmp_path: Path, capsys
 
 
 def test_a_fit_of_force_trains_has_a_table_and_a_sentence(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Samples of a force have no frequency each, so there are no rows of residuals."""
+    """There are no rows of residuals, since the samples of a force have no frequency."""
     chain, file = [*CHAIN, "--set", "f=2000"], str(tmp_path / "trains.csv")
     assert main(["virtual", *chain, "--noise", "0.02", "--periods", "4", "--out", file]) == 0
     capsys.readouterr()
@@ -71,7 +71,7 @@ def test_what_is_refused_before_anything_is_computed(words: list[str], sentence:
 
 
 def test_the_picture_is_one_file(data: str, tmp_path: Path) -> None:
-    # in a process of its own: Panel, which other tests import, puts its own scripts into every page of Bokeh's
+    # in a separate process, because Panel, which other tests import, adds its own scripts to every Bokeh page
     out = tmp_path / "a.html"
     done = subprocess.run([sys.executable, "-m", "app.cli", "fit", *CHAIN, "--data", data, "--free", "D=50:200", "--error", "0.03",
                            "--json", "--picture", str(out)], cwd=ROOT, capture_output=True, text=True, check=True)

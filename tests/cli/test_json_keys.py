@@ -1,4 +1,4 @@
-"""The keys of every command's JSON are exactly those of docs/command-line.md, which is their one table."""
+"""The keys of every command's JSON are exactly those in the tables of docs/command-line.md."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ from granchain_core import BadInput
 from granchain_core.hard_cases import CASES, Check, runner
 
 PAGE = (Path(__file__).parents[2] / "docs" / "command-line.md").read_text(encoding="utf-8")
-#: By heading, the keys and what the page says of each.
+#: The keys by heading, with the page's description of each.
 TABLES = {section.partition("\n")[0]: dict(re.findall(r"^\| `(.+?)` \| (.+) \|$", section, re.MULTILINE))
           for section in PAGE.split("\n## ")[1:]}
-#: Values of these keys are objects whose keys are names of knobs.
+#: Keys whose values are objects with names of knobs as keys.
 OPEN = {"knobs"}
 
 _SMALL = ["sec2", "--set", "N=2", "--set", "f=2000"]
-#: One command line for each table, and one more for each option that adds keys; the files are made by `files`. A
-#: command without one has the example of its help.
+#: One command line for each table, and one for each option that adds keys. `files` creates the files. Commands that are
+#: not listed use the example of their help.
 EXAMPLES = {
     "run": ["run", *_SMALL, "--periods", "2", "--record", "1", "--samples", "8"],
     "run --drive": ["run", *_SMALL, "--drive", "shaker.csv"],
@@ -67,8 +67,8 @@ for _name, _row in COMMANDS.items():
 
 @pytest.fixture()
 def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Measured: a force with an output, a drive with both forces, a curve. Hard cases that take no time, and settings
-    that run once.
+    """Write measured data: a force with an output, a drive with both forces, and a curve. Hard cases then take no time,
+    and every setting of `accuracy` runs once.
     """
     monkeypatch.chdir(tmp_path)
     time = np.linspace(0.0, 1e-3, 51)
@@ -87,7 +87,7 @@ def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def keys(found: dict[str, Any], before: str = "") -> set[str]:
-    """Every key, of objects within objects and of objects in lists too, as the page writes it."""
+    """Return every key, including those of nested objects and of objects in lists, as the page writes them."""
     names = set()
     for key, value in found.items():
         names.add(before + key)
@@ -100,7 +100,7 @@ def keys(found: dict[str, Any], before: str = "") -> set[str]:
 
 
 def of_page(heading: str, words: list[str]) -> set[str]:
-    """The keys that the page has for a command line: without those of options that are not given."""
+    """Return the keys that the page lists for a command line, without those of options that are not given."""
     names = set()
     for key, meaning in TABLES[heading].items():
         only_with, not_with = re.search(r"\*with\* `(--[\w-]+)`", meaning), re.search(r"; not with `(--[\w-]+)`", meaning)
@@ -113,7 +113,7 @@ def of_page(heading: str, words: list[str]) -> set[str]:
 
 
 def has_json(command: str) -> bool:
-    """Whether a command has the option --json."""
+    """Return whether a command has the option --json."""
     try:
         parser_for([command]).parse_args([command, *COMMANDS[command].example.split(), "--json"])
     except BadInput as problem:

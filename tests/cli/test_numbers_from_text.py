@@ -1,4 +1,5 @@
-"""Numbers from text: one reading of them at the command line, in links and in files, and a sentence for what is none.
+"""Numbers are read from text in the same way on the command line, in links and in files, and anything else is refused
+with a sentence.
 """
 
 from __future__ import annotations
@@ -20,8 +21,8 @@ from granchain_core.experiment import read_data
 from granchain_core.inputs.text import number_in, whole_in
 from granchain_core.store import load, save
 
-#: What Python's float or int takes or stumbles over, and a person does not mean: digits joined by underscores,
-#: full-width, Arabic and superscript digits, words, and more digits than any number has.
+#: Texts that Python's float or int accepts or fails on, but that no user means: digits joined by underscores,
+#: full-width, Arabic and superscript digits, words, and far too many digits.
 ODD = ["1_000", "１０００", "٣٤٠", "²", "nan", "inf", "0x10", "1e5_0", "1" * 5000, "1e999", "", "１e3"]
 WHOLE = ["１", "1_0", "٣", "²", "1.0", "1e1", "", "1" * 5000]
 
@@ -34,7 +35,7 @@ def test_a_number_is_what_a_person_writes(text: str, value: float) -> None:
 
 @pytest.mark.parametrize("text", ODD)
 def test_odd_digits_are_no_number_anywhere(text: str, capsys: pytest.CaptureFixture[str]) -> None:
-    """The same border for a knob, an option, a link, a CSV file; each says so in one sentence."""
+    """A knob, an option and a CSV file have the same rule, and each refuses such a text with one sentence."""
     assert number_in(text) is None
     for words in (["run", "sec2", "--set", f"f={text}"], ["curve", "sec2", "--points", "2", "--from", text, "--to", "900"],
                   ["map", "sec2", "--x", f"f={text}:900:2", "--y", "A0=1e-7:1e-6:2", "--out", "never.h5"],
@@ -54,7 +55,7 @@ def test_odd_digits_in_a_link_are_refused_and_the_rest_of_it_counts(text: str) -
 
 @pytest.mark.parametrize("text", WHOLE)
 def test_odd_digits_are_no_whole_number(text: str, capsys: pytest.CaptureFixture[str]) -> None:
-    """`serve --port １` listened on 1."""
+    """`serve --port １` used to listen on port 1."""
     assert whole_in(text) is None
     for words in (["serve", f"--port={text}"], ["run", "sec2", f"--periods={text}"], ["orbit", "sec2", f"--seed={text}"],
                   ["map", "sec2", "--x", f"f=300:900:{text}", "--y", "A0=1e-7:1e-6:2", "--out", "never.h5"]):
@@ -65,11 +66,11 @@ def test_odd_digits_are_no_whole_number(text: str, capsys: pytest.CaptureFixture
 
 @pytest.mark.parametrize("name", ["self", "changes", "cls", "scene", "f ", "__class__", "F"])
 def test_a_name_that_is_no_knob_is_said(name: str, capsys: pytest.CaptureFixture[str]) -> None:
-    """`self` is the name of an argument of the method that changes knobs."""
+    """`self`, for example, is an argument of the method that changes knobs."""
     assert main(["run", "sec2", "--set", f"{name}=1"]) == 2
     said = capsys.readouterr().err
     assert len(said.splitlines()) == 1 and "Unknown knob" in said
-    if name != "scene":  # a field of links
+    if name != "scene":  # a field that links have
         _, _, refused = decode(f"v=1&scene=sec2&{name}=1")
         assert len(refused) == 1 and "Unknown field" in refused[0]
     with pytest.raises(BadInput, match="Unknown knob"):
@@ -78,7 +79,7 @@ def test_a_name_that_is_no_knob_is_said(name: str, capsys: pytest.CaptureFixture
 
 @pytest.mark.parametrize("value", ["1_000", "１０００", "340", float("nan"), float("inf"), -1, True, None, [340.0], {}, 1e300])
 def test_a_scene_in_a_file_goes_through_the_same_border(value: object, tmp_path: Path) -> None:
-    """Its numbers are JSON's: a text that looks like one is refused as well."""
+    """Its numbers must be JSON numbers: a text that looks like a number is refused as well."""
     path = save(run(scene("sec2").evolve(N=2, f=3000.0), periods=0, record=1, samples=4), tmp_path / "a.h5")
     old = tmp_path / "old.h5"
     with h5py.File(path) as new, h5py.File(old, "w") as file:
@@ -110,7 +111,8 @@ def test_no_other_value_of_a_scene_is_taken_unchecked(field: str, value: object)
 
 @pytest.mark.parametrize("query", ["self=1", "f=" + "1" * 5000, "f=%C2%B2", "f=1_000", "f=%EF%BC%91", "N=%D9%A3"])
 def test_the_page_opens_whatever_the_address_says(query: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """As a browser asks for it; Panel's own reading of addresses answered some of these with an error of the server."""
+    """The page is requested as by a browser; Panel's own parser answered some of these addresses with a server error.
+    """
     seen: list[list[str]] = []
     monkeypatch.setattr(entry.Controller, "show_message", lambda self, sentence: seen.append([sentence]))
 

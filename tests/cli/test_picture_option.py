@@ -1,4 +1,4 @@
-"""`--picture FILE.html`: one file with the figure in it, which asks nobody for anything; the result is what it was."""
+"""`--picture FILE.html` writes one self-contained file with the figure, and does not change the result."""
 
 from __future__ import annotations
 
@@ -32,18 +32,18 @@ COMMANDS = {
     "pulse": ["impact", "--set", "N=4"],
     "map": [*SHORT, "--x", "f=1900:2000:2", "--y", "A0=5e-7:6e-7:2", "--out", "map.h5"],
 }
-#: A source of each figure that must have rows.
+#: A data source that each figure must have.
 SOURCES = {"run": "input force", "run --drive": "input force", "pulse": "output force", "curve": "rest",
            "curve --data": "measured", "orbit": "within", "branch": "orbits", "map": "cells"}
 
 
 def document(page: str) -> dict[str, object]:
-    """Bokeh's document in a page."""
+    """Return the Bokeh document in a page."""
     (found,) = re.findall(r'<script type="application/json"[^>]*>(.*?)</script>', page, re.DOTALL)
     return dict(next(iter(json.loads(found).values())))
 
 
-#: Every command by itself would import the core anew; what each prints is told by its name.
+#: Runs all commands in one process, which imports the core only once; prints the output of each by its name.
 _PROGRAM = """
 import contextlib, io, json, os, sys
 from app.cli import main
@@ -62,8 +62,8 @@ print(json.dumps(told))
 
 @pytest.fixture(scope="module")
 def drawn(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], tuple[str, str]]:
-    """What a command printed, and its page; all of them in a process of their own: Panel, which other tests import,
-    puts its own scripts into every page of Bokeh's.
+    """A function that returns a command's output and its page. All commands run in a separate process, because Panel,
+    which other tests import, adds its own scripts to every Bokeh page.
     """
     folder = tmp_path_factory.mktemp("pictures")
     (folder / "measured.csv").write_text("frequency_Hz,max_output_force_N\n1900,0.5\n1980,0.6\n", encoding="utf-8")
@@ -78,7 +78,7 @@ def drawn(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], tuple[str
 @pytest.mark.parametrize("command", COMMANDS)
 def test_the_figure_is_in_a_file_that_needs_nothing_else(command: str, drawn: Callable[[str], tuple[str, str]]) -> None:
     told, page = drawn(command)
-    json.loads(told)  # still one object and nothing else
+    json.loads(told)  # still a single JSON object
     assert not re.search(r"<(script|link)[^>]+(src|href)=", page)
     assert re.search(rf'"name": "ColumnDataSource", "id": "[^"]+", "attributes": {{"name": "{SOURCES[command]}", ',
                      json.dumps(document(page)))

@@ -1,5 +1,5 @@
-"""run, curve, branch and map that are interrupted or killed go on with what they had finished, and compute none of it
-again.
+"""After they were interrupted or killed, run, curve, branch and map continue with the parts they had finished, and
+compute none of them again.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from tools.kills.finished import differing, finished_in
 from tools.kills.processes import Command
 from tools.kills.trial import COMMANDS as LONG
 
-#: A run that is long enough for two signals after a finished block each; the others are no longer than that.
+#: A run long enough to get two signals, each after a finished block; the other commands are as in tools/kills.
 COMMANDS = {**LONG, "run": ("run", "sec2", "--periods", "1500", "--record", "5", "--samples", "16")}
 #: Frequencies of the curves that are computed here [Hz].
 FREQUENCIES = tuple(np.linspace(900.0, 1100.0, 7).tolist())
@@ -36,7 +36,7 @@ linux = pytest.mark.skipif(sys.platform != "linux", reason="descendants are foun
 
 
 def interrupted(name: str, number: signal.Signals, out: Path, *more: str) -> set[object]:
-    """Start a command, send it a signal once something is finished, and give what it has finished then."""
+    """Start a command, send it a signal once a further part is finished, and return the finished parts."""
     before = finished_in(name, out)
     command = Command(*COMMANDS[name], "--out", str(out), *more)
     try:
@@ -59,7 +59,9 @@ def interrupted(name: str, number: signal.Signals, out: Path, *more: str) -> set
 @linux
 @pytest.mark.parametrize("name", COMMANDS)
 def test_a_command_goes_on_after_two_signals(name: str, tmp_path: Path) -> None:
-    """Ended, then killed; SIGINT takes the way of SIGTERM (test_ending.py), and `tools.kills` sends all at random."""
+    """The command is terminated, then killed. SIGINT is handled like SIGTERM (test_ending.py), and `tools.kills` sends
+    all signals at random.
+    """
     out = tmp_path / "out.h5"
     there = interrupted(name, signal.SIGTERM, out)
     assert there <= (more := interrupted(name, signal.SIGKILL, out, "--resume"))
@@ -75,13 +77,13 @@ SHORT = {
     "branch": ["branch", "sec2", "--knob", "f", "--from", "1500", "--to", "1520", "--period", "1"],
     "map": ["map", "sec2", "--x", "f=300:400:2", "--y", "A0=5e-7:6e-7:2"],
 }
-#: What changes the question, by command.
+#: Options that change the result, by command.
 OTHER = {name: ["--set", "D=90"] for name in SHORT}
 
 
 @pytest.fixture(scope="module", params=SHORT)
 def finished(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Path, bytes]:
-    """A command, its result, and the head of its folder of blocks, as an interrupted one leaves it."""
+    """A command, its result, and the head of its folder of blocks, as an interrupted command leaves it."""
     name, out = request.param, tmp_path_factory.mktemp("finished") / "a.h5"
     kept: list[bytes] = []
     remove = Kept.remove
@@ -101,7 +103,7 @@ def finished(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFa
 def test_a_finished_result_is_looked_at_before_its_blocks(finished: tuple[str, Path, bytes], tmp_path: Path,
                                                           monkeypatch: pytest.MonkeyPatch,
                                                           capsys: pytest.CaptureFixture[str]) -> None:
-    """Killed after the result was written, while its blocks still stand, whole or not: nothing is computed again."""
+    """If a command was killed after writing the result but before removing its blocks, nothing is computed again."""
     name, result, content = finished
     out = Path(shutil.copy(result, tmp_path))
     capsys.readouterr()
@@ -113,13 +115,13 @@ def test_a_finished_result_is_looked_at_before_its_blocks(finished: tuple[str, P
     monkeypatch.setattr(curves, "_from_rest", lambda *_: computed.append(1))
     monkeypatch.setattr(import_module("app.cli.branch"), "begin_branch", lambda *_, **__: computed.append(1))
     monkeypatch.setattr(import_module("app.cli.map"), "iter_parameter_map", lambda *_: computed.append(1))
-    assert main([*SHORT[name], "--out", str(out)]) == 2  # not without being asked to
+    assert main([*SHORT[name], "--out", str(out)]) == 2  # not without --resume
     assert "continue with --resume" in capsys.readouterr().err
     assert main([*SHORT[name], "--out", str(out), "--resume", "--json"]) == 0
     told, err = capsys.readouterr()
     assert json.loads(told) and computed == [] and not folder_of(out).exists()
     assert "already finished; nothing was computed" in err or name == "branch"
-    if name != "branch":  # its file is the place where it goes on, so that it is written once more
+    if name != "branch":  # a branch continues in its file, so the file is written again
         assert out.read_bytes() == before
 
 
@@ -152,12 +154,12 @@ def test_resume_needs_a_file(name: str, capsys: pytest.CaptureFixture[str]) -> N
     ("rest", Amplitude.table([50.0, 2000.0], [8e-7, 6e-7]), "708a4cc8a10e19ef"),
 ])
 def test_blocks_of_earlier_versions_are_found(start: str, amplitude: Amplitude | None, digest: str) -> None:
-    """The digests of the version before CurveRequest."""
+    """The digests are those of the version before CurveRequest."""
     assert CurveRequest(scene("sec2").evolve(N=3), FREQUENCIES, start, amplitude).digest == digest
 
 
 def test_what_changes_a_curve_is_in_its_digest() -> None:
-    """An argument of `resonance_curve` is a field of the request, or named here because no point depends on it."""
+    """Each argument of `resonance_curve` is a field of the request, or listed here because no point depends on it."""
     how = {"stop", "on_point", "workers", "known", "scheduler"}
     assert {field.name for field in fields(CurveRequest)} == set(signature(resonance_curve).parameters) - how
 
@@ -172,7 +174,7 @@ def test_what_changes_a_curve_is_in_its_digest() -> None:
 @pytest.mark.parametrize("start", ["rest", "up", "down"])
 def test_known_points_are_not_computed_again_and_the_others_are_the_same(start: str, tmp_path: Path,
                                                                          monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where the state is carried along they go on from the last known point; a gap ends what is known."""
+    """If the state is carried along, a curve continues from the last known point before the first gap."""
     asked = CurveRequest(scene("sec2").evolve(N=3), FREQUENCIES, start)
     whole = asked.compute(workers=1)
     kept = point_checkpoints(asked, tmp_path / "c.h5")
@@ -193,7 +195,7 @@ def test_known_points_are_not_computed_again_and_the_others_are_the_same(start: 
     for mine, its in zip(found.points, whole.points, strict=True):
         if start != "rest":
             assert mine.max_output_force == its.max_output_force
-        assert mine.max_output_force == pytest.approx(its.max_output_force, rel=1e-7)  # rounding of the batch
+        assert mine.max_output_force == pytest.approx(its.max_output_force, rel=1e-7)  # rounding in the batch
 
 
 def pieces(out: Path, resume: bool = False) -> Kept[int]:
@@ -215,7 +217,7 @@ def test_a_piece_is_written_soon_although_none_follows(tmp_path: Path) -> None:
 
 
 def test_blocks_without_a_head_are_not_believed(tmp_path: Path) -> None:
-    """They may be another computation's, whose removal was interrupted."""
+    """They may be left over from another computation, if their removal was interrupted."""
     kept = pieces(tmp_path / "a")
     kept.add(1)
     kept.write()

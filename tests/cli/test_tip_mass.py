@@ -1,4 +1,4 @@
-"""`granchain run --drive FILE --tip-mass`: the mass before the sensor is part of the comparison."""
+"""`granchain run --drive FILE --tip-mass` takes the mass in front of the sensor into account in its comparison."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a browser is shown while `granchain serve` starts, and that the port is the server's afterwards."""
+"""While `granchain serve` starts, a browser is shown a waiting page; afterwards, the port is free for the server."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def test_the_command_answers_before_its_server_and_leaves_it_the_port(monkeypatc
         seen.extend([asked(place), asked(place, "/liveness")])
         on_ready_to_listen()
         assert not listens(place)
-        with socket.socket() as server:  # as Tornado binds
+        with socket.socket() as server:  # as in Tornado
             server.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
             server.bind((address, place))
 
@@ -61,11 +61,11 @@ def test_who_sends_nothing_keeps_nobody_waiting() -> None:
         assert asked(port)[0] == 503
     waiting.close()
     assert not listens(port)
-    waiting.close()  # a second time is nothing
+    waiting.close()  # closing it again has no effect
 
 
 def test_other_machines_see_nothing_of_it_and_a_taken_port_is_the_servers_to_tell() -> None:
-    before = set(threading.enumerate())  # threads of other tests may end meanwhile
+    before = set(threading.enumerate())  # threads of other tests may end in the meantime
     port = free_port()
     Waiting("0.0.0.0", port).close()
     with socket.socket() as other:

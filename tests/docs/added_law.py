@@ -1,4 +1,4 @@
-"""What is asked of the law that docs/add-a-damping-law.md adds; run by pytest in a tree in which it has been added."""
+"""Tests of the law that docs/add-a-damping-law.md adds, which pytest runs in a tree that has the law."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ REFINED = (1, 2, 4, 8, 16)
 
 
 def test_every_way_to_the_steady_state_gives_the_same_state() -> None:
-    """dop853, a batch, and the fixed-step method after 200 periods; displacements at phase 0."""
+    """dop853, a batch, and the fixed-step method after 200 periods agree in the displacements at phase 0."""
     orbit = settle(CHAIN).state.displacement
     live = LiveChain(CHAIN)
     near = {"rtol": 0.0, "atol": 1e-4 * CHAIN.A0}
@@ -30,13 +30,17 @@ def test_energy_is_accounted_for() -> None:
 
 
 def motion(f: float, setting: MethodSetting) -> np.ndarray:
-    """Displacements over three periods from rest, eight a period; six beads fit the vectors of the chain above."""
+    """Return displacements over three periods from rest, eight per period; six beads fit the vectors of the chain
+    above.
+    """
     return Engine(scene("sec2").evolve(N=6, f=f, dissipation="three-quarters"), setting, 8).record(24).displacement
 
 
 @pytest.mark.parametrize(("method", "least", "most"), [("rk4-split", 3.3, 5.0), ("rk4", 2.0, 3.0)])
 def test_split_steps_keep_their_order_across_contact_events(method: str, least: float, most: float) -> None:
-    """3.5, because the error of Simpson's rule in G is known and subtracted; steps across events have 2.5."""
+    """Their order is 3.5, because the error of Simpson's rule in G is known and subtracted; steps across events have
+    2.5.
+    """
     errors = []
     for f in (340.0, 615.0, 1130.0):
         true = motion(f, MethodSetting("dop853", tolerance=1e-13))
@@ -45,7 +49,7 @@ def test_split_steps_keep_their_order_across_contact_events(method: str, least: 
 
 
 def test_tangent_is_the_derivative_of_the_map() -> None:
-    """Every column against central differences, whose own error is about h² = 1e-10 over the kinks of the contacts."""
+    """Every column agrees with central differences, whose error is about h² = 1e-10 over the kinks of the contacts."""
     stroboscopic_map, h = StroboscopicMap(CHAIN, 1), 1e-5
     here = np.concatenate([np.linspace(0.3, 0.1, 3), np.zeros(3)])
     flow = stroboscopic_map(here)
@@ -57,7 +61,7 @@ def test_tangent_is_the_derivative_of_the_map() -> None:
 
 
 def test_a_cut_contact_stops_pushing_where_its_force_is_zero() -> None:
-    """The sign that is followed is that of F/g, F = K δ^{3/2} + c δ^{3/4} δ̇."""
+    """The sign of F/g decides, where F = K δ^{3/2} + c δ^{3/4} δ̇."""
     for d, rate in ((0.3, -0.7), (1e-4, -1e-4), (2.0, 1.0)):
         damping = 0.4 * d**0.75
         assert scaled_force(LAWS["three-quarters"].slot(0.4), 1.4, d, rate) == pytest.approx(

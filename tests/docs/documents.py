@@ -1,4 +1,4 @@
-"""Reading the project's pages: fenced blocks, the file each belongs to, commands."""
+"""Read the project's pages: fenced blocks, the file of each block, and commands."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Block:
 
     @property
     def path(self) -> str:
-        """The file named last in the paragraph before the block."""
+        """The last file named in the paragraph before the block."""
         names = re.findall(r"`([\w./-]+\.\w+)`", self.before)
         assert names, f"no file is named before the block that begins {self.text[:60]!r}"
         return names[-1]
@@ -34,7 +34,7 @@ class Block:
 
 
 def blocks(page: Path, until: str = "") -> list[Block]:
-    """All fenced blocks of a page, in order, or those before the heading `until`."""
+    """Return all fenced blocks of a page in order, or those before the heading `until`."""
     text = page.read_text(encoding="utf-8")
     if until:
         assert text.count(until) == 1, f"{page.name} has no one place {until!r}"
@@ -47,7 +47,7 @@ def blocks(page: Path, until: str = "") -> list[Block]:
 
 
 def lines_outside_fences(page: Path) -> list[tuple[int, str]]:
-    """Number and text of every line that stands in no fenced block."""
+    """Return number and text of every line outside fenced blocks."""
     found, fenced = [], False
     for number, line in enumerate(page.read_text(encoding="utf-8").splitlines(), 1):
         fence = line.lstrip().startswith("```")
@@ -58,7 +58,7 @@ def lines_outside_fences(page: Path) -> list[tuple[int, str]]:
 
 
 def edited(text: str, edit: str) -> str:
-    """`text` after the edits of a diff block: each must fit at exactly one place."""
+    """Return `text` after the edits of a diff block, each of which must fit at exactly one place."""
     for hunk in edit.split("@@\n"):
         lines = hunk.splitlines()
         old = "".join(line[1:] + "\n" for line in lines if line[:1] in (" ", "-", ""))
@@ -69,9 +69,9 @@ def edited(text: str, edit: str) -> str:
 
 
 def commands(page: Path) -> list[str]:
-    """Every granchain command of a page: in console blocks behind "$", and in the text in backquotes."""
+    """Return every granchain command of a page: in console blocks after "$", and in the text in backquotes."""
     text = page.read_text(encoding="utf-8")
     shown = [line[2:] for block in blocks(page) if block.language == "console"
              for line in block.text.splitlines() if line.startswith("$ granchain ")]
     spoken = re.findall(r"`(granchain \w+ [^`\n]+)`", FENCE.sub("", text))
-    return [c for c in shown + spoken if not re.search(r"\[|SCENE", c)]  # those say what a command takes
+    return [c for c in shown + spoken if not re.search(r"\[|SCENE", c)]  # those describe the arguments of a command

@@ -1,4 +1,4 @@
-"""A copy of the repository in which a page's edits are made, and commands run in it."""
+"""Copy the repository, make a page's edits in the copy, and run commands there."""
 
 from __future__ import annotations
 
@@ -16,25 +16,27 @@ _PARTS = ("granchain_core", "app", "assets", "tests/chains.py", "tests/conftest.
           "tests/numerics/test_orders.py", "docs/command-line.md",
           "tests/cli/test_json_keys.py", "tests/cli/test_command_lists.py", "tools/__init__.py", "tools/fuzzing", "tools/hostile",
           "tests/kernels/equations", "tests/reference/reference.npz")
-#: What most commands in such a tree import.
+#: Libraries that most commands in such a tree import.
 _LIBRARIES = ("numba", "pytest", "panel", "bokeh.plotting")
 
 
 def files_of(page: Path, until: str = "") -> tuple[set[str], set[str]]:
-    """The files a page edits, and those it writes, before the heading `until`."""
+    """Return the files that a page edits, and those it writes, before the heading `until`."""
     found = [block for block in blocks(page, until) if block.language != "console"]
     return {block.path for block in found if not block.is_new_file}, {block.path for block in found if block.is_new_file}
 
 
 def _lasts(file: Path) -> bool:
-    """Whether a file is not an unfinished one of Python's, nor one of pytest's, which knows where its source is."""
+    """Return whether a file can be copied: not an unfinished file of Python's, or one of pytest's with its source's
+    path.
+    """
     return "__pycache__" not in file.parts or (file.suffix == ".pyc" and "-pytest-" not in file.name)
 
 
 def copied(part: str, tree: Path) -> None:
-    """Copy a file or folder of the repository into a tree; what is there already stays.
+    """Copy a file or folder of the repository into a tree; existing files are kept.
 
-    Files keep their times, so that what Python has compiled of them, which is copied too, need not be compiled again.
+    Files keep their times, so that Python's compiled modules, which are copied too, remain valid.
     """
     source, target = ROOT / part, tree / part
     for file in [source] if source.is_file() else sorted(one for one in source.rglob("*") if one.is_file() and _lasts(one)):
@@ -45,8 +47,7 @@ def copied(part: str, tree: Path) -> None:
 
 
 def edited_copy(page: Path, copy: Path, until: str = "") -> Path:
-    """A copy of the repository with the page's edits before the heading `until` made; each fits at exactly one place.
-    """
+    """Copy the repository and make the page's edits before the heading `until`; each must fit at exactly one place."""
     for part in _PARTS:
         copied(part, copy)
     edit_files(page, copy, until)
@@ -54,7 +55,7 @@ def edited_copy(page: Path, copy: Path, until: str = "") -> Path:
 
 
 def edit_files(page: Path, tree: Path, until: str = "") -> None:
-    """Make the page's edits in a tree that has the files which they are made in."""
+    """Make the page's edits in a tree that has the edited files."""
     for block in blocks(page, until):
         if block.language == "console":
             continue
@@ -68,11 +69,11 @@ def edit_files(page: Path, tree: Path, until: str = "") -> None:
 
 
 def follow(tree: Path, *arguments: str, own_kernels: bool = True) -> str:
-    """What a command prints in the edited tree.
+    """Run a command in the edited tree and return what it prints.
 
-    What it compiles is kept: the folder of kernels is named by their sources, so an edited tree finds its own there
-    until a kernel or the page changes. Without optimisation (NUMBA_OPT=0) Numba could keep nothing. Without
-    `own_kernels` those of the repository are used, which are the same where the page edits none of them.
+    Its compiled kernels are kept: their folder is named by the sources, so an edited tree finds its own kernels again
+    until a kernel or the page changes. Without optimisation (NUMBA_OPT=0), Numba could not keep them. Without
+    `own_kernels`, those of the repository are used, which are the same if the page edits none.
     """
     cache = tree / "cache" if CACHE_FOLDER is None else CACHE_FOLDER.parent / "edited-trees"
     kernels = {"GRANCHAIN_CACHE": str(cache), "NUMBA_OPT": "1"} if own_kernels else {}
@@ -82,7 +83,7 @@ def follow(tree: Path, *arguments: str, own_kernels: bool = True) -> str:
 
 
 def import_with(tree: Path, path: str, right: str, wrong: str) -> str:
-    """What the first import of the core says where one piece of a file of it is replaced; the import must fail."""
+    """Return what the first import of the core prints if a part of one of its files is replaced; it must fail."""
     file = tree / "granchain_core" / path
     text = file.read_text(encoding="utf-8")
     assert text.count(right) == 1

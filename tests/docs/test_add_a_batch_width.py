@@ -9,7 +9,7 @@ from documents import ROOT
 from edited_tree import copied, edited_copy, files_of, follow
 
 PAGE = ROOT / "docs" / "add-a-batch-width.md"
-#: What a process with batches of two begins with: the size is read when the kernels are imported.
+#: The start of a process with batches of two: the size is read when the kernels are imported.
 _OF_TWO = "import os; os.environ['GRANCHAIN_BATCH_SIZE'] = '2'; "
 
 
@@ -31,7 +31,8 @@ def test_the_new_width_passes_the_tests_of_roots(tree: Path) -> None:
 
 
 def test_a_batch_of_two_has_the_curve_of_other_batches(tree: Path) -> None:
-    """Within both stated errors; the small chain of other recipes, of which a kernel may be there."""
+    """They agree within both stated errors; other recipes use the same small chain, so its kernels may exist already.
+    """
     program = """
 from granchain_core import resonance_curve, scene
 found = resonance_curve(scene("sec2").evolve(N=2), [1800.0, 2000.0, 2200.0], workers=1)

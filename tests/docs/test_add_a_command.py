@@ -54,7 +54,7 @@ def test_the_tests_that_know_every_command_know_the_new_one(tree: Path) -> None:
 
 
 def test_the_tables_of_commands_get_the_new_one(tree: Path) -> None:
-    """As `python -m tools.update` writes them."""
+    """`python -m tools.update` writes these tables."""
     copied("tools/command_tables.py", tree)
     code = "from tools.command_tables import table_of_commands, table_of_json; print(table_of_commands(), table_of_json())"
     printed = follow(tree, "-c", code)

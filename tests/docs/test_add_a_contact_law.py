@@ -1,4 +1,4 @@
-"""docs/add-a-contact-law.md: its edits are made in a copy of the repository; it names all places of the exponent."""
+"""The edits of docs/add-a-contact-law.md are made in a copy of the repository; it names all places of the exponent."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ print(one.equation_latex())
 
 
 def test_the_page_names_every_place_of_the_design_notes() -> None:
-    """File and function; `elastic_force` and others of a file that a block edits are in the block."""
+    """It names files and functions; functions of a file that a block edits, e.g. `elastic_force`, are in that block."""
     page = PAGE.read_text(encoding="utf-8")
     table = (ROOT / "docs" / "design.md").read_text("utf-8").partition("### The exponent 3/2\n")[2].partition("\n[add-a-contact")[0]
     files = re.findall(r"`([\w/]+\.py)`", table)

@@ -30,20 +30,21 @@ def test_the_page_edits_three_files_and_writes_none() -> None:
 
 
 def test_the_new_law_is_right_in_every_kernel(tree: Path) -> None:
-    """Energy, order of the split steps, tangents, the kink of a cut, and one state from every way to the steady state.
+    """Energy, the order of split steps, tangents and the kink of a cut are right, and all ways to the steady state
+    agree.
     """
     assert "6 passed" in follow(tree, "-m", "pytest", "-p", "no:cacheprovider", str(Path("tests", "test_added_law.py")))
 
 
 def test_the_equations_of_the_paper_hold_with_the_new_law(tree: Path) -> None:
-    """The quick tests whose reference has exponents of its own take their cases from the table of laws."""
+    """The quick tests with an independent reference take their cases from the table of laws."""
     printed = follow(tree, "-m", "pytest", "-p", "no:cacheprovider", str(Path("tests", "kernels", "equations")),
                      "-k", "three-quarters")
     assert " failed" not in printed and re.search(r"\b[1-9]\d* passed", printed)
 
 
 def test_the_new_law_is_seen(tree: Path) -> None:
-    """A choice of the knob on the page, a term of the equation, a name among the effects and in the kernel's name."""
+    """It is a choice of the knob on the page, a term of the equation, and in the names of effects and kernels."""
     printed = follow(tree, "-c", """
 from app.cli.explain import explanation
 from app.parts.knobs.knobs import knob_state

@@ -28,7 +28,8 @@ def test_the_page_edits_three_files_and_writes_none() -> None:
 
 
 def test_a_chain_moves_under_the_new_drive_and_wrong_numbers_are_refused(tree: Path) -> None:
-    """From the command line to the stated error; and the check that every formula has, and the row's own."""
+    """This covers the command line up to the stated error, the check common to all formulas, and the row's own check.
+    """
     printed = follow(tree, "-c", """
 from app.cli import main
 raise SystemExit(main(["run", "sec2", "--set", "N=2", "--set", "accuracy=1e-5", "--drive", "pulse=2e-4:0.005", "--json"]))

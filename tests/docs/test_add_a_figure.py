@@ -26,7 +26,7 @@ def test_the_page_edits_three_files_and_writes_two() -> None:
 
 
 def test_the_figure_is_drawn_in_a_notebook_in_a_file_and_on_the_page(tree: Path) -> None:
-    """The test that the page writes; no kernel is edited, so it uses those of the repository."""
+    """The test written by the page passes; no kernel is edited, so it uses those of the repository."""
     printed = follow(tree, "-m", "pytest", "-p", "no:cacheprovider", str(Path("tests", "plots", "test_phases_picture.py")),
                      own_kernels=False)
     assert "3 passed" in printed

@@ -62,7 +62,7 @@ print("| `tail` | m_t/m | 1 | 0.001 to 1000 |" in "".join(pages().values()))
 
 
 def test_the_new_knob_is_set_on_the_command_line(tree: Path) -> None:
-    """A heavier last bead pushes the wall differently; no kernel is edited."""
+    """A heavier last bead changes the forces; no kernel is edited."""
     command = ("-m", "app.cli", "run", "sec2", "--set", "N=2", "--set", "f=2000", "--json")
     one, other = (json.loads(follow(tree, *command, *more, own_kernels=False)) for more in ((), ("--set", "tail=2")))
     assert one != other

@@ -25,7 +25,7 @@ def test_the_page_edits_two_files_and_writes_one() -> None:
 
 
 def test_the_new_method_has_its_order_and_its_row(tree: Path) -> None:
-    """Two halvings of the step against RK4 with 32 times the steps, with and without contact events."""
+    """The step is halved twice and compared with fine RK4 steps, with and without contact events."""
     printed = follow(tree, "-c", """
 import numpy as np
 from granchain_core import scene
@@ -41,12 +41,12 @@ for knobs in ({"F0": 5.0}, {}):
 print(compared_methods()["heun"].title, method_for(1e-6).method, sep="|")
 """)
     smooth, events, row = printed.splitlines()
-    assert 1.8 < float(smooth) < 2.3 and 1.8 < float(events) < 2.6  # the limit is 2; over coarse steps a part of order 3 is left
-    assert row == "Heun's method in (u, w)|rk4-split"  # it is there, and not chosen by itself
+    assert 1.8 < float(smooth) < 2.3 and 1.8 < float(events) < 2.6  # the limit is 2; at coarse steps, a part of order 3 remains
+    assert row == "Heun's method in (u, w)|rk4-split"  # it exists, and is not chosen automatically
 
 
 def test_the_method_with_error_control_keeps_to_its_tolerance_and_goes_on_from_a_checkpoint(tree: Path) -> None:
-    """Its error falls as the tolerance does, and its order per mean step is 3 where no contact opens."""
+    """Its error falls with the tolerance, and its order in the mean step is 3 if no contact opens."""
     printed = follow(tree, "-c", """
 import numpy as np
 from granchain_core import run, scene
@@ -70,5 +70,5 @@ print(found.status, 0.0 < found.displacement_error < 1e-4)
 """)
     smooth, events, going_on, status = (line.split() for line in printed.splitlines())
     assert 2.8 < float(smooth[0]) < 3.3 and 1.8 < float(events[0]) < 3.3
-    assert max(map(float, smooth[1:] + events[1:])) < 1000.0  # as for the others with error control
+    assert max(map(float, smooth[1:] + events[1:])) < 1000.0  # as for the other methods with error control
     assert going_on == ["True", "True"] and status == ["done", "True"]

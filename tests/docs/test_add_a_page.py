@@ -10,13 +10,13 @@ from documents import ROOT, blocks
 from edited_tree import copied, edited_copy, files_of, follow
 
 PAGE = ROOT / "docs" / "add-a-page.md"
-#: The heading of the step that not every page needs.
+#: The heading of an optional step.
 PLOT = "## 7. A plot"
 
 
 @pytest.fixture(scope="module")
 def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A copy of the repository with the page's edits made, and the tests of its architecture."""
+    """A copy of the repository with the page's edits made, including the tests of the architecture."""
     copy = tmp_path_factory.mktemp("page") / "tree"
     for part in ("docs", "granchain", "granchain_start", "tools", "tests/session/links.json", "tests/architecture", "tests/browser",
                  "tests/dashboard/test_messages.py", "tests/dashboard/test_table.py", "tests/host.py", "tests/waiting.py",
@@ -39,7 +39,8 @@ def test_a_plot_edits_four_files_and_writes_one() -> None:
 
 
 def test_the_new_page_has_its_overlay_its_tab_and_its_hooks(tree: Path) -> None:
-    """A row makes an overlay, a tab, a call with every picture, and an answer to the page's own message."""
+    """The row of a page creates an overlay, a tab, a call with every picture, and an answer to the page's own message.
+    """
     printed = follow(tree, "-c", """
 from types import SimpleNamespace
 from bokeh.document import Document
@@ -67,7 +68,7 @@ print([one["placeholder"] for one in dashboard.views.tabs.state["tabs"] if one["
 
 
 def test_the_new_page_computes_in_the_background_until_it_is_told_to_stop(tree: Path) -> None:
-    """The page's task ends when it has its result, when a knob is moved, and when the visitor leaves. Its picture has a
+    """The page's task ends when it has its result, when a knob is moved, or when the visitor leaves. Its figure has a
     point for each frequency.
     """
     printed = follow(tree, "-c", """
@@ -116,14 +117,14 @@ def test_the_tables_of_pages_and_messages_have_the_new_page(tree: Path) -> None:
 
 @pytest.mark.long
 def test_the_new_page_fits_into_the_dashboard(tree: Path) -> None:
-    """Layers, private attributes, docstrings, the map of docs/design.md and the messages."""
+    """It passes the tests of layers, private attributes, docstrings, the map in docs/design.md, and messages."""
     printed = follow(tree, "-m", "pytest", "-p", "no:cacheprovider", str(Path("tests", "architecture")),
                      str(Path("tests", "dashboard")), "-k", "transmission or table or map or circle or message")
     assert " passed" in printed and "deselected" in printed
 
 
 def test_the_new_page_keeps_to_what_every_page_does(tree: Path) -> None:
-    """Without a browser; the table of pages has it, and nothing is written for it."""
+    """These tests need no browser; they take the page from the table of pages, without a change."""
     printed = follow(tree, "-m", "pytest", "-p", "no:cacheprovider", str(Path("tests", "pages", "test_every_page.py")),
                      "-k", "transmission", own_kernels=False)
     assert re.search(r"^\d\d passed, \d+ deselected in", printed, re.MULTILINE), "none failed, and none was skipped"
@@ -131,7 +132,7 @@ def test_the_new_page_keeps_to_what_every_page_does(tree: Path) -> None:
 
 @pytest.mark.long
 def test_a_browser_shows_what_the_new_page_says_and_draws(tree: Path) -> None:
-    """The test that the page writes; no kernel is edited, so it uses those of the repository."""
+    """The test written by the page passes; no kernel is edited, so it uses those of the repository."""
     printed = follow(tree, "-m", "pytest", "-p", "no:cacheprovider",
                      str(Path("tests", "browser", "test_transmission_page.py")), own_kernels=False)
     assert "1 passed" in printed

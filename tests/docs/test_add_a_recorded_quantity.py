@@ -16,7 +16,7 @@ PAGE = ROOT / "docs" / "add-a-recorded-quantity.md"
 
 @pytest.fixture(scope="module")
 def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A copy of the repository with the page's edits made, and a file that the version without them wrote."""
+    """A copy of the repository with the page's edits made, and a file written by the version without them."""
     copy = tmp_path_factory.mktemp("quantity") / "tree"
     copied("docs/result-files.md", copy)
     edited_copy(PAGE, copy)
@@ -47,7 +47,7 @@ print(found.to_xarray().momentum.dims, "momentum : " in Run.__doc__)
 
 
 def test_the_places_for_a_field_of_the_kernels_are_all_that_name_one() -> None:
-    """The modules that read or make `Samples` by its fields: the list of the page leaves none out."""
+    """The page lists all modules that create `Samples` by its fields."""
     listed = set(re.findall(r"^\d\. `(granchain_core/[\w/]+\.py)`", PAGE.read_text("utf-8"), re.MULTILINE))
     makes = {path.relative_to(ROOT).as_posix() for path in (ROOT / "granchain_core").rglob("*.py")
              if re.search(r"(?<!\w)Samples\((?!NamedTuple)", path.read_text("utf-8"))}

@@ -15,17 +15,19 @@ PAGE = ROOT / "docs" / "add-an-effect.md"
 QUADRATIC = ROOT / "docs" / "add-a-quadratic-drag.md"
 #: The headings under which the effect is mentioned.
 MENTIONED = {PAGE: "## 5. Mention it, and let a tool write the rest", QUADRATIC: "## 5. Mention it"}
-#: How many files each page edits, writes, and edits to mention the effect.
+#: Numbers of files that each page edits, writes, and edits to mention the effect.
 COUNTS = {PAGE: (6, 3, 1), QUADRATIC: (6, 3, 1)}
 
 
 def written_tests(page: Path) -> set[str]:
-    """Names of the tests that a page writes."""
+    """Return the names of the tests that a page writes."""
     return {name for block in blocks(page) if block.is_new_file for name in re.findall(r"^def (test_\w+)", block.text, re.MULTILINE)}
 
 
 def passed(tree: Path) -> set[str]:
-    """Names of the tests in a tree's tests/physics, none of which may fail: `follow` asserts that pytest succeeds."""
+    """Return the names of the tests in a tree's tests/physics; none may fail, since `follow` asserts that pytest
+    succeeds.
+    """
     printed = follow(tree, "-m", "pytest", "-p", "no:cacheprovider", "-rA", "tests/physics")
     return set(re.findall(r"^PASSED \S+::(test_\w+)", printed, re.MULTILINE))
 
@@ -38,7 +40,7 @@ def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def quadratic(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Another copy, with those of the quadratic drag."""
+    """Another copy, with the edits of the quadratic drag made."""
     return edited_copy(QUADRATIC, tmp_path_factory.mktemp("quadratic") / "tree")
 
 
@@ -50,7 +52,7 @@ def test_the_page_edits_and_writes_few_files(page: Path) -> None:
 
 
 def test_a_force_that_is_not_linear_in_the_velocity_passes_the_tests_the_page_writes(quadratic: Path) -> None:
-    """Tangent against differences and the second route, energy, stable step, stated error."""
+    """They cover the tangent (by differences and by a second route), energy, the stable step and the stated error."""
     assert passed(quadratic) == written_tests(QUADRATIC)
 
 
@@ -62,7 +64,7 @@ def test_the_new_effect_passes_the_tests_the_page_writes(tree: Path) -> None:
 @pytest.mark.long
 @pytest.mark.parametrize("made", ["tree", "quadratic"])
 def test_the_tests_that_know_every_scene_and_knob_know_the_new_ones(made: str, request: pytest.FixtureRequest) -> None:
-    """README, model page, share links, scales and the gallery, whose tests fail until the tool was run."""
+    """The tests of README, model page, share links, scales and gallery pass once the tool has been run."""
     tree = request.getfixturevalue(made)
     for part in ("tests/docs", "tests/session", "tests/dashboard", "tests/host.py", "tests/waiting.py", "docs", "tools", "CHANGELOG.md", "CONTRIBUTING.md"):
         copied(part, tree)
@@ -77,7 +79,7 @@ def test_the_tests_that_know_every_scene_and_knob_know_the_new_ones(made: str, r
 
 
 def test_slopes_of_forces_know_the_new_effect(tree: Path) -> None:
-    """v̇ of every bead, of which Ḟ is made, against the velocities a moment later and earlier along the motion."""
+    """v̇ of every bead, which enters Ḟ, agrees with the difference of velocities slightly later and earlier."""
     printed = follow(tree, "-c", """
 import numpy as np
 from granchain_core import scene
@@ -103,7 +105,8 @@ print(np.abs(found - exact).max() / np.abs(exact).max())
 
 
 def test_vectors_that_do_not_know_the_new_effect_refuse_it(tree: Path) -> None:
-    """Unmarked, and marked for other kernels than those of dop853-root: a motion without the drag would be wrong."""
+    """It is unmarked, or marked for kernels other than those of dop853-root: a motion without the drag would be wrong.
+    """
     file = tree / "granchain_core" / "kernels" / "effects" / "drag.py"
     text = file.read_text(encoding="utf-8")
     mark = '@in_simd_kernels("rk4", "batch", "dop853_root")\n'
@@ -130,7 +133,7 @@ def test_a_mark_names_folders_of_vectors() -> None:
 
 
 def test_the_new_effect_is_seen_and_its_absence_leaves_nothing(tree: Path) -> None:
-    """The scene names it, the equation shows it, a scene without it has no slot."""
+    """The scene lists it, the equation shows it, and a scene without it has no slot."""
     printed = follow(tree, "-c", """
 from app.cli.explain import explanation
 from granchain_core import scene
@@ -149,7 +152,7 @@ print(explanation(one, None, 96))
 
 
 def test_the_new_effect_has_a_switch_in_the_panel_a_slider_a_cost_and_axes(tree: Path) -> None:
-    """Off and on again by its switch, with its own kernel each time; the knob is under "more", and can be followed."""
+    """The switch turns it off and on, with different kernels; the knob is under "more", and branches can follow it."""
     printed = follow(tree, "-c", """
 from app.session.session import Session
 from app.session.switches import SWITCHES, present, variants
@@ -179,5 +182,5 @@ print([spec["more"] for spec in knob_state(session.scene)["specs"] if spec["name
     ("scene/quantities.py", 'Quantity("c", "c"', 'Quantity("C", "c"', "effect 'drag': its knob 'c' is not among QUANTITIES"),
 ])
 def test_what_the_effect_forgets_is_named(tree: Path, path: str, right: str, wrong: str, sentence: str) -> None:
-    """Nothing is computed: the first import says what is missing, and of which effect."""
+    """Nothing is computed: the first import names the missing part and its effect."""
     assert f"TypeError: {sentence}" in import_with(tree, path, right, wrong)

@@ -1,4 +1,4 @@
-"""Sentences that compare granchain with the fastest other program say what the tables of docs/benchmarks.md do."""
+"""Sentences that compare granchain with the fastest other program agree with the tables of docs/benchmarks.md."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _MS = {"s": 1e3, "ms": 1.0, "µs": 1e-3}
 
 
 def ratio(section: str, error: str) -> str:
-    """How many times as long as `dop853-root` the fastest other program takes, by the medians of a table."""
+    """Return the median time of the fastest other program over that of `dop853-root`, from a table."""
     table = section.partition(f"Trajectory at error {error}\n")[2].partition("\n\n")[0]
     medians = {}
     for name, value, unit in re.findall(r"^(\S.*?)\s{2,}.*?\s(?:\d\.\de-\d+)\s+([\d.]+) (s|ms|µs)\s", table, re.MULTILINE):
@@ -23,7 +23,7 @@ def ratio(section: str, error: str) -> str:
 
 
 def test_the_cost_of_the_derivative_is_that_of_the_tables() -> None:
-    """The smallest and largest ratio of all machines, for each number of beads that docs/orbits.md names."""
+    """docs/orbits.md states the smallest and largest ratios of all machines for three numbers of beads."""
     tables = [text.partition("with derivative ms")[2].partition("An orbit of")[0] for text in _PAGE.split("One drive period of ")[1:]]
     text = " ".join((ROOT / "docs" / "orbits.md").read_text(encoding="utf-8").split())
     said = re.findall(r"([\d.]+) to ([\d.]+) times (?:the motion alone )?with (\d+)", text)
@@ -35,7 +35,7 @@ def test_the_cost_of_the_derivative_is_that_of_the_tables() -> None:
 
 
 def sentence(text: str) -> str:
-    """A text in one line."""
+    """Join a text into one line."""
     return " ".join(text.split())
 
 

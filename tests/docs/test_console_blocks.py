@@ -1,4 +1,4 @@
-"""Console blocks of README and docs that show what a command prints: it is run, and prints that."""
+"""Commands in console blocks of README and docs print the output that is shown there."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from documents import PAGES, blocks
 
 from app import cli
 
-#: Stated errors, and counts of steps and events, have another last digit where a processor rounds in another order.
+#: The last digits of stated errors, and of counts of steps and events, depend on the processor's order of rounding.
 _NEARLY = 0.05
 _TIME = re.compile(r"\d[\d.]* (?:ms|s)$", re.MULTILINE)
 
 
 def shown() -> list[tuple[str, list[str]]]:
-    """Every command whose output a page shows, and the lines of it."""
+    """Return every command whose output a page shows, and the lines of that output."""
     found = []
     for page in PAGES:
         for block in blocks(page):
@@ -30,7 +30,7 @@ def shown() -> list[tuple[str, list[str]]]:
 
 
 def alike(shown: str, printed: str) -> bool:
-    """Whether two words are the same, or are errors or counts that differ by their last digit."""
+    """Return whether two words are equal, or are errors or counts that differ only in their last digit."""
     shown, printed = shown.rstrip(",;:)"), printed.rstrip(",;:)")
     if not re.fullmatch(r"\d\.\de-\d\d|\d{4,}", shown):
         return shown == printed
@@ -40,7 +40,7 @@ def alike(shown: str, printed: str) -> bool:
 @pytest.mark.parametrize(("command", "lines"), shown(), ids=[command for command, _ in shown()])
 def test_a_command_prints_what_its_page_shows(command: str, lines: list[str], tmp_path: Path,
                                               monkeypatch: pytest.MonkeyPatch) -> None:
-    """Word by word, but for times; on either stream."""
+    """The output, on either stream, agrees word by word except for times."""
     monkeypatch.chdir(tmp_path)
     said = io.StringIO()
     with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):

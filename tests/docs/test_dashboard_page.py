@@ -1,4 +1,4 @@
-"""docs/dashboard.md: its sections on errors and on the state of a page say what the code does."""
+"""The sections of docs/dashboard.md on errors and on the state of a page agree with the code."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ SOURCES = [path.read_text(encoding="utf-8") for path in (ROOT / "app").rglob("*.
 
 
 def keys_of(storage: str) -> set[str]:
-    """The keys under which the page keeps something in `localStorage` or `sessionStorage`."""
+    """Return the keys under which the page stores values in `localStorage` or `sessionStorage`."""
     found = set()
     for path in [*(ROOT / "app").rglob("*.js"), *(ROOT / "app").rglob("*.html")]:
         text = path.read_text(encoding="utf-8")

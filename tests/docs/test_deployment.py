@@ -21,7 +21,7 @@ DOCKER = (ROOT / "Dockerfile").read_text(encoding="utf-8")
 
 
 def test_every_example_has_the_same_processes() -> None:
-    """nginx sends visitors to a process that is not there, and only then to another one."""
+    """If they differed, nginx would first send visitors to a process that does not exist."""
     ports = re.findall(r"^    server 127\.0\.0\.1:(\d+);", NGINX, re.MULTILINE)
     (loop,) = re.findall(r"for port in ([\d ]+); do", TEXT)
     (first, last), = re.findall(r"granchain@\{(\d+)\.\.(\d+)\}", TEXT)

@@ -1,4 +1,4 @@
-"""What the pages docs/add-….md write passes the project's own checks of style."""
+"""Code and text written by the pages docs/add-….md pass the project's own style checks."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ PAGES = sorted((ROOT / "docs").glob("add-*.md"))
 
 @pytest.fixture(scope="module")
 def trees(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """For each page a folder with the settings of ruff and, edited, the files that the page edits or writes."""
+    """For each page, a folder with ruff's settings and the files that the page edits or writes, after the edits."""
     made = tmp_path_factory.mktemp("pages")
     for page in PAGES:
         tree = made / page.stem
@@ -30,13 +30,13 @@ def trees(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_ruff_finds_nothing_in_what_the_pages_write(trees: Path) -> None:
     done = subprocess.run([sys.executable, "-m", "ruff", "check", "--no-cache", "--output-format", "concise",
-                           "--config", f"src = {['.', str(ROOT)]}",  # what the project's other modules are called
+                           "--config", f"src = {['.', str(ROOT)]}",  # so that ruff recognises the project's other modules
                            "."], cwd=trees, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
 
 
 def test_no_line_that_the_pages_write_is_too_long(trees: Path) -> None:
-    """In pages, as test_layout.py has it; ruff sees the lines of Python."""
+    """This is about pages, with the rule of test_layout.py; ruff checks the lines of Python files."""
     pages = sorted(trees.rglob("*.md"))
     assert pages
     assert [f"{page.relative_to(trees)}:{number}" for page in pages for number, line in lines_outside_fences(page)

@@ -1,4 +1,4 @@
-"""What follows from the code is as `python -m tools.update` writes it, and `Scene` documents its knobs."""
+"""Generated parts of pages are as `python -m tools.update` writes them, and `Scene` documents its knobs."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ from tools.update import PAGES, pages
 
 @pytest.fixture(scope="module")
 def texts() -> dict[Path, str]:
-    """Every page as it should be; all of them take half a second."""
+    """Every page as it should be; generating all of them takes half a second."""
     return pages()
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: Path(page).stem)
 def test_a_table_is_that_of_the_code(page: str, texts: dict[Path, str]) -> None:
-    assert ROOT.joinpath(page).read_text(encoding="utf-8") == texts[ROOT / page]  # else run: python -m tools.update
+    assert ROOT.joinpath(page).read_text(encoding="utf-8") == texts[ROOT / page]  # otherwise run: python -m tools.update
 
 
 def test_no_scene_has_changed_since_its_pictures_were_made() -> None:
-    assert (scales.changed(), gallery.changed()) == ([], [])  # else run: python -m tools.update
+    assert (scales.changed(), gallery.changed()) == ([], [])  # otherwise run: python -m tools.update
 
 
 @pytest.mark.parametrize(("knob", "values"), [

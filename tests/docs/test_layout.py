@@ -1,4 +1,4 @@
-"""The layout of the pages: no block of commands or formulas that an automatic line wrap has run together."""
+"""The layout of the pages: no block of commands or formulas was joined by automatic line wrapping."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _PROGRAMS = {"granchain", "pip", "playwright", "pre-commit", "python", "python3"
 
 
 def shell_lines(page: Path) -> list[str]:
-    """The lines of a page's indented blocks: those below an empty line that begin with four blanks."""
+    """Return the lines of a page's indented blocks: lines after an empty line that begin with four spaces."""
     found, block, before = [], False, ""
     for _, line in lines_outside_fences(page):
         block = line.startswith("    ") and (block or not before)
@@ -27,7 +27,7 @@ def shell_lines(page: Path) -> list[str]:
 
 
 def commands_in(line: str) -> list[list[str]]:
-    """The words of each command of a line of a shell, without settings of the environment."""
+    """Return the words of each command in a shell line, without settings of environment variables."""
     words = shlex.split(line, comments=True)
     parts: list[list[str]] = [[]]
     for word in words:
@@ -43,7 +43,7 @@ _COMMANDS = [words for line in shell_lines(_CONTRIBUTING) for words in commands_
 
 @pytest.mark.parametrize("words", _COMMANDS, ids=" ".join)
 def test_each_line_of_commands_holds_one_that_can_run(words: list[str]):
-    """It begins with a program, no other program stands within it, and what it names is there."""
+    """It begins with a program, contains no other program, and everything that it names exists."""
     program, *rest = words
     assert Path(program).name in _PROGRAMS
     assert not [word for word in rest if word.startswith(".venv/bin/") or word == "python3"]
@@ -70,6 +70,6 @@ def test_pages_have_no_double_empty_lines(page: Path):
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_a_line_has_at_most_120_characters(page: Path) -> None:
-    """Except rows of tables and what stands in a fenced block."""
+    """Rows of tables and fenced blocks are exceptions."""
     long = [number for number, line in lines_outside_fences(page) if len(line) > 120 and not line.lstrip().startswith("|")]
     assert long == []

@@ -1,4 +1,4 @@
-"""Names of the code in the pages are in the code: constants, private names, and all others with an underscore."""
+"""Names of the code that pages mention exist in it: constants, private names, and all others with an underscore."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ import pytest
 from documents import FENCE, PAGES, ROOT
 
 _TOPS = ("granchain_core", "app", "granchain", "granchain_start", "tests", "tools")
-#: A name with an underscore in it or before it, which is no part of a path.
+#: A name with an underscore in it or before it, which is not part of a path.
 _NAME = re.compile(r"(?<![\w./-])(?:_[A-Za-z]\w*|[A-Za-z]\w*_\w*[A-Za-z0-9])(?![\w/-]|\.(?:py|md|toml|js)\b)")
-#: A constant or private name and the file that the sentence gives: "`NAME` in `file.py`", "`NAME` (`file.py`)".
+#: A constant or private name and the file that the sentence names: "`NAME` in `file.py`", "`NAME` (`file.py`)".
 _PLACED = re.compile(r"`(?:\w+\.)?(_\w+|[A-Z][A-Z_0-9]+)`\s+(?:in |of |\()`([\w/]+\.py)`")
-#: Pages that also name settings of other programs, metrics, and results' names that are put together: there only
-#: constants and private names are looked for.
+#: Pages that also mention settings of other programs, metrics, or composed names of results: only constants and private
+#: names are checked there.
 _WITH_OTHER_NAMES = ("dashboard.md", "deployment.md", "result-files.md", "security.md")
 
 
 @cache
 def words_of_the_code() -> set[str]:
-    """Every word of the sources, of the settings and of the programs of the repository."""
+    """Return every word of the repository's sources, settings and programs."""
     files = [path for top in (*_TOPS, ".ci", "assets") for path in (ROOT / top).rglob("*")
              if path.suffix in (".py", ".js", ".css", ".html", ".toml", "") and path.is_file() and "__pycache__" not in path.parts]
     files += [ROOT / name for name in ("pyproject.toml", "Dockerfile")]
@@ -29,13 +29,13 @@ def words_of_the_code() -> set[str]:
 
 
 def prose(page: Path) -> str:
-    """A page without its fenced blocks."""
+    """Return a page without its fenced blocks."""
     return FENCE.sub("", page.read_text(encoding="utf-8"))
 
 
 @pytest.mark.parametrize("page", [page for page in PAGES if page.name != "CHANGELOG.md"], ids=lambda page: page.name)
 def test_names_with_an_underscore_are_in_the_code(page: Path) -> None:
-    """Or in a block of the page, which may write them."""
+    """They may also be in a block of the page, which writes them."""
     blocks = set(re.findall(r"\w+", " ".join(match[2] for match in FENCE.finditer(page.read_text(encoding="utf-8")))))
     named = {name for quoted in re.findall(r"`([^`\n]+)`", prose(page)) for name in _NAME.findall(quoted)}
     if page.name in _WITH_OTHER_NAMES:
@@ -44,7 +44,7 @@ def test_names_with_an_underscore_are_in_the_code(page: Path) -> None:
 
 
 def files_called(name: str) -> list[Path]:
-    """The files of the repository that a page may call so."""
+    """Return the files of the repository to which a page may refer by this name."""
     return [path for top in _TOPS for path in (ROOT / top).rglob(Path(name).name)
             if path.as_posix().endswith("/" + name)]
 
@@ -57,6 +57,6 @@ def test_a_name_is_in_the_file_that_the_sentence_gives(page: Path) -> None:
 
 
 def test_a_name_that_is_not_there_is_found() -> None:
-    """The searches themselves."""
+    """The regular expressions of these tests find such names."""
     assert _NAME.findall("_SLOWEST_DECAY of a_b, core/x_y.py, N, f0") == ["_SLOWEST_DECAY", "a_b"]
     assert _PLACED.findall("`_DECAY` in `kernels/x.py`, `y.MOST` (`y.py`)") == [("_DECAY", "kernels/x.py"), ("MOST", "y.py")]

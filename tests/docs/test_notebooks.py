@@ -1,4 +1,5 @@
-"""Notebooks find their files from any working directory: Jupyter's is the notebook's folder, others' is not."""
+"""Notebooks find their files from any working directory, which is the notebook's folder in Jupyter but not elsewhere.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What README and docs say exists, parses and runs."""
+"""Files, commands, names and examples in README and docs exist, parse and run."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _COMMANDS = sorted({command for page in PAGES for command in commands(page)})
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_links_and_named_files_exist(page: Path):
-    """Every relative link and every path with a folder in backquotes is there, or the page writes it."""
+    """The target of every relative link and every path in backquotes exists, or the page writes it."""
     text = page.read_text(encoding="utf-8")
     files = [Path(block.path) for block in blocks(page) if block.is_new_file]
     made = {str(path) for file in files for path in (file, file.parent)}
@@ -34,7 +34,7 @@ def test_links_and_named_files_exist(page: Path):
 
 
 def headings(page: Path) -> set[str]:
-    """The anchors of a page's headings, as a browser of repositories makes them."""
+    """Return the anchors of a page's headings, as web views of repositories form them."""
     found = re.findall(r"^#+ (.+)$", page.read_text(encoding="utf-8"), re.MULTILINE)
     return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in found}
 
@@ -47,9 +47,9 @@ def test_links_to_headings_lead_to_one(page: Path):
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_files_named_in_short_exist(page: Path):
-    """Where a page names a file without the top folder, it is one of the core or of the app.
+    """A file that a page names without the top folder is in the core or in the app.
 
-    A bare name is the only one there, or the table names its folder: in its head, or at the beginning of the row.
+    A bare name is unique there, or the table gives its folder: in its heading, or at the beginning of the row.
     """
     tops, head = [ROOT / "granchain_core", ROOT / "app"], ""
     for line in page.read_text(encoding="utf-8").splitlines():
@@ -67,17 +67,17 @@ def test_files_named_in_short_exist(page: Path):
 
 
 def test_files_named_in_the_source_exist():
-    """A docstring or comment that names a file of the project leads somewhere."""
+    """Files of the project that are named in docstrings and comments exist."""
     lost = [f"{path.relative_to(ROOT)}: {name}" for folder in ("granchain_core", "app", "tests", "tools")
             for path in sorted((ROOT / folder).rglob("*.py"))
             for name in re.findall(rf"\b({_FOLDERS}/[\w./-]+\.(?:py|md|npz|css|js))\b", path.read_text(encoding="utf-8"))
-            # those that docs/add-an-effect.md and docs/add-a-command.md make
+            # except those that docs/add-an-effect.md and docs/add-a-command.md write
             if not (ROOT / name).exists() and not name.endswith(("test_drag.py", "test_quadratic_drag.py", "test_beads.py"))]
     assert lost == []
 
 
 def test_files_named_by_their_place_in_a_package_exist():
-    """So does one that is named from its package on, as `flow/tangent.py` in a file of granchain_core."""
+    """This is about names that begin with a package, for example `flow/tangent.py` in a file of granchain_core."""
     lost = []
     for top in ("granchain_core", "app"):
         for path in sorted((ROOT / top).rglob("*.py")):
@@ -89,7 +89,7 @@ def test_files_named_by_their_place_in_a_package_exist():
 
 
 def test_modules_named_in_the_docs_can_be_found():
-    """A dotted name such as `granchain_core.virtual_experiment` is a module, or a name in one."""
+    """A dotted name, e.g. `granchain_core.virtual_experiment`, is a module or a name in one."""
     lost = []
     for page in [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]:
         for name in re.findall(r"`((?:granchain_core|app)(?:\.[a-z_0-9]+)+)", page.read_text(encoding="utf-8")):
@@ -103,7 +103,7 @@ def test_modules_named_in_the_docs_can_be_found():
 
 
 def test_the_glossary_and_the_words_of_the_code_name_a_place_for_every_term():
-    """Each row has a term, what it is, and at least one file or page; no term is on both pages."""
+    """Each row has a term, its meaning, and at least one file or page; no term is on both pages."""
     text = "".join((ROOT / "docs" / f"{page}.md").read_text("utf-8") for page in ("glossary", "words-of-the-code"))
     rows = re.findall(r"^\| (?!symbol|---)(.+) \|$", text, re.MULTILINE)
     cells = [re.split(r"(?<!\\) ?\| ", row) for row in rows]
@@ -113,7 +113,7 @@ def test_the_glossary_and_the_words_of_the_code_name_a_place_for_every_term():
 
 
 def test_the_file_of_a_term_of_the_web_has_the_word():
-    """A term that has moved to another file would keep its row otherwise."""
+    """Otherwise the row of a term that has moved to another file would be outdated."""
     section = (ROOT / "docs" / "words-of-the-code.md").read_text("utf-8").partition("## Web and server")[2].partition("\n## ")[0]
     rows = re.findall(r"^\| [^|]+ \| ([^|]+) \| [^|]+ \| ([^|]+) \|$", section, re.MULTILINE)[1:]
     assert len(rows) > 12
@@ -124,10 +124,10 @@ def test_the_file_of_a_term_of_the_web_has_the_word():
 
 @pytest.mark.parametrize("command", _COMMANDS)
 def test_commands_parse_and_their_scenes_and_knobs_exist(command: str):
-    """The parser takes them, and the scene takes their knobs."""
+    """The parser accepts them, and the scene accepts their knobs."""
     words = shlex.split(command)[1:]
     parsed = parser_for(words).parse_args(words)
-    # docs/add-an-effect.md makes the one, docs/add-a-damping-law.md the other, and their tests run them
+    # docs/add-an-effect.md adds the scene, docs/add-a-damping-law.md the law, and their tests run them
     if "scene" in parsed and parsed.scene != "drag" and "dissipation=three-quarters" not in getattr(parsed, "set", ()):
         names = parsed.scene if isinstance(parsed.scene, list) else [parsed.scene]
         changes = dict(setting.split("=") for setting in getattr(parsed, "set", ()))
@@ -141,7 +141,7 @@ def test_commands_parse_and_their_scenes_and_knobs_exist(command: str):
 
 @pytest.mark.parametrize(("command", "force", "regime"), _ROWS, ids=[row[0] for row in _ROWS])
 def test_the_numbers_of_the_lecture_page(command: str, force: str, regime: str, capsys: pytest.CaptureFixture[str]):
-    """Rows of docs/lecture.md give what they say, to the digits that are printed."""
+    """The commands in docs/lecture.md give the numbers in their rows, to the printed digits."""
     assert cli.main([*shlex.split(command), "--json"]) == 0
     told = json.loads(capsys.readouterr().out)
     half_a_digit = 0.5 * 10.0 ** -len(force.partition(".")[2])
@@ -156,7 +156,7 @@ def test_the_lecture_page_has_rows():
 @pytest.mark.parametrize("page", [ROOT / "README.md", LECTURE, ROOT / "docs" / "python.md", ROOT / "docs" / "fit.md",
                                    ROOT / "docs" / "parameter-map.md"], ids=lambda page: page.name)
 def test_python_examples_run(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):
-    """All Python blocks of a page, one after the other, in an empty folder."""
+    """All Python blocks of a page run one after the other in an empty folder."""
     code = "\n".join(block.text for block in blocks(page) if block.language == "python")
     monkeypatch.chdir(tmp_path)
     exec(compile(code, page.name, "exec"), {"__name__": "__main__"})
@@ -168,7 +168,7 @@ def test_python_examples_run(page: Path, tmp_path: Path, monkeypatch: pytest.Mon
 
 
 def test_a_transformed_time_is_s_in_the_flow_and_xi_in_dop853_root():
-    """One term with two variables, as docs/glossary.md says; its former names are in labels of files alone."""
+    """They are one term with two variables, as in docs/glossary.md; former names are used only in labels of files."""
     kernels = ROOT / "granchain_core" / "kernels"
     pages = [ROOT / "docs" / f"{name}.md" for name in ("orbits", "branches", "method", "design")]
     files = {path: path.read_text("utf-8")
@@ -180,7 +180,7 @@ def test_a_transformed_time_is_s_in_the_flow_and_xi_in_dop853_root():
 
 
 def test_the_commands_of_the_readme_make_their_own_environment():
-    """One opens the dashboard, and one runs all tests, as .ci/run does; each is one line to copy."""
+    """One command opens the dashboard, and one runs all tests as .ci/run does; each is a single line to copy."""
     shells = [block.text for block in blocks(ROOT / "README.md") if block.language == "sh"]
     assert len(shells) == 2
     assert all(text.count("\n") == 1 and text.startswith("python3 -m venv .venv && ") for text in shells)
@@ -196,7 +196,7 @@ def test_every_scene_is_in_the_readme_and_every_knob_in_the_model():
 
 
 def test_dockerfile_has_a_pinned_base_and_copies_what_the_ignore_file_lets_through():
-    """A file that .dockerignore holds back cannot be copied."""
+    """A file that .dockerignore excludes cannot be copied."""
     allowed = {line[1:] for line in (ROOT / ".dockerignore").read_text().splitlines() if line.startswith("!")}
     docker = (ROOT / "Dockerfile").read_text()
     base, *stages = re.findall(r"^(?:ARG BASE=|FROM )(\S+)", docker, re.MULTILINE)
@@ -208,7 +208,8 @@ def test_dockerfile_has_a_pinned_base_and_copies_what_the_ignore_file_lets_throu
 
 
 def test_the_comparison_with_other_programs_is_that_of_the_tables():
-    """Times over those of dop853-root: of the single run below the table, and of the tables of the second machine."""
+    """Ratios to the times of dop853-root agree with the single run in the table and with the second machine's tables.
+    """
     text = (ROOT / "docs" / "benchmarks.md").read_text(encoding="utf-8")
     sentence = " ".join(text.partition("The fastest other program takes ")[2].partition("## The step")[0].split())
     single = re.match(r"([\d.]+) times as long at 1e-8 and ([\d.]+) times at 1e-10 in this run", sentence)
@@ -219,7 +220,7 @@ def test_the_comparison_with_other_programs_is_that_of_the_tables():
         row = re.search(rf"^\| {error} \|(.+)\|$", text.partition("| error | dop853-root |")[2], re.MULTILINE)
         assert row is not None
         times = [float(ms) for ms in re.findall(r"([\d.]+) ms", row[1])]
-        ours, others = times[0], times[3:]  # after the root come rk4-split and dop853, which are ours too
+        ours, others = times[0], times[3:]  # after dop853-root come rk4-split and dop853, which are granchain's too
         assert float(single[place]) == pytest.approx(min(others) / ours, abs=0.051)
         table = section.partition(f"Trajectory at error {error.replace('e-8', 'e-08')}\n")[2].partition("\n\n")[0]
         medians = {line.split("  ")[0]: float(re.findall(r"([\d.]+) ms", line)[0]) for line in table.splitlines()[3:]

@@ -1,4 +1,4 @@
-"""docs/paper.md: its table is that of the code, its numbers are computed, its pictures are there, its example runs."""
+"""docs/paper.md: its table agrees with the code, its numbers are computed, its pictures exist, and its example runs."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from granchain_core.paper.statements import unit_of
 from tools.paper.page import PAGE, gallery, table, with_parts
 
 TEXT = PAGE.read_text(encoding="utf-8")
-#: The rows as the page has them: figures, paper, ours, differs, command.
+#: The rows of the page: figures, paper, ours, differs, command.
 ROWS = [re.split(r" \| ", line.strip("| ")) for line in TEXT.splitlines() if re.match(r"\| (3, 3a|\d+(, \d+)*) ?[,|]", line)]
 
 
 def test_the_table_and_the_gallery_are_those_of_the_code() -> None:
-    assert with_parts(TEXT, statements()) == TEXT  # else run: python -m tools.paper
+    assert with_parts(TEXT, statements()) == TEXT  # otherwise run: python -m tools.paper
     assert table(statements()) in TEXT and gallery() in TEXT
     assert len(ROWS) == len(statements()) > 10
 
@@ -42,7 +42,7 @@ def test_every_figure_has_a_row_and_a_picture_of_moderate_size() -> None:
 
 @pytest.mark.parametrize("place", range(len(ROWS)), ids=lambda place: statements()[place].key)
 def test_what_is_bold_is_what_is_computed(place: int) -> None:
-    """Words as they are, numbers within one unit of their last digit, in the document's own text."""
+    """In the text of the page, words are equal and numbers agree within one unit of their last digit."""
     row = statements()[place]
     as_printed = Statement(row.key, row.figures, ROWS[place][1], ROWS[place][2], row.differs, row.command)
     assert as_printed.computed

@@ -1,4 +1,4 @@
-"""Every work that a page or a docstring names by author and year has an entry in docs/references.md."""
+"""Every work that a page or docstring cites by author and year has an entry in docs/references.md."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""The documentation as a site: built strictly, its notebooks run, and nothing of it comes from elsewhere.
+"""The documentation as a site: it is built without warnings, its notebooks run, and nothing is loaded from elsewhere.
 
-It takes some 30 s of processor time with compiled kernels, most of it in the four notebooks, which run only here.
+This takes about 30 s of processor time with compiled kernels, most of it in the four notebooks, which run only here.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ LOADS = {"script": "src", "link": "href", "img": "src", "iframe": "src", "source
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The site; the build fails at the first warning and at a cell that fails."""
+    """The built site; the build fails at the first warning or failing cell."""
     out = tmp_path_factory.mktemp("site")
     done = subprocess.run([sys.executable, "-m", "tools.site", str(out)], cwd=ROOT, capture_output=True, text=True,
                           env={**os.environ, "PYTHONPATH": str(ROOT)})
@@ -35,7 +35,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 class Loaded(HTMLParser):
-    """What a page loads."""
+    """Collects the addresses that a page loads."""
 
     def __init__(self, page: Path) -> None:
         super().__init__()

@@ -1,6 +1,4 @@
-"""Every threshold has its row, no page names a constant that is not there, and the multipliers of a
-page are computed.
-"""
+"""Every threshold has its row, all constants named in pages exist, and the multipliers in pages are computed."""
 
 from __future__ import annotations
 
@@ -29,13 +27,13 @@ OBSERVERS, GLOSSARY = (" ".join((ROOT / "docs" / f"{name}.md").read_text(encodin
 
 
 def test_every_mark_has_a_table() -> None:
-    """A mark that no table knows would leave its constant out of all pages."""
+    """A constant whose mark no table knows would be missing from all pages."""
     known = {*_REGIMES, "rotation", "response", "branch", "fit", "attractors", "safety factor", "step size", "no threshold"}
     assert {mark for one in marked_constants() for mark in one.mark.split(", ")} <= known
 
 
 def test_every_number_with_a_name_beside_a_threshold_has_a_mark() -> None:
-    """Names given together, `A, B = range(2)`, are columns."""
+    """Names assigned together, as in `A, B = range(2)`, are columns and need none."""
     marked = {(one.file, one.name) for one in marked_constants()}
     for file in {file for file, _ in marked}:
         module = importlib.import_module("granchain_core." + file[:-3].replace("/", "."))
@@ -58,7 +56,7 @@ def test_docstrings_say_up_to_how_many_beads_there_are_multipliers() -> None:
 
 
 def test_docstrings_have_the_values_of_the_constants() -> None:
-    """Of a growth since the motion was examined, and of an extrapolation."""
+    """These are the values for a growth since the motion was examined, and for an extrapolation."""
     said = " ".join(str(regime_criteria.clearly_chaotic.__doc__).split())
     periods, growth = re.findall(r"In (\d+) periods, an exponent of ([\d.]+) per period", said)[0]
     assert (int(periods), float(growth)) == (regime_decisions.EXAMINED_AFTER, regime_criteria.CLEAR_GROWTH)
@@ -92,7 +90,7 @@ def test_what_run_takes_for_no_change(accuracy: float, noise: float, monkeypatch
 
 
 def constants(file: Path, targets: type[ast.expr] = ast.expr) -> set[str]:
-    """Names in capitals that a file gives a value at its top level, by assignments to a target of one kind."""
+    """Return the names in capitals that a file assigns at its top level, with targets of one kind."""
     return {name.id for statement in ast.parse(file.read_text(encoding="utf-8")).body
             if isinstance(statement, ast.Assign | ast.AnnAssign)
             for target in (statement.targets if isinstance(statement, ast.Assign) else [statement.target])
@@ -102,7 +100,7 @@ def constants(file: Path, targets: type[ast.expr] = ast.expr) -> set[str]:
 
 @pytest.mark.parametrize("page", sorted((ROOT / "docs").glob("*.md")), ids=lambda page: page.stem)
 def test_a_constant_that_a_page_names_is_in_the_file_beside_it(page: Path) -> None:
-    """“`NAME` in `file.py`”; the path begins at the root or in `granchain_core`."""
+    """The form is “`NAME` in `file.py`”, with a path from the root or from `granchain_core`."""
     text = " ".join(page.read_text(encoding="utf-8").split())
     for name, file in re.findall(r"`(_?[A-Z][A-Z_]+)` (?:in|of) `([\w/]+\.py)`", text):
         path = next(place for place in (ROOT / "granchain_core" / file, ROOT / file) if place.exists())
@@ -127,7 +125,7 @@ def test_a_batch_keeps_the_strobes_on_which_a_decision_is_based() -> None:
     ("fig11-free", 200.0, "−2.212", (OBSERVERS,)), ("fig11-founded", 200.0, "0.996", (OBSERVERS,)),
 ])
 def test_the_observers_multipliers_are_the_pages(name: str, f: float, leading: str, pages: tuple[str, ...]) -> None:
-    """To the digits that are printed: a real one with its sign, of a pair the modulus."""
+    """They agree to the printed digits: a real multiplier with its sign, a complex pair by its modulus."""
     found = orbit(scene(name).evolve(f=f), observer=True).observer_multipliers
     first = complex(found[0])
     value = first.real if first.imag == 0.0 else abs(first)
@@ -136,7 +134,7 @@ def test_the_observers_multipliers_are_the_pages(name: str, f: float, leading: s
 
 
 def test_the_share_of_a_drift_is_the_pages() -> None:
-    """The number before “(`TRANSLATION` in …)”."""
+    """It is the number before “(`TRANSLATION` in …)”."""
     printed = re.findall(r"([\d.]+)[^\d|]*\(`TRANSLATION` in", OBSERVERS)
     assert [float(share) for share in printed] == [TRANSLATION]
 

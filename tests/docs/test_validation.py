@@ -1,4 +1,4 @@
-"""Every row of docs/validation.md names a test that is there, with the tolerances of that test."""
+"""Every row of docs/validation.md names an existing test, with its tolerances."""
 
 from __future__ import annotations
 

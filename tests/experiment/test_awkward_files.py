@@ -1,6 +1,6 @@
-"""Awkward files: each is read right, asked about, or refused with its line; none is silently wrong.
+"""Awkward files are read correctly, asked about, or refused with a line number; none is silently misread.
 
-The numbers expected are those that the file's writer meant, in SI, written out by hand.
+The expected numbers are those that the file's author meant, in SI units, written by hand.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ RAMP = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10]
 
 
 def series(header: str, separator: str = ",", comma: bool = False) -> str:
-    """Ten rows in which every column but the first, the time, is ten times the row's number."""
+    """Return ten rows in which every column except the first, the time, is ten times the row number."""
     width = header.splitlines()[-1].count(separator)
     rows = [separator.join([str(0.5 * i), *[str(10.0 * i)] * width]) for i in RAMP]
     text = header + "\n" + "\n".join(rows) + "\n"
@@ -29,7 +29,7 @@ def series(header: str, separator: str = ",", comma: bool = False) -> str:
 
 
 def project(*datasets: tuple[str, list[list[float]]], kind: str = "XYAxes", version: int = 4) -> bytes:
-    """A project of WebPlotDigitizer."""
+    """Return a project file of WebPlotDigitizer."""
     listed = [{"name": name, "axesName": "XY", "metadataKeys": [], "colorRGB": [200, 0, 0, 255], "autoDetectionData": None,
                "data": [{"x": 1.5, "y": 2.5, "value": value} for value in points]} for name, points in datasets]
     if version == 3:
@@ -39,7 +39,7 @@ def project(*datasets: tuple[str, list[list[float]]], kind: str = "XYAxes", vers
 
 
 def archived(content: bytes, name: str = "mine/wpd.json") -> bytes:
-    """A project's archive."""
+    """Return the archive of a project."""
     file = io.BytesIO()
     with tarfile.open(fileobj=file, mode="w") as archive:
         info = tarfile.TarInfo(name)
@@ -110,7 +110,7 @@ CURVES = [
     ("one dataset of two", project(("a", [[1, 1]]), ("b", [[60, 1500]])),
      answers_of(["f=1:Hz", "F=2:mN"], dataset="b"), [60], [1.5]),
 ]
-#: Name, content, what is asked about, a word of the reason.
+#: Name, content, subject of the question, a part of the reason.
 ASKED = [
     ("no titles", "60,1.5\n70,2\n", ("columns",), "no titles"),
     ("unknown titles", "alpha,beta\n60,1.5\n", ("columns",), "'alpha' and 'beta'"),
@@ -177,7 +177,7 @@ REFUSED = [
 
 
 def data(content: str | bytes) -> bytes:
-    """The bytes of a case."""
+    """Return the bytes of a case."""
     return content if isinstance(content, bytes) else content.encode()
 
 
@@ -223,7 +223,7 @@ def test_a_series_in_any_units(header: str, velocity: float | None, displacement
 
 
 def test_a_series_in_volts_with_sensitivities() -> None:
-    """The paper's sensors: 2.248 V/kN for the input, 11.241 V/kN for the output (section 3)."""
+    """The paper's sensors have 2.248 V/kN for the input and 11.241 V/kN for the output (section 3)."""
     text = series("time (ms),input (V),output (V)").encode()
     found = read_data(text, answers_of(["t=1:ms", "Fin=2:2.248V/kN", "Fout=3:11.241V/kN"]))
     assert isinstance(found, Series) and found.input_force is not None and found.output_force is not None
@@ -258,7 +258,7 @@ def test_units_source_and_note_stay_with_the_data() -> None:
 
 
 def test_what_a_figure_cannot_use_is_not_read() -> None:
-    """A file with force and amplitude is a curve for one reader and a drive for another."""
+    """A file with force and amplitude is read as a curve or as a drive, depending on what is wanted."""
     text = b"f [Hz],F [N],A0 [um]\n60,1.5,7\n70,2,8\n"
     assert isinstance(read_data(text), Measured)
     drive = read_data(text, wanted=("shaker",))
@@ -282,7 +282,8 @@ _NUMBER = st.builds(lambda whole, mark, part: f"{whole}{mark}{part}" if mark els
 
 @given(st.lists(st.tuples(_NUMBER, _NUMBER), min_size=1, max_size=6))
 def test_numbers_that_are_read_have_one_meaning(rows: list[tuple[str, str]]) -> None:
-    """Read without a question, every number is what it is by the one decimal mark that fits the whole file."""
+    """If a file is read without a question, every number follows from the only decimal mark that fits the whole file.
+    """
     text = "f [Hz];F [N]\n" + "\n".join(";".join(row) for row in rows)
     try:
         found = read_data(text.encode())

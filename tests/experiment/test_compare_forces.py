@@ -1,4 +1,4 @@
-"""Measured forces beside computed ones: which samples count, and what is not hidden."""
+"""Comparison of measured and computed forces: the samples that count, and differences that must not be hidden."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from granchain_core.experiment import Series, compared_forces
 
 @dataclass(frozen=True)
 class Ramp:
-    """A motion whose forces are straight lines: 2 N/s at the driver, −1 N/s at the wall, with knots at odd places."""
+    """A motion with linear forces, 2 N/s at the driver and −1 N/s at the wall, and unevenly spaced knots."""
 
     time: np.ndarray
 
     @property
     def input_force(self) -> np.ndarray:
-        """2 t."""
+        """The input force 2 t."""
         return 2.0 * self.time
 
     @property
     def output_force(self) -> np.ndarray:
-        """−t."""
+        """The output force −t."""
         return -self.time
 
 
@@ -32,12 +32,12 @@ RAMP = Ramp(np.array([0.0, 0.3, 0.35, 1.0, 2.0]))
 
 
 def series(time: np.ndarray, input_force: np.ndarray | None = None, output_force: np.ndarray | None = None, note: str = "") -> Series:
-    """A series with these forces."""
+    """Return a series with these forces."""
     return Series(time, None, input_force, output_force, "made", note=note)
 
 
 def test_other_sampling_and_a_constant_offset() -> None:
-    """Straight lines are hit between the knots too; an offset of 0.5 N is all of rms, largest and mean, and stays."""
+    """Straight lines are also met between knots; an offset of 0.5 N is the rms, largest and mean difference."""
     time = np.linspace(0.0, 2.0, 77)
     found = compared_forces(series(time, 2.0 * time - 0.5, -time), RAMP)
     assert list(found) == ["input_force", "output_force"]

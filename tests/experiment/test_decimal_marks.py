@@ -1,4 +1,5 @@
-"""Which mark divides decimals: certain where one reading fits every number, else asked or refused, never guessed."""
+"""The decimal mark is certain if only one reading fits all numbers, otherwise asked for or refused, but never guessed.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +16,7 @@ _NUMBER = st.builds(lambda whole, mark, part: f"{whole}{mark}{part}" if mark els
 
 @given(st.lists(_NUMBER, min_size=1, max_size=8))
 def test_no_file_with_two_readings_is_read_in_silence(fields: list[str]) -> None:
-    """A mark that is found fits all numbers, and by the other mark one of them is none, or all are the same."""
+    """A mark that is found fits all numbers; with the other mark, one is not a number, or all have the same values."""
     try:
         found = decimal_mark(enumerate(fields, 1))
     except BadInput as refused:

@@ -1,4 +1,4 @@
-"""The formats of measured data: the table of the page is that of the code, and each is recognised by its content."""
+"""The formats of measured data: the page's table agrees with the code, and each format is recognised by its content."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ PROJECT = json.dumps({"datasetColl": [{"name": "curve", "data": [{"value": [50.0
 
 
 def contents(folder: Path) -> dict[str, bytes]:
-    """A resonance curve in each format."""
+    """Return a resonance curve in each format."""
     with h5py.File(folder / "made.h5", "w") as file:
         for name, values, unit in (("frequency", [50.0, 60.0], "Hz"), ("force", [1.0, 3.0], "N")):
             file[name] = values
@@ -33,7 +33,7 @@ def test_the_table_of_the_page_is_that_of_the_code() -> None:
 
 
 def test_each_format_is_recognised_by_its_content_in_bytes_and_in_a_file(tmp_path: Path) -> None:
-    """With an ending that none of them has."""
+    """The file has an ending that none of the formats has."""
     made = contents(tmp_path)
     assert list(made) == [one.name for one in FORMATS]
     for name, content in made.items():

@@ -1,4 +1,5 @@
-"""Measurements in HDF5 and netCDF-4: names and units of rows, what granchain itself wrote, what is asked and refused.
+"""Measurements in HDF5 and netCDF-4: names and units of rows, granchain's own files, and files that are asked about or
+refused.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ F, FORCE = np.array([50.0, 60.0, 70.0]), np.array([1.0, 3.0, 2.0])
 
 
 def hdf5(path: Path, **rows: tuple[object, str | None]) -> Path:
-    """A file of rows with their units, written by h5py alone."""
+    """Write a file of rows with their units, using only h5py."""
     with h5py.File(path, "w") as file:
         for name, (values, unit) in rows.items():
             file[name] = values
@@ -36,7 +37,7 @@ def test_rows_with_units(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("layout", ["earliest", "v108", "latest"])
 def test_every_version_of_hdf5s_layout_is_read(layout: str, tmp_path: Path) -> None:
-    """Other programs, netCDF's library among them, write the superblock that sealed files have, and no seal."""
+    """Other programs, including netCDF's library, write the superblock that sealed files have, but without a seal."""
     with h5py.File(tmp_path / "a.h5", "w", libver=layout) as file:
         file["f"], file["force"] = F, FORCE
         for name, unit in (("f", "Hz"), ("force", "N")):

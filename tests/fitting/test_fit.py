@@ -1,6 +1,6 @@
-"""Fits of virtual data: known parameters are found, their intervals hold them, and what cannot be is said.
+"""Fits of virtual data: known parameters are found, their intervals contain them, and impossible fits are reported.
 
-`python -m tools.fit_coverage` counts intervals over many draws; here one draw of each kind has to pass.
+`python -m tools.fit_coverage` counts intervals over many draws; here, one draw of each kind has to pass.
 """
 
 from __future__ import annotations
@@ -39,13 +39,13 @@ FREE = [Free("A0", 2.5e-7, 1e-6), Free("D", 50.0, 200.0), Free("k", 1e5, 1.6e6)]
 
 
 def measured(seed: int = 2, error: float = 0.03) -> Measured:
-    """A virtual curve of the truth."""
+    """Return a virtual curve with the true parameters."""
     return virtual_curve(CHAIN.evolve(**TRUTH), FREQUENCIES, error, np.random.default_rng(seed))
 
 
 @pytest.fixture(scope="module")
 def found() -> Fit:
-    """One fit of three parameters."""
+    """A fit of three parameters."""
     return fit(CHAIN, CurveTarget(measured()), FREE)
 
 
@@ -58,7 +58,7 @@ def test_a_curve_gives_back_what_made_it(found: Fit) -> None:
 
 
 def test_an_interval_ends_where_the_misfit_has_risen_by_3_84(found: Fit) -> None:
-    """χ² of one degree of freedom is below 3.841 in 95 %; the ends are found to 6 % of that."""
+    """χ² with one degree of freedom is below 3.841 in 95 % of cases; the ends are found to 6 % of that."""
     for profile in found.profiles:
         places = np.array(profile.values)
         assert np.interp([profile.low, profile.high], places, profile.rises) == pytest.approx(3.841, rel=0.25)
@@ -105,7 +105,7 @@ def test_without_errors_there_is_no_verdict_but_an_interval() -> None:
 
 
 def test_an_amplitude_for_each_frequency_leans_on_its_prior() -> None:
-    """As many amplitudes as forces are found only with what is known beside them."""
+    """As many amplitudes as forces can be found only with prior knowledge."""
     frequencies = np.array([1200.0, 1600.0, 2000.0])
     amplitudes = Amplitude.table(frequencies, [5e-7, 6e-7, 4.5e-7])
     curve = resonance_curve(CHAIN, frequencies, amplitude=amplitudes)
@@ -119,7 +119,7 @@ def test_an_amplitude_for_each_frequency_leans_on_its_prior() -> None:
 
 
 def test_a_chaotic_point_has_no_smaller_misfit() -> None:
-    """A point that is not periodic has a wider distribution, and pays for it: no smaller misfit at the same value."""
+    """A point that is not periodic has a wider distribution, but its misfit at the same value is not smaller."""
     irregular = scene("rig").evolve(A0=13e-6, f=100.0, kappa=0.001)  # chaotic, docs/paper.md
     curve = resonance_curve(irregular, [100.0])
     assert curve.points[0].regime.name != "periodic"
@@ -130,7 +130,7 @@ def test_a_chaotic_point_has_no_smaller_misfit() -> None:
 
 
 def test_peaks_and_valleys_are_found_between_the_points() -> None:
-    """Those of section 2 (docs/lecture.md): peaks at 340, 620 Hz among periodic points, a valley at 470 Hz."""
+    """Section 2's chain (docs/lecture.md) has peaks at 340 and 620 Hz among periodic points, and a valley at 470 Hz."""
     curve = resonance_curve(scene("sec2"), np.arange(200.0, 560.0, 10.0))
     assert min(abs(np.array(extrema(curve.points, True)) - 340.0)) < 10.0
     assert min(abs(np.array(extrema(curve.points, False)) - 470.0)) < 10.0
@@ -143,8 +143,9 @@ def test_peaks_and_valleys_are_found_between_the_points() -> None:
 
 @pytest.mark.parametrize("name", ["input_force", "output_force"])
 def test_a_train_has_its_jumps_and_its_mean(name: str) -> None:
-    """∫F dt over a period is the impulse, here against 256 times as many samples: a jump at a closing or a release that
-    were smeared over one sample would be off by 3e-4 to 4e-3. A narrow mean is the force itself."""
+    """∫F dt over a period, the impulse, agrees with that from 256 times as many samples: a jump at a closing or a
+    release that was smeared over one sample would cost 3e-4 to 4e-3. A narrow mean is the force itself.
+    """
     chain = scene("sec2").evolve(N=2, f=2000.0, D=400.0)
     result, fine = (settle(chain, samples=samples).run for samples in (256, 65_536))
     train, contact = Train.of(result, name), 0 if name == "input_force" else 2
@@ -159,8 +160,9 @@ def test_a_train_has_its_jumps_and_its_mean(name: str) -> None:
 
 
 def test_a_train_pulls_until_its_contact_opens() -> None:
-    """The least force is that just before the release, D δ̇, to the spacing of 65,536 samples; laws whose force is zero
-    there, and a cut of tension, have no such jump."""
+    """The smallest force is D δ̇, just before the release, to the spacing of 65,536 samples. Laws whose force is zero
+    there, and a tension cut, have no such jump.
+    """
     chain = scene("sec2").evolve(N=2, f=2000.0)
     fine = settle(chain, samples=65_536).run
     train = Train.of(settle(chain, samples=256).run, "input_force")
@@ -208,7 +210,9 @@ def test_a_force_without_an_error_is_refused_and_one_of_zero_has_one() -> None:
 
 
 def test_repeats_give_the_standard_deviation_of_their_mean() -> None:
-    """Two frequencies with two repeats each, 10 % and 20 % apart: pooled √((0.1² + 0.2²)/2)/√2 of the mean."""
+    """For two frequencies with two repeats each, 10 % and 20 % apart, the pooled value is √((0.1² + 0.2²)/2)/√2 of the
+    mean.
+    """
     given = read_data(b"f [Hz],F [N]\n50,0.95\n50,1.05\n60,1.8\n60,2.2\n")
     assert isinstance(given, Measured) and CurveTarget(given).sigma_known
     pooled = np.sqrt((0.1**2 / 2 + 0.2**2 / 2) / 2)

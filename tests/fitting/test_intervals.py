@@ -14,7 +14,7 @@ pytestmark = pytest.mark.quick
 
 
 def profile_of(misfit: Any, slope: float) -> Any:
-    """The profile of one parameter from 0 to 1 with its least misfit at 0.5, where residuals have this slope."""
+    """Return the profile of one parameter from 0 to 1 with its least misfit at 0.5, where residuals have this slope."""
     free = SimpleNamespace(value=float)
     stub = SimpleNamespace(misfit=lambda x: misfit(float(x[0])), free=[free],
                            curvature=lambda x: np.array([[slope**2]]))
@@ -22,7 +22,7 @@ def profile_of(misfit: Any, slope: float) -> Any:
 
 
 def test_an_end_where_the_misfit_never_rose_to_its_limit_is_open() -> None:
-    """A steep difference quotient, as across a regime jump, lets the search begin 1e-4 from the best point."""
+    """A steep difference quotient, as across a jump between regimes, lets the search begin 1e-4 from the best point."""
     flat = profile_of(lambda x: 0.0, 2e4)
     assert flat.low > 0.0 and flat.high < 1.0 and flat.open_low and flat.open_high
 

@@ -1,4 +1,4 @@
-"""Records at several drive frequencies that have parameters in common, and the correlation of the estimates."""
+"""Records at several drive frequencies with common parameters, and the correlation of the estimates."""
 
 from __future__ import annotations
 
@@ -26,19 +26,19 @@ TRUTH = 115.0
 
 
 def recorded(f: float, amplitude: float, seed: int) -> Series:
-    """Four periods of both forces, with noise."""
+    """Record four periods of both forces, with noise."""
     return virtual_series(CHAIN.evolve(f=f, A0=amplitude, D=TRUTH), 4, 48, ERROR, np.random.default_rng(seed))
 
 
 @pytest.fixture(scope="module")
 def target() -> RecordsTarget:
-    """Two records, each at its own frequency and amplitude."""
+    """Two records at different frequencies and amplitudes."""
     return RecordsTarget(tuple(SeriesTarget(recorded(f, a, i), ERROR, f) for i, (f, a) in enumerate(DRIVES.items())))
 
 
 @pytest.fixture(scope="module")
 def found(target: RecordsTarget) -> Fit:
-    """One D, and an amplitude for each record."""
+    """A fit of one D, and an amplitude for each record."""
     free = per_frequency([Free("A0", 3e-7, 9e-7), Free("D", 60.0, 200.0)], target.frequencies)
     return fit(CHAIN, target, free, initial_points=32)
 
@@ -46,7 +46,7 @@ def found(target: RecordsTarget) -> Fit:
 def test_common_and_own_parameters_come_back(found: Fit) -> None:
     assert [one.name for one in found.free] == ["A0@1800", "A0@2200", "D"] and found.verdict == "can"
     assert found.best == pytest.approx([*DRIVES.values(), TRUTH], rel=0.02)
-    # each of three intervals holds the truth in 95 of 100; three standard deviations are 1.53 times as far
+    # each of three intervals contains the truth in 95 of 100 cases; three standard deviations are 1.53 times as far
     for one, true in zip(found.profiles, [*DRIVES.values(), TRUTH], strict=True):
         middle, half = 0.5 * (one.low + one.high), 0.5 * (one.high - one.low)
         assert abs(true - middle) < 3.0 / 1.96 * half
@@ -59,7 +59,7 @@ def test_two_records_know_more_than_one(found: Fit, target: RecordsTarget) -> No
 
 
 def test_a_record_is_computed_at_its_own_frequency_and_amplitude(target: RecordsTarget) -> None:
-    """The scene's f and A0 do not count, and both records together are the two one after the other."""
+    """The scene's f and A0 are not used, and the residuals of both records follow one another."""
     amplitude = Amplitude.table(list(DRIVES), list(DRIVES.values()))
     both = target.evaluate(CHAIN.evolve(f=500.0, A0=1e-6, D=TRUTH), amplitude, None)
     for (one, place, regime), (f, a) in zip(target.parts(both), DRIVES.items(), strict=True):
@@ -116,7 +116,7 @@ def test_the_command_fits_several_files(tmp_path: Path, capsys: pytest.CaptureFi
 
 @dataclass(frozen=True, eq=False)
 class Plane:
-    """Residuals that are linear in D and k: `slopes` (R, 2) times their relative distances from 100 and 2e5."""
+    """A target with residuals linear in D and k: `slopes` (R, 2) times their relative distances from 100 and 2e5."""
 
     slopes: np.ndarray
     smooth: bool = True
@@ -133,7 +133,7 @@ class Plane:
 
 @pytest.mark.parametrize("angle", [0.3, 1.2, 2.5])
 def test_the_correlation_is_that_of_linear_least_squares(angle: float) -> None:
-    """Two unit rows at an angle: the covariance (JᵀJ)⁻¹ has the correlation −J₁·J₂ of the columns' directions."""
+    """For two unit columns at an angle, the covariance (JᵀJ)⁻¹ has the correlation −J₁·J₂ of their directions."""
     slopes = 30.0 * np.array([[1.0, np.cos(angle)], [0.0, np.sin(angle)]])
     found = fit(CHAIN, cast(Target, Plane(slopes)), [Free("D", 50.0, 190.0), Free("k", 1e5, 3.5e5)], intervals=False)
     assert found.correlation is not None

@@ -1,4 +1,4 @@
-"""Where the search of a fit begins, and the curvature of χ² at its end."""
+"""The starts of a fit's search, and the curvature of χ² at its end."""
 
 from __future__ import annotations
 
@@ -14,13 +14,15 @@ from granchain_core.fitting import Free, search
 from granchain_core.fitting.evaluation import Evaluation
 from granchain_core.fitting.intervals import profile
 
-#: Slopes of three residuals by two parameters, over the range of each; at this point of the cube all residuals are 0.
+#: Slopes of three residuals in two parameters, over the range of each; at ROOT in the unit square, all residuals are 0.
 SLOPES, ROOT = np.array([[30.0, 10.0], [0.0, 20.0], [5.0, -8.0]]), np.array([0.4, 0.6])
 FREE = (Free("D", 50.0, 150.0), Free("k", 1e3, 1e5))
 
 
 def enlarged(least: float) -> Any:
-    """A problem with linear residuals. The logarithm of its variances is `least` at the root and grows from there."""
+    """Return a problem with linear residuals. The logarithm of its variances is `least` at the root and grows from
+    there.
+    """
     def evaluate(chain: Any, amplitude: Any, stop: Any) -> Evaluation:
         x = np.array([np.log(chain.D / 50.0) / np.log(3.0), np.log(chain.k / 1e3) / np.log(100.0)])
         return Evaluation(SLOPES @ (x - ROOT), least + float(np.abs(x - ROOT) @ [2.0, 0.5]), ("periodic",), x)
@@ -31,7 +33,7 @@ def enlarged(least: float) -> Any:
 
 @pytest.mark.parametrize("least", [0.0, 1e-12, 1e-3])
 def test_logarithms_of_enlarged_variances_are_left_out_of_the_curvature(least: float) -> None:
-    """The slope of their root, L'/(2√L), grows without bound where no variance is enlarged."""
+    """The slope of their root, L'/(2√L), would be unbounded where no variance is enlarged."""
     covariance = np.linalg.inv(SLOPES.T @ SLOPES)
     expected = covariance / np.sqrt(np.outer(np.diag(covariance), np.diag(covariance)))
     np.testing.assert_allclose(enlarged(least).correlation(ROOT), expected, atol=1e-9)
@@ -49,7 +51,7 @@ def test_a_profile_first_goes_as_far_as_the_parabola_of_chi_squared_says(least: 
 
 
 def test_later_rounds_of_starts_are_spread_as_the_first() -> None:
-    """Of twice as many points one lies in each half of the first intervals, in every coordinate."""
+    """With twice as many points, there is one in each half of the first intervals, in every coordinate."""
     sequence = qmc.Sobol(2, scramble=False)
     first, second = sequence.random_base2(4), sequence.random(16)
     points = np.concatenate([search._inner_points(part, 2.0**-4) for part in (first, second)])

@@ -1,4 +1,4 @@
-"""Verdict and intervals on a straight line, whose distributions are known exactly; no chain is computed."""
+"""Verdict and intervals for a straight line, whose distributions are known exactly; no chain is computed."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ FREE = [Free("D", 50.0, 150.0)]
 
 @dataclass(frozen=True, eq=False)
 class Line:
-    """Data on a line whose slope is D / 100, with errors of 0.1 that are `sigma_known` or not."""
+    """Data on a line with slope D / 100, with errors of 0.1 that are `sigma_known` or not."""
 
     data: np.ndarray
     sigma_known: bool
@@ -48,7 +48,7 @@ def fitted(line: Line) -> Fit:
 
 
 def test_the_logarithm_of_a_variance_is_no_evidence_against_the_model() -> None:
-    """It ranks sets of parameters; a sum of squares of 0 is possible whatever it is."""
+    """It only ranks sets of parameters; a sum of squares of 0 is possible with any variance."""
     found = fitted(Line(AT.copy(), True, log_variance=60.0))
     assert found.verdict == "can" and found.probability == pytest.approx(1.0)
     assert found.chi_squared == pytest.approx(0.0, abs=1e-6) and found.misfit == pytest.approx(60.0, abs=1e-6)
@@ -56,7 +56,7 @@ def test_the_logarithm_of_a_variance_is_no_evidence_against_the_model() -> None:
 
 @pytest.mark.parametrize("known", [True, False])
 def test_intervals_hold_the_truth_in_95_of_100(known: bool) -> None:
-    """300 draws: 95 % ± 1.26 % (one standard deviation). With χ² in place of F, unknown errors would give 89 %."""
+    """Of 300 draws, 95 % ± 1.26 % (one standard deviation) do. With χ² instead of F, unknown errors would give 89 %."""
     rng = np.random.default_rng(11)
     held = 0
     for _ in range(300):
@@ -71,13 +71,15 @@ def test_the_limit_is_that_of_f_where_the_variance_is_estimated() -> None:
 
 
 def test_errors_that_repeats_tell_are_themselves_uncertain() -> None:
-    """A standard deviation from repeats with r = 3 degrees of freedom: 1 of 100 true models is called “cannot”.
+    """With a standard deviation from repeats (r = 3 degrees of freedom), 1 of 100 true models gets the verdict
+    “cannot”.
 
-    More than 5 of 100 have a probability of 5e-4 (binomial); as if the errors were exact there would be some 20.
+    More than 5 of 100 have a probability of 5e-4 (binomial). If the errors were treated as exact, there would be about
+    20.
     """
     rng, wrong = np.random.default_rng(2), 0
     for _ in range(100):
-        told = np.sqrt(rng.chisquare(3) / 3)  # over the true one, by which the data scatter
+        told = np.sqrt(rng.chisquare(3) / 3)  # relative to the true one, by which the data scatter
         line = Line(AT + 0.1 / told * rng.standard_normal(len(AT)), True, error_freedom=3)
         wrong += fit(CHAIN, cast(Target, line), FREE, initial_points=2, intervals=False).verdict == "cannot"
     assert wrong <= 5

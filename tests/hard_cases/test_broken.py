@@ -1,4 +1,4 @@
-"""The checks can fail: with the core broken on purpose the rows that are meant to notice do."""
+"""The checks can fail: if the core is broken on purpose, the rows that should notice it do."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ from granchain_core.scene.state import State
 
 
 def worst(measurements: list[Measurement]) -> Measurement:
-    """The measurement furthest above its limit."""
+    """Return the measurement furthest above its limit."""
     return max(measurements, key=lambda f: np.inf if not f.value <= f.limit else f.value - f.limit)
 
 
 def failed(measurements: list[Measurement]) -> list[str]:
-    """Names of the measurements above their limits."""
+    """Return the names of the measurements above their limits."""
     return [f.name for f in measurements if not f.value <= f.limit]
 
 
@@ -95,7 +95,7 @@ def test_a_clock_that_adds_its_steps_is_out_of_phase() -> None:
 
 
 def test_wrong_scaling_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The damping in scaled units grows with A0 by a power that should not be there."""
+    """The scaled damping gets a wrong, weak dependence on A0."""
     real = engine_module.scale_chain
 
     def wrong(chosen: Scene, *options: bool) -> ScaledChain:

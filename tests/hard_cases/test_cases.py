@@ -1,4 +1,4 @@
-"""Every hard case, in its quick form, holds: each against the oracle that its row of the table names."""
+"""Every hard case passes in its quick form, compared with the oracle that its row in the table names."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ import pytest
 from granchain_core.hard_cases import CASES, Check, run_case
 from tools.hard_cases import recorded
 
-#: Rows that are timings; on a machine that does other things they are not a test.
+#: Rows with timings, which are not a test on a busy machine.
 TIMINGS = ("time per bead", "time of an evaluation")
 
 
 @functools.cache
 def rows(name: str) -> list[Check]:
-    """The rows of one case."""
+    """Return the rows of one case."""
     return run_case(next(case for case in CASES if case.name == name), quick=True)
 
 
@@ -28,11 +28,12 @@ def test_the_case_holds(name: str) -> None:
 
 @pytest.mark.parametrize("name", [case.name for case in CASES])
 def test_the_page_has_the_names_and_limits_of_the_rows(name: str) -> None:
-    """The recorded run from which the page's table is written (tools/hard_cases.py) has the rows of today's code."""
+    """The recorded run from which the page's table is written (tools/hard_cases.py) has the rows of the present code.
+    """
     assert [(row.name, row.limit) for row in recorded("quick", name)] == [(row.title, row.limit) for row in rows(name)]
 
 
 def test_every_case_has_its_words() -> None:
-    """Its oracle, what is hard and what a naive solver does."""
+    """Each has texts on its oracle, on what is hard, and on what a naive solver does."""
     assert len({case.name for case in CASES}) == len(CASES)
     assert all(case.oracle and case.hard and case.naive for case in CASES)

@@ -1,6 +1,6 @@
-"""Whole scenes at random: what every scene must hold, and the checker notices planted faults.
+"""Random scenes: every scene satisfies the invariants, and the checker notices planted faults.
 
-Here are few scenes of one structure; `python -m tools.fuzzing` draws thousands of all (docs/hard-cases.md).
+This file draws a few scenes of one structure; `python -m tools.fuzzing` draws thousands of all (docs/hard-cases.md).
 """
 
 from __future__ import annotations
@@ -27,19 +27,19 @@ from tools.fuzzing.table import describe, known, silent_other, table
 
 SEED, COUNT = 7, 60
 ONE = STRUCTURES[:1]
-#: Seconds a run may take here: the slowest scenes are for the program.
+#: Time allowed for a run here [s]: the slowest scenes are left to the program.
 SHORT = 1.0
-#: How many times longer than that, and than SciPy's second, a scene may take that was begun: a busy machine decides
-#: nothing.
+#: A scene that was begun may take this many times longer, and so may SciPy, which is allowed a second: a busy machine
+#: must not decide the outcome.
 PATIENCE = 100.0
-#: Seconds SciPy may take where its answer is the test: far more than the second it needs, for the same reason.
+#: Time allowed for SciPy if its answer is the test [s]: far more than the second it needs, for the same reason.
 PATIENT = 600.0
 EASY = Draw(0, 0, {"N": 3, "f": 1000.0, "accuracy": 1e-5}, {}, False)
 
 
 @functools.cache
 def found() -> list[Verdict]:
-    """The verdicts; every tenth scene judged by SciPy too."""
+    """Return the verdicts; every tenth scene is judged by SciPy too."""
     warm(ONE)
     return [check(draw(SEED, i, ONE), scipy=0.0 if i % 10 else 1.0, budget=SHORT, patience=PATIENCE)
             for i in range(COUNT)]
@@ -47,7 +47,9 @@ def found() -> list[Verdict]:
 
 @pytest.mark.long
 def test_everything_holds_in_every_scene() -> None:
-    """Not one is let through: two computations that agree by chance state too little in one scene of a thousand."""
+    """No exception is allowed, although two computations that agree by chance understate the error in one of 1000
+    scenes.
+    """
     print(table(found()))
     assert [describe(v) for v in found() if v.faults] == []
 
@@ -64,16 +66,16 @@ def test_a_draw_is_its_seed_and_number() -> None:
     assert draw(SEED + 1, 3, ONE).knobs != again[0].knobs
 
 
-# --- planted faults: what the checker must notice ---------------------------------------------------------
+# --- planted faults, which the checker must notice --------------------------------------------------------
 
 
 def faults(change: Callable[[Run], Run]) -> set[str]:
-    """Names of the faults of an easy scene whose run is changed."""
+    """Return the names of the faults found in an easy scene whose run is changed."""
     return {name for name, _ in check(EASY, lambda *words, **names: change(run(*words, **names)), scipy=PATIENT).faults}
 
 
 def moved(result: Run, by: float) -> Run:
-    """A run whose last displacement is wrong by so much of the largest."""
+    """Return a run whose last displacement is wrong by this fraction of the largest."""
     wrong = result.displacement.copy()
     wrong[-1, -1] += by * np.abs(wrong).max()
     return replace(result, displacement=wrong)
@@ -113,7 +115,7 @@ def test_energy_that_does_not_close_is_noticed() -> None:
 
 
 def raising(problem: Exception) -> Callable[..., Run]:
-    """A run that ends so."""
+    """Return a function that raises this error instead of running."""
     def compute(*words: Any, **names: Any) -> Run:
         raise problem
     return compute
@@ -172,7 +174,7 @@ def test_a_length_that_does_not_scale_and_a_state_that_is_rounded_are_noticed(mo
     assert "scaling" in {name for name, _ in check(EASY).faults}
 
 
-# --- what a user would have had ---------------------------------------------------------------------------
+# --- the results of other solvers -------------------------------------------------------------------------
 
 
 def test_lsoda_as_it_comes_is_silently_wrong_and_a_located_solver_is_not() -> None:

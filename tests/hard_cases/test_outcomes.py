@@ -1,4 +1,4 @@
-"""Every computation ends in one outcome; each is provoked here, and carried by the command line and the files."""
+"""Every computation ends with one outcome; each is provoked here, and reported by the command line and in files."""
 
 from __future__ import annotations
 
@@ -69,8 +69,9 @@ def test_the_offered_number_of_periods_fits_into_the_budget() -> None:
 
 @pytest.mark.parametrize("accuracy", [1e-6, 1e-11])
 def test_a_coarser_accuracy_is_offered_where_the_run_would_fit_with_it(accuracy: float) -> None:
-    """The estimate is that of the method chosen for 1e-4, a little finer than the coarsest; a method asked for by name
-    takes the same steps at any accuracy."""
+    """The estimate is for the method chosen for 1e-4, a little finer than the coarsest. A method that is chosen by name
+    takes the same steps at any accuracy.
+    """
     chosen = scene("sec2").evolve(f=1.0, accuracy=accuracy)
     needed = estimate(chosen, method_for(1e-4), 100, 8, 1).seconds
     with pytest.raises(OverBudget, match=r"or an accuracy of 1e-4 would fit"):
@@ -92,7 +93,7 @@ def test_the_steps_of_a_run_are_estimated_within_a_factor_of_two(knobs: dict[str
 
 
 def test_a_finer_computation_that_does_not_fit_is_not_begun(monkeypatch: pytest.MonkeyPatch) -> None:
-    """This run needs a third computation; where that is taken for a very long one the second is what is returned."""
+    """This run needs a third computation; if that is assumed to be very long, the second one is returned."""
     monkeypatch.setattr(to_accuracy, "_REFINED_COST_RATIO", 1e9)
     result = run(scene("sec2"), periods=20, record=1, samples=8)
     assert result.status == "over-budget"
@@ -122,7 +123,7 @@ def test_a_step_in_the_middle_of_a_long_call_is_found_again() -> None:
 
 
 def test_step_too_small() -> None:
-    """A contact so stiff that no step is small enough, met on the way."""
+    """During the run, a contact becomes so stiff that no step is small enough."""
     engine = Engine(scene("sec2"), MethodSetting("dop853", 1.0, 1e-6), 8)
     engine.record(1)
     engine.scaled.slots.chain.stiffness[:] = 1e30
@@ -133,21 +134,21 @@ def test_step_too_small() -> None:
 
 
 def bouncing() -> Engine:
-    """One bead between a slow driver and the wall, undamped: 4600 contact events in one drive period."""
+    """Start an undamped bead between a slow driver and the wall, with 4600 contact events in one drive period."""
     engine = Engine(scene("sec2").evolve(N=1, dissipation="none", f=5.0), MethodSetting("dop853", 1.0, 1e-4), 1)
     engine.start(State(np.zeros(1), np.array([0.5])))
     return engine
 
 
 def test_thousands_of_touches_in_one_drive_period_are_followed() -> None:
-    """Contacts are compliant, so a touch takes time: however many there are, they are no chatter."""
+    """Contacts are compliant, so a touch takes time, and many touches are not chatter."""
     engine = bouncing()
     engine.periods(1)
     assert engine.counts.events > 2 * EVENTS_PER_CONTACT
 
 
 def test_contacts_that_open_and_close_while_no_time_passes_fail_with_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
-    """With a window that never ends the touches of a period count as if they took no time."""
+    """With an infinite window, the touches of a period count as if they took no time."""
     monkeypatch.setattr(error_control, "EVENT_WINDOW", np.inf)
     monkeypatch.setattr(error_control, "EVENTS_PER_CONTACT", 20)
     engine = bouncing()
@@ -167,7 +168,7 @@ def test_no_convergence_with_its_history() -> None:
 
 
 def test_every_failure_has_a_known_name() -> None:
-    """Each status that is written in the source is in FAILURES, and FAILURES has no other."""
+    """Every status in the source is in FAILURES, and FAILURES has no others."""
     written = {node.args[1].value for package in (granchain_core, app) for path in Path(package.__path__[0]).rglob("*.py")
                for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.Call)
                and getattr(node.func, "id", "") == "ComputationError" and isinstance(node.args[1], ast.Constant)}
@@ -184,7 +185,7 @@ def test_outside_validity_is_a_warning() -> None:
 
 @pytest.mark.parametrize("wall", ["bead", "same-material", "rigid"])
 def test_peak_pressure_is_hertzs(wall: str) -> None:
-    """p0 = (1/π)(6 F E*²/R*²)^{1/3}, written with the force; two spheres of section 2 yield at an overlap of 14 µm."""
+    """p0 = (1/π)(6 F E*²/R*²)^{1/3}, in terms of the force; two spheres of section 2 yield at an overlap of 14 µm."""
     chosen = scene("sec2").evolve(wall=wall)
     overlaps = np.full(chosen.N + 1, 1e-6)
     force = chosen.contact_stiffness() * overlaps**1.5
@@ -220,7 +221,8 @@ def test_the_command_line_refuses_what_does_not_fit(capsys: pytest.CaptureFixtur
 
 def test_the_command_line_says_what_failed_where_and_what_it_had_cost(capsys: pytest.CaptureFixture[str],
                                                                       monkeypatch: pytest.MonkeyPatch) -> None:
-    """One object with the outcome, and no other, where the numbers fail: an infinite contact times no overlap, at once.
+    """If numbers fail, here immediately by an infinite stiffness times zero overlap, there is one object with the
+    outcome.
     """
     begin = Engine.start
 

@@ -1,4 +1,4 @@
-"""The small pictures: every case has one, ours and a naive solver's over one x, and nobody can overlook the difference.
+"""The small pictures: every case has one with granchain's result and that of a naive solver, and they differ visibly.
 """
 
 from __future__ import annotations
@@ -19,20 +19,21 @@ from granchain_core.hard_cases.oracle import PlainChain
 from granchain_core.hard_cases.regimes import drifting_picture
 from granchain_core.scene import scene
 
-#: What is seen from the back row: a part of the picture's height, powers of ten, a part of its width without a line.
+#: Differences visible from the back row: a fraction of the picture's height, powers of ten, a fraction of its width
+#: that only one line covers.
 HEIGHT, POWERS, WIDTH = 0.05, 1.0, 0.1
 
 
 @functools.cache
 def computed(picture: Callable[[], Picture]) -> Picture:
-    """A picture, computed once for all tests."""
+    """Return a picture, computed once for all tests."""
     return picture()
 
 
 def ours_and_others(shown: Picture) -> list[tuple[Trace, Trace]]:
-    """Our line beside each that is not ours: the one of the same bead where several are shown.
+    """Return pairs of granchain's line and each other line, for the same bead if several are shown.
 
-    Where nobody is named the first line and the others.
+    If granchain is not named, the first line is paired with the others.
     """
     ours = [trace for trace in shown.traces if trace.label.startswith("granchain")] or [shown.traces[0]]
     others = [trace for trace in shown.traces if trace not in ours and trace.label != "true"]
@@ -41,7 +42,7 @@ def ours_and_others(shown: Picture) -> list[tuple[Trace, Trace]]:
 
 
 def seen(shown: Picture, one: np.ndarray, other: np.ndarray) -> bool:
-    """Whether two lines of a picture are apart from each other, or one goes on where the other has ended."""
+    """Return whether two lines in a picture are visibly apart, or one continues after the other has ended."""
     alone = np.isfinite(one) != np.isfinite(other)
     if alone.mean() >= WIDTH:
         return True
@@ -70,7 +71,7 @@ def test_what_is_hardly_apart_is_not_seen() -> None:
     assert not seen(powers, *(trace.values for trace in powers.traces))
 
 
-# --- what single pictures say -----------------------------------------------------------------------------
+# --- single pictures --------------------------------------------------------------------------------------
 
 
 def test_symmetry_holds_the_middle_bead_and_the_loop_does_not() -> None:
@@ -92,7 +93,9 @@ def test_least_squares_leaves_contacts_open_and_calls_it_success() -> None:
 
 
 def test_scipys_defaults_round_a_pulse_and_slow_it() -> None:
-    """The table's line, in metres: a bead thrown at section 2's driver speed, 1 mm/s, and the 51st bead of 60."""
+    """This repeats the line in the table in metres: bead 1 of 60 is thrown at 1 mm/s, section 2's driver speed, and the
+    51st bead is examined.
+    """
     chosen, beads, speed, place = scene("sec2"), 60, 1e-3, 50
     length = (chosen.bead(1).mass * speed**2 / chosen.K) ** 0.4
     times = length / speed * np.linspace(0.0, 70.0, 281)
@@ -105,7 +108,7 @@ def test_scipys_defaults_round_a_pulse_and_slow_it() -> None:
     naive, true = (solve_ivp(slope, (0.0, times[-1]), start, t_eval=times, **asked).y[beads + place] / speed
                    for asked in ({}, {"method": "DOP853", "rtol": 1e-10, "atol": 1e-18}))
     assert naive.max() < 0.9 * true.max()
-    assert np.argmax(naive) >= np.argmax(true) + 4  # a quarter of the scaled unit of time each
+    assert np.argmax(naive) >= np.argmax(true) + 4  # samples are a quarter of the scaled time unit apart
 
 
 def test_one_step_for_all_throws_the_light_bead_out() -> None:
@@ -119,7 +122,7 @@ def test_the_free_observer_grows_by_its_multiplier_in_every_solver() -> None:
     rate = np.log10(float(free.label.rpartition(" ")[2]))
     assert np.allclose(np.diff(free.values)[1:], rate, atol=0.01)  # the label has three digits
     assert founded.values.max() < -5.5
-    for trace in naive:  # as long as they are small, and to the bend that their own errors make
+    for trace in naive:  # as long as they are small, until their own errors bend the line
         small = trace.values[np.isfinite(trace.values)]
         small = small[: int(np.argmax(small > -0.5))]
         assert abs(np.diff(small)[-1] - rate) < 0.25
@@ -127,7 +130,7 @@ def test_the_free_observer_grows_by_its_multiplier_in_every_solver() -> None:
 
 
 def test_a_jump_is_the_limit_of_a_fast_push() -> None:
-    """Ours at the jump and behind it, against SciPy's implicit method with a driver that takes 1e-4 to get there."""
+    """At and after the jump, the result agrees with SciPy's implicit method and a driver that jumps within 1e-4."""
     chosen, width = scene("sec2").evolve(N=4), 1e-4
     chain = PlainChain.of(chosen)
     start = 0.25 * chain.period
@@ -147,5 +150,5 @@ def test_a_jump_is_the_limit_of_a_fast_push() -> None:
     before = solve_ivp(slope, (start - width, start), np.zeros(8), "Radau", rtol=1e-9, atol=1e-12).y[:, -1]
     found = solve_ivp(slope, (start, times[-1]), before, "Radau", t_eval=times, rtol=1e-9, atol=1e-12).y[4:].sum(axis=0)
     true = found / found.max()
-    assert np.abs(ours - true).max() < 1e-3  # of the push's length, 1e-4, and what it presses elastically meanwhile
+    assert np.abs(ours - true).max() < 1e-3  # from the duration of the push, 1e-4, and the elastic compression during it
     assert naive[0] == 0.0 and true[0] > 0.2

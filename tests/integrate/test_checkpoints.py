@@ -1,4 +1,4 @@
-"""An engine that goes on from a checkpoint does what it would have done, bit by bit."""
+"""An engine that continues from a checkpoint gives the same motion, bit by bit, as without one."""
 
 from __future__ import annotations
 

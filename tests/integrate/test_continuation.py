@@ -1,4 +1,4 @@
-"""Time goes on without a seam: across a stop, a restart, a shift by a period, and very many periods."""
+"""Motions continue seamlessly across a stop, a restart, a shift by a period, and very many periods."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ TOLERATED = [("rk4", 2e-6), ("rk4-split", 2e-6), ("dop853", 1e-9)]
 
 
 def engine(method: str, samples: int = 8, **knobs) -> Engine:
-    """sec2 at a fine setting of the method."""
+    """Return an engine of sec2 with a fine setting of the method."""
     return Engine(scene("sec2").evolve(**knobs), MethodSetting(method, refine=4, tolerance=1e-11), samples)
 
 
 @pytest.mark.parametrize(("method", "_"), TOLERATED)
 def test_two_halves_are_the_whole_bit_by_bit(method, _):
-    """An engine that records twice does what one that records once does, and nothing else."""
+    """An engine that records twice gives the same as one that records once."""
     whole, halves = engine(method), engine(method)
     together = whole.record(32)
     first, second = halves.record(16), halves.record(16)
     if method == "dop853":
-        # dop853 ends a step at the record's end, so its steps differ; a hundred tolerances of 1e-11 between them
+        # dop853 ends a step at the end of a record, so its steps differ; tolerance: a hundred times 1e-11
         near = {"rtol": 0.0, "atol": 1e-9}
         np.testing.assert_allclose(np.vstack([first.displacement, second.displacement[1:]]), together.displacement, **near)
     else:
@@ -45,7 +45,7 @@ def test_two_halves_are_the_whole_bit_by_bit(method, _):
 @pytest.mark.parametrize(("method", "error"), TOLERATED)
 @pytest.mark.parametrize("rows", [16, 13])
 def test_a_new_engine_started_from_a_state_goes_on_the_same_way(method, error, rows):
-    """State out, state in, at phase 0 and in the middle of a period: the same motion, to the method's own error."""
+    """From a state at phase 0 or in the middle of a period, the motion is the same, up to the method's error."""
     whole, before, after = engine(method), engine(method), engine(method)
     together = whole.record(rows + 16)
     before.record(rows)
@@ -72,7 +72,7 @@ def test_run_from_a_state_at_phase_zero_is_the_later_part_of_one_run():
 
 @pytest.mark.parametrize("periods", [0, 1])
 def test_run_from_a_state_in_the_middle_of_a_period_keeps_the_drive_in_step(periods):
-    """A start at phase 1/4 is the later part of a run from rest, drive and time included; or it is refused."""
+    """A run that starts at phase 1/4 is the later part of a run from rest, including drive and time."""
     chain = scene("sec2").evolve(accuracy=1e-9)
     long = run(chain, periods=0, record=5, samples=8)
     state = State(long.displacement[10], long.velocity[10], phase=0.25)
@@ -84,8 +84,7 @@ def test_run_from_a_state_in_the_middle_of_a_period_keeps_the_drive_in_step(peri
 
 @pytest.mark.parametrize("method", ["rk4", "rk4-split", "dop853", "dop853-root"])
 def test_drive_phase_is_exact_after_many_periods(method):
-    """Ten thousand periods later the driver is where sin(2π·whole + …) has it, to the last bit: no phase is summed up.
-    """
+    """After ten thousand periods, the driver is at sin(2π·whole + …) to the last bit, since no phase is accumulated."""
     chain = scene("sec2").evolve(N=1, f=3000.0, D=300.0)
     runner = Engine(chain, MethodSetting(method, tolerance=1e-4), 4)
     runner.periods(10_000, watch=False)
@@ -93,13 +92,13 @@ def test_drive_phase_is_exact_after_many_periods(method):
     assert runner.grid_index == 0
     runner.evaluate()
     assert runner.y[0] == 0.0
-    # the settled motion has the drive's period exactly, so both recorded periods are one to the settling's rounding
+    # the settled motion has exactly the drive period, so both recorded periods agree to the rounding of the settling
     same = 1e-3 if method.startswith("dop853") else 1e-9
     np.testing.assert_allclose(kept.displacement[4:], kept.displacement[:5], atol=same)
 
 
 def test_drive_phase_of_a_batch_is_exact_after_many_periods():
-    """A batch rotates sine and cosine of its phase; they are set to 0 and 1 at the end of each of 10,000 periods."""
+    """A batch rotates sine and cosine of its phase, and resets them to 0 and 1 at the end of each of 10,000 periods."""
     chain = scene("sec2").evolve(N=1, f=3000.0, D=300.0)
     batch, scaled = Batch(chain, Stop()), scale_chain(chain)
     batch.put(0, scaled, scaled.from_si(rest(chain)), 1, return_at=10_000, earliest=NEVER)
@@ -110,7 +109,7 @@ def test_drive_phase_of_a_batch_is_exact_after_many_periods():
 
 
 def test_drive_displacement_column_is_exact_at_any_time():
-    """A late record's driver is sampled at whole sample numbers, not at t·f."""
+    """In a late record, the driver is sampled at whole sample numbers, not at t·f."""
     result = run(scene("sec2").evolve(f=1234.5678, accuracy=1e-3, N=1, D=300.0), periods=5000, record=1, samples=8)
     expected = result.scene.A0 * np.sin(2 * np.pi * np.arange(9) / 8)
     expected[-1] = 0.0
@@ -119,7 +118,7 @@ def test_drive_displacement_column_is_exact_at_any_time():
 
 
 def steps_after_the_flag(slow: Engine, stop: Stop, computation: Callable[[], object]) -> int:
-    """Steps that a computation takes after its flag is raised from another thread, once the kernel counts steps."""
+    """Return the steps that a computation takes after another thread raises its flag, once the kernel counts steps."""
     steps: list[int] = []
 
     def raise_flag() -> None:
@@ -137,29 +136,30 @@ def steps_after_the_flag(slow: Engine, stop: Stop, computation: Callable[[], obj
 @pytest.mark.parametrize("method", ["rk4", "rk4-split", "dop853"])
 @pytest.mark.parametrize("recording", [False, True])
 def test_stop_flag_ends_a_long_run_soon(method, recording):
-    """A stop flag set by another thread ends a long period in its middle: the kernel reads the flag every
-    STEPS_BETWEEN_STOP_CHECKS steps at most, so up to two such blocks of steps may follow."""
+    """A stop flag set by another thread ends a long period in its middle: the kernel reads the flag at least every
+    STEPS_BETWEEN_STOP_CHECKS steps, so up to two such blocks of steps may follow.
+    """
     stop = Stop()
     quick = Engine(scene("sec2").evolve(f=1e5, N=300), MethodSetting(method, tolerance=1e-3), 1)
-    quick.record(1) if recording else quick.periods(1)  # compiling asks no flag
+    quick.record(1) if recording else quick.periods(1)  # compiling does not read the flag
     slow = Engine(scene("sec2").evolve(f=0.5, N=300), MethodSetting(method, refine=16, tolerance=1e-11), 1, stop=stop)
     after = steps_after_the_flag(slow, stop, lambda: slow.record(20) if recording else slow.periods(20))
     assert after <= 2 * STEPS_BETWEEN_STOP_CHECKS
 
 
 def test_stop_flag_ends_a_lyapunov_exponent_soon():
-    """Two chains side by side for a period of a hundred thousand steps: the flag is read after each
+    """Two chains run side by side for a period of a hundred thousand steps, and the flag is read after every
     STEPS_BETWEEN_STOP_CHECKS steps of both.
     """
     stop = Stop()
-    growth_along(Engine(scene("sec2").evolve(f=1e5, N=300), fixed_step_setting(), 1), 2)  # compiling asks no flag
+    growth_along(Engine(scene("sec2").evolve(f=1e5, N=300), fixed_step_setting(), 1), 2)  # compiling does not read the flag
     slow = Engine(scene("sec2").evolve(f=0.5, N=300), fixed_step_setting(16), 1, stop=stop)
     assert steps_after_the_flag(slow, stop, lambda: growth_along(slow, 2)) <= 2 * 2 * STEPS_BETWEEN_STOP_CHECKS
 
 
 @pytest.mark.parametrize("beads", [11, 300])
 def test_a_stopped_period_counts_the_steps_that_were_taken(beads):
-    """A flag that is up from the start is seen at the first check, in a period of more than three."""
+    """A flag that is raised from the start is noticed at the first check, in a period with more than three checks."""
     stop = Stop()
     stop.set()
     engine = Engine(scene("sec2").evolve(f=1.0, N=beads), fixed_step_setting(), 1, stop=stop)
@@ -170,7 +170,7 @@ def test_a_stopped_period_counts_the_steps_that_were_taken(beads):
 
 
 def test_run_passes_its_stop_flag_on():
-    """A flag that is up from the start ends `run` with Cancelled, not with a result."""
+    """A flag that is raised from the start ends `run` with Cancelled, not with a result."""
     stop = Stop()
     stop.set()
     with pytest.raises(Cancelled):
@@ -178,7 +178,7 @@ def test_run_passes_its_stop_flag_on():
 
 
 def test_progress_grows_to_one():
-    """Fractions of the present computation, each ending at 1."""
+    """Progress is reported as fractions of the current computation, which end at 1."""
     told: list[float] = []
     run(scene("sec2").evolve(accuracy=1e-4), periods=20, record=2, progress=told.append)
     assert told[-1] == 1.0

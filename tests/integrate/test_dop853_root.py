@@ -1,4 +1,4 @@
-"""dop853-root: the motion, forces and jumps of dop853 from steps that go past contact events; what it refuses."""
+"""dop853-root gives the motion, forces and jumps of dop853 with steps past contact events, and refuses some scenes."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ from granchain_core import BadInput, State, run, scene
 from granchain_core.integrate import Engine, MethodSetting
 from granchain_core.integrate.scaling import scale_chain
 
-#: Linear law from rest, every contact opens and closes; Tsuji's law, whose q is a fourth root; never an event; a
-#: foundation; unequal beads before a soft wall.
+#: The linear law from rest, with events in every contact; Tsuji's law, whose q is a fourth root; no events; a
+#: foundation; unequal beads at a soft wall.
 SCENES = {"events": {"f": 340.0}, "fourth root": {"f": 900.0, "dissipation": "tsuji"}, "closed": {"F0": 5.0},
           "foundation": {"f": 900.0, "kappa": 0.05}, "unequal": {"f": 900.0, "dimer": 0.4, "taper": 0.7, "wall": 0.1}}
 
 
 def recorded(name: str, tolerance: float, **knobs):
-    """An engine of `sec2` after three periods, and its samples; dop853 with the energy account, as in other tests."""
+    """Return an engine of `sec2` after three periods, and its samples, with the energy account as in other tests."""
     engine = Engine(scene("sec2").evolve(**knobs), MethodSetting(name, tolerance=tolerance), 16, account=True)
     return engine, engine.record(48)
 
 
 @pytest.mark.parametrize("knobs", SCENES.values(), ids=SCENES)
 def test_motion_and_forces_are_those_of_dop853(knobs):
-    """Within a thousand tolerances, as dop853 itself (tests/numerics/test_orders.py)."""
+    """They agree within a thousand tolerances, like dop853 itself (tests/numerics/test_orders.py)."""
     reference, true = recorded("dop853", 1e-13, **knobs)
     engine, found = recorded("dop853-root", 1e-10, **knobs)
     size = np.abs(true.displacement).max()
@@ -34,13 +34,13 @@ def test_motion_and_forces_are_those_of_dop853(knobs):
     assert np.abs(found.force - true.force).max() < 1e-7 * np.abs(true.force).max()
     assert np.allclose(engine.maxima, reference.maxima, rtol=1e-7)
     assert np.allclose(engine.jumps, reference.jumps, rtol=1e-7)
-    # without the jumps ahead of the first wave: rounding decides when they come
+    # without the jumps ahead of the first wave, whose times depend on rounding
     ours, theirs = (e.closings[e.closings[:, 3] > 1e-4] for e in (engine, reference))
     assert np.allclose(ours[:, 1:], theirs[:, 1:], rtol=1e-6)
 
 
 def test_it_takes_less_than_half_of_dop853s_evaluations():
-    """Fewer evaluations are the method's purpose; measured at 1e-8: a third, once the first wave has passed."""
+    """The purpose of the method is to need fewer evaluations. Measured at 1e-8: a third, after the first wave."""
     ours, theirs = (recorded(name, 1e-8, f=340.0)[0] for name in ("dop853-root", "dop853"))
     before = ours.counts.rhs, theirs.counts.rhs
     ours.record(96)
@@ -49,7 +49,7 @@ def test_it_takes_less_than_half_of_dop853s_evaluations():
 
 
 def test_a_run_in_two_parts_goes_on():
-    """A call ends at its last sample inside a step; the next begins there."""
+    """A call ends at its last sample within a step, and the next call begins there."""
     whole = recorded("dop853-root", 1e-11, f=340.0)[1].displacement
     engine = Engine(scene("sec2").evolve(f=340.0), MethodSetting("dop853-root", tolerance=1e-11), 16)
     parts = np.vstack([engine.record(21).displacement, engine.record(27).displacement[1:]])
@@ -58,9 +58,9 @@ def test_a_run_in_two_parts_goes_on():
 
 @pytest.mark.parametrize("depth", [1e-5, 1e-3])
 def test_a_brief_touch_inside_a_step_throws_the_bead(depth):
-    """The driver's top is `depth` beyond a bead at rest for less than a step: two events, and a push.
+    """The driver reaches `depth` beyond a bead at rest for less than a step: two events, and an impulse.
 
-    The other beads are out of reach, and the wall pushes with no force.
+    The other beads are out of reach, and the wall exerts no force.
     """
     chain = scene("sec2").evolve(f=500.0)
     engine = Engine(chain, MethodSetting("dop853-root", tolerance=1e-8), 1)
@@ -84,7 +84,7 @@ def test_what_vectors_do_not_know_is_refused(knobs):
 
 
 def test_a_run_has_no_energy_account():
-    """The method has none; that of another method would describe another motion."""
+    """The method has no account, and that of another method would describe a different motion."""
     assert run(scene("sec2"), periods=1, record=1, method="dop853-root").energy_residual is None
 
 
@@ -92,16 +92,18 @@ def test_a_run_has_no_energy_account():
     ("rig", {"f": 60.0}), ("rig", {"f": 140.0}), ("sec2", {"f": 200.0}), ("rig", {"f": 140.0, "D": 5.0}),
     ("rig", {"f": 200.0, "D": 5.0}), ("rig", {"f": 340.0, "D": 5.0})], ids=str)
 def test_a_contact_that_opens_slowly_and_closes_again_in_one_step_does_not_chatter(name, knobs):
-    """Of 2268 motions of twenty periods 24 were refused for chatter: the overlap just after an opening is rounding."""
+    """Of 2268 motions of twenty periods, 24 used to be refused for chatter: just after an opening, the overlap is only
+    rounding.
+    """
     for tolerance in 10.0 ** np.linspace(-5.0, -9.0, 25):
         Engine(scene(name).evolve(**knobs), MethodSetting("dop853-root", tolerance=tolerance), 16).record(20 * 16)
 
 
 @pytest.mark.parametrize("method", ["dop853", "dop853-root"])
 def test_an_opening_is_followed_by_its_closing(method):
-    """A pressed bead moves away slowly from a contact that has just opened, by rounding, and comes back in one step.
+    """A precompressed bead slowly leaves a contact that has just opened by rounding, and returns within one step.
 
-    Without damping it then returns again and again: nine events in a period of 2 kHz at tolerances from 1e-8 on.
+    Without damping, it returns again and again: nine events in a period of 2 kHz at tolerances of 1e-8 and below.
     """
     chain = scene("sec2").evolve(N=1, F0=10.0, drive="rest", f=2000.0, D=0.0)
     scaled = scale_chain(chain)

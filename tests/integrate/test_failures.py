@@ -1,4 +1,4 @@
-"""Numbers that fail are caught and said, never hidden."""
+"""Numbers that fail are detected and reported, never hidden."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ LOCATED = ["rk4", "rk4-split", "dop853", "dop853-root"]
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
 @pytest.mark.parametrize("bead", [1, 6, 11])
 def test_no_call_begins_from_a_number_that_is_not_finite(method, row, value, bead):
-    """Whatever bead and variable it is put into, the next call names the bead before a kernel runs."""
+    """Whichever bead and variable has it, the next call names the bead before a kernel runs."""
     engine = Engine(scene("sec2"), MethodSetting(method, tolerance=1e-6), 8)
     engine.record(12)
     engine.y[bead + (13 if row == "w" else 0)] = value
@@ -35,7 +35,7 @@ def test_no_call_begins_from_a_number_that_is_not_finite(method, row, value, bea
 
 
 def break_contact(engine: Engine, contact: int) -> None:
-    """A contact whose stiffness is no number: what fails then, fails in the kernel."""
+    """Make a contact's stiffness a NaN, so that the failure occurs in the kernel."""
     stepper = engine.stepper
     stepper.scaled.slots.chain.stiffness[contact] = np.nan
     if METHODS[engine.setting.method].error_control:
@@ -71,7 +71,7 @@ def test_the_kernel_of_whole_periods_looks_as_well(method):
 @pytest.mark.parametrize("method", [name for name in LOCATED if name != "dop853"])
 @pytest.mark.parametrize("periods", [False, True])
 def test_the_repeated_call_that_finds_the_bead_is_cancelled_as_any_other(method, periods, monkeypatch):
-    """It may take as long as the call that failed; dop853 repeats none."""
+    """It may take as long as the call that failed; dop853 repeats no call."""
     stop = Stop()
     engine = Engine(scene("sec2"), MethodSetting(method, tolerance=1e-6), 8, stop=stop)
     engine.periods(2)
@@ -99,7 +99,7 @@ def test_the_repeated_call_that_finds_the_bead_is_cancelled_as_any_other(method,
 
 @pytest.mark.parametrize("method", LOCATED)
 def test_a_bead_that_is_not_found_is_not_named(method):
-    """Where every number is finite, none is called the first that failed."""
+    """If every number is finite, no bead is named as the first that failed."""
     engine = Engine(scene("sec2"), MethodSetting(method, tolerance=1e-6), 8)
     engine.record(8)
     assert engine.stepper.locate_failure(engine.y, None, 0.0, Stop())[0] == 0
@@ -109,7 +109,8 @@ def test_a_bead_that_is_not_found_is_not_named(method):
 
 
 def test_the_sentence_names_the_time_since_the_start():
-    """After twenty periods the failure is at about twenty periods, not at the beginning of the present chunk."""
+    """After twenty periods, the failure is reported at about twenty periods, not at the beginning of the current call.
+    """
     engine = Engine(scene("sec2"), MethodSetting("rk4", tolerance=1e-6), 8)
     engine.periods(20)
     engine.y[1:12] = np.nan
@@ -120,7 +121,7 @@ def test_the_sentence_names_the_time_since_the_start():
 @pytest.mark.parametrize("accuracy", [1e-3, 1e-5, 1e-8])
 @pytest.mark.parametrize("k", [1e8, 1e10])
 def test_the_stiffest_foundation_that_is_accepted_is_integrated(k, accuracy):
-    """k is valid up to 1e10 N/m; its bead frequency has to enter the choice of the step."""
+    """k is valid up to 1e10 N/m, so its bead frequency must enter the choice of the step."""
     result = run(scene("sec2").evolve(k=k, accuracy=accuracy, f=3000.0), periods=0, record=1, samples=8)
     assert result.status == "done"
     assert np.abs(result.displacement).max() < result.scene.A0
@@ -130,7 +131,7 @@ def test_the_stiffest_foundation_that_is_accepted_is_integrated(k, accuracy):
                                    {"f": 1e6}, {"N": 1}, {"N": 300}])
 @pytest.mark.parametrize("accuracy", [1e-4, 1e-8])
 def test_extreme_but_valid_knobs_give_a_finite_motion(knobs, accuracy):
-    """Every corner of the ranges that one can wait for is computed to the accuracy asked for."""
+    """Every corner of the ranges that does not take too long is computed to the requested accuracy."""
     result = run(scene("sec2").evolve(f=3000.0, accuracy=accuracy).evolve(**knobs), periods=0, record=1, samples=8)
     assert result.status == "done"
     assert np.isfinite(result.force).all()
@@ -138,7 +139,7 @@ def test_extreme_but_valid_knobs_give_a_finite_motion(knobs, accuracy):
 
 
 def failure(status: int) -> Failure:
-    """A computation that ended with this status."""
+    """Return the failure of a computation that ended with this status."""
     return Failure(status, 1.0, 0, None, {}, scene("sec2"), "dop853")
 
 
@@ -149,7 +150,7 @@ def test_an_unknown_status_raises_value_error() -> None:
 
 
 def test_too_many_steps_in_a_period_have_a_status_of_their_own(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The flow's own loop, with steps that lead nowhere and patience for three of them."""
+    """The flow's own loop is given steps that do not advance, and a limit of three steps."""
     def step(*words: object) -> tuple[int, None, float, int]:
         return DONE, None, 0.0, -1
 
@@ -166,7 +167,9 @@ def test_too_many_steps_in_a_period_have_a_status_of_their_own(monkeypatch: pyte
 
 
 def test_an_orbit_with_more_events_than_its_log_holds_has_a_status_of_its_own() -> None:
-    """One bead between a slow driver and the wall, undamped: 4600 contact events in one drive period, 4000 places."""
+    """An undamped bead between a slow driver and the wall has 4600 contact events in one drive period; the log has 4000
+    places.
+    """
     stroboscopic_map = StroboscopicMap(scene("sec2").evolve(N=1, dissipation="none", f=5.0), 1)
     velocity = 0.5 / stroboscopic_map.engine.scaled.scales.velocity
     with pytest.raises(ComputationError, match="more than 2000 contact events") as caught:

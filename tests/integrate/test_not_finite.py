@@ -1,4 +1,4 @@
-"""Whether a number is finite is asked by compiled code that must not be told that all of them are."""
+"""Compiled code that tests for finite numbers must not be compiled under the assumption that all are finite."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from granchain_core.kernels.samples import first_not_finite
 @pytest.mark.parametrize("bead", [1, 3, 5])
 @pytest.mark.parametrize("row", [0, 7])
 def test_the_first_bead_that_is_not_finite(value: float, bead: int, row: int) -> None:
-    """In displacements and in w."""
+    """It is found in displacements and in w."""
     y = np.ones(14)
     assert first_not_finite(y, 7) == 0
     y[bead + row] = value
@@ -26,7 +26,7 @@ def test_the_first_bead_that_is_not_finite(value: float, bead: int, row: int) ->
 
 @pytest.mark.parametrize("method", ["rk4", "dop853"])
 def test_a_contact_that_is_not_a_number_is_said_by_the_kernel(method: str) -> None:
-    """The state is finite when the call begins; what begins in a step ends the run with its sentence."""
+    """The state is finite when the call begins; a failure within a step ends the run with a sentence."""
     engine = Engine(scene("sec2").evolve(N=3), MethodSetting(method, tolerance=1e-6), 4)
     engine.record(8)
     engine.scaled.slots.chain.stiffness[1] = np.nan
@@ -36,7 +36,7 @@ def test_a_contact_that_is_not_a_number_is_said_by_the_kernel(method: str) -> No
 
 
 def test_the_time_of_a_failure_inside_a_call_counts_from_the_start() -> None:
-    """A drive that fails in the twenty-first period, the first one of the present call."""
+    """The drive fails in the twenty-first period, the first one of the current call."""
     engine = Engine(scene("sec2").evolve(N=3), MethodSetting("rk4"), 1)
     engine.periods(20)
     engine.stepper.drive[40] = np.nan
@@ -46,7 +46,8 @@ def test_the_time_of_a_failure_inside_a_call_counts_from_the_start() -> None:
 
 
 def test_an_overflow_in_velocities_is_found_by_the_equations_in_velocities() -> None:
-    """The bead in which a stage of the method itself overflows first; each call makes one step, so its stages are kept.
+    """The bead reported is the one in which a stage of the method overflows first; each call makes one step, so that
+    its stages remain available.
 
     The equations in (u, w) overflow at another bead of this state.
     """

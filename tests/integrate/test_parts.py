@@ -1,4 +1,4 @@
-"""A period that takes long is computed in parts, with the same result, and ends soon after the stop flag is set."""
+"""A long period is computed in parts, with the same result, and ends soon after the stop flag is set."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ LONG = scene("sec2").evolve(N=200)
 
 
 def motion(chain: Scene, samples: int) -> dict[str, np.ndarray]:
-    """Three periods and four samples of one chain."""
+    """Run a chain for three periods, and record 2 · `samples` + 1 further samples."""
     engine = Engine(chain, fixed_step_setting(), samples, account=True)
     strobes, maxima = engine.periods(3)
     recorded = engine.record(2 * samples + 1)
@@ -24,7 +24,8 @@ def motion(chain: Scene, samples: int) -> dict[str, np.ndarray]:
 @pytest.mark.parametrize("chain", [SHORT, LONG], ids=["11 beads", "200 beads"])
 @pytest.mark.parametrize("steps", [7, 40, 500])
 def test_periods_in_parts_equal_whole_periods(chain: Scene, steps: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Vectors restart where a part begins: equal to rounding; the largest forces between steps to their interpolation.
+    """Vectors restart where a part begins, so results agree up to rounding, and largest forces up to their
+    interpolation.
     """
     whole = motion(chain, 4)
     monkeypatch.setattr(fixed, "steps_in_part", lambda _: steps)
@@ -35,7 +36,7 @@ def test_periods_in_parts_equal_whole_periods(chain: Scene, steps: int, monkeypa
 
 
 class Counting(Stop):
-    """Counts the pauses."""
+    """A stop that counts the pauses."""
 
     __slots__ = ("pauses",)
 
@@ -44,7 +45,7 @@ class Counting(Stop):
         self.pauses = 0
 
     def pause(self) -> None:
-        """One more."""
+        """Count a pause."""
         self.pauses += 1
 
 
@@ -60,7 +61,7 @@ def test_there_is_a_pause_within_a_period(chain: Scene) -> None:
 
 
 def test_a_long_chain_ends_a_part_after_the_flag_is_set() -> None:
-    """4096 steps of 10,000 beads take seconds: the flag, set in the fourth pause, ends the part that follows."""
+    """4096 steps of 10,000 beads would take seconds; the flag, set in the fourth pause, ends the part that follows."""
     class Fourth(Counting):
         __slots__ = ()
 
@@ -80,7 +81,7 @@ def test_a_long_chain_ends_a_part_after_the_flag_is_set() -> None:
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("call", ["record", "periods"])
 def test_a_cancelled_call_leaves_the_chain_where_the_call_began(method: str, call: str) -> None:
-    """The flag is set during the call, some steps on; the engine then goes on as one that was not cancelled."""
+    """The flag is set after some steps of the call; the engine then continues like one that was not cancelled."""
     class Second(Counting):
         __slots__ = ()
 
@@ -94,7 +95,7 @@ def test_a_cancelled_call_leaves_the_chain_where_the_call_began(method: str, cal
     cancelled, other = (Engine(scene("sec2"), MethodSetting(method, tolerance=1e-8), 8, stop=one) for one in (stop, Stop()))
     for engine in (cancelled, other):
         engine.record(8 + first)
-    before, _ = cancelled.state, other.state  # to read it puts the driver in its place
+    before, _ = cancelled.state, other.state  # reading the state moves the driver to its place
     here = cancelled.y.copy()
     stop.pauses = 1
     with pytest.raises(Cancelled):

@@ -1,6 +1,6 @@
-"""Where a motion may begin: at any drive phase that a computation can carry on from, in a state of the same chain.
+"""Starts: a motion may begin at any drive phase from which the computation can continue, in a state of the same chain.
 
-The oracle is the motion itself: what passes through a state goes on from it.
+The oracle is the motion itself: a motion that passes through a state continues from it.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from granchain_core.integrate.start import at_phase_0
 from granchain_core.steady.poincare import iter_section
 
 CHAIN = scene("sec2").evolve(N=2, f=2000.0)
-#: The states of a motion from rest at the samples of its second period, 16 of them.
+#: A motion from rest, with 16 samples in its second period.
 MOTION = run(CHAIN, periods=1, record=1, samples=16)
 
 
 def state_at(sample: int) -> State:
-    """The motion's state there."""
+    """Return the motion's state at a sample."""
     return State(MOTION.displacement[sample], MOTION.velocity[sample], sample / 16)
 
 
@@ -33,14 +33,17 @@ def state_at(sample: int) -> State:
                          ids=["settle", "run"])
 def test_a_settled_motion_does_not_depend_on_the_phase_of_its_start(way: Callable[[State], float],
                                                                     phase: float) -> None:
-    """One attractor, so the force of a chain that starts at rest at phase 0 is that of one that starts at another."""
+    """There is one attractor, so the force is the same whether the chain starts at rest at phase 0 or at another phase.
+    """
     found = settle(CHAIN).run
     assert way(State(np.zeros(2), np.zeros(2), phase)) == pytest.approx(found.max_output_force, rel=1e-5)
 
 
 @pytest.mark.parametrize("sample", [1, 4, 11, 15])
 def test_a_state_is_carried_on_to_where_its_motion_is_at_phase_0(sample: int) -> None:
-    """To the accuracy of the fixed-step method: about 1e-5 of the displacements, ten times that of the velocities."""
+    """They agree to the accuracy of the fixed-step method: about 1e-5 of the displacements, ten times that of
+    velocities.
+    """
     there, size = at_phase_0(CHAIN, state_at(sample)), np.abs(MOTION.displacement).max()
     assert there.phase == 0.0
     assert there.displacement == pytest.approx(MOTION.displacement[-1], abs=1e-4 * size)
@@ -57,12 +60,14 @@ def test_a_state_at_phase_0_stays_what_it_is() -> None:
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("samples", [16, 48, 112])
 def test_a_run_goes_on_from_any_of_its_samples(method: str, samples: int) -> None:
-    """The second half of a period from a state in its middle, with every method and several numbers of samples: the
-    steps of a period are a multiple of these, and none reads the drive beyond its end. Both have stated errors."""
-    first = 5 if samples == 16 else 4  # 4/16 is a sample of all of them
+    """From a state within a period, the rest of the period is computed with every method and several numbers of
+    samples. The steps per period are a multiple of these, and none reads the drive beyond its end. Both runs have
+    stated errors.
+    """
+    first = 5 if samples == 16 else 4  # 4/16 of a period is a sample with both numbers
     found = run(CHAIN, periods=0, record=1, samples=samples, start=state_at(first), method=method)
     behind = found.displacement[(16 - first) * samples // 16]
-    error = 10.0 * (found.displacement_error + MOTION.displacement_error)  # the start's own error may have grown
+    error = 10.0 * (found.displacement_error + MOTION.displacement_error)  # the error of the start may have grown
     assert error < 1e-2
     assert behind == pytest.approx(MOTION.displacement[-1], abs=error * np.abs(MOTION.displacement).max())
     assert found.time[0] * CHAIN.f == pytest.approx(first / 16)
@@ -120,7 +125,7 @@ def test_lists_are_numbers_too() -> None:
 
 @pytest.mark.parametrize("method", [name for name, row in METHODS.items() if row.error_control])
 def test_a_second_start_begins_with_the_first_step(method: str) -> None:
-    """The same start gives the same bits: the step of the motion before is forgotten."""
+    """The same start gives the same bits: the step size of the previous motion is forgotten."""
     engine = Engine(CHAIN, MethodSetting(method, tolerance=1e-8), 8)
     start = engine.state
     first = engine.record(32).displacement

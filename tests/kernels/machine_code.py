@@ -1,15 +1,15 @@
-"""Program: what compiled kernels consist of, effect by effect, as JSON.
+"""A program that counts the instructions of compiled kernels, effect by effect, and prints the counts as JSON.
 
     NUMBA_CPU_NAME=… NUMBA_CPU_FEATURES=… GRANCHAIN_CACHE=<empty folder> python machine_code.py < types.pickle
 
-{kernel: {case: counts}}. Of `chain` (one chain in a register, its split step included) and `batch` (eight chains)
-vector instructions are counted in the machine code, with nothing but contacts and driver and with one effect more. Of
-`flow` (Dormand and Prince's method with tangents) multiplications are counted in LLVM's optimised code, with nothing
-and with all effects; `by_zero` are those by a constant 0. Only code that is fresh can be read: what comes from the
-cache has none.
+The output is {kernel: {case: counts}}. For `chain` (one chain in a register, including its split step) and `batch`
+(eight chains), it counts the vector instructions in the machine code, with only contacts and driver and with one more
+effect. For `flow` (Dormand and Prince's method with tangents), it counts the multiplications in LLVM's optimised code,
+with no effects and with all; `by_zero` counts those by a constant 0. Only freshly compiled code can be read, since
+kernels that are loaded from the cache contain no text.
 
-Whoever calls it pickles `types_by_case()`, for which engines are made; the program only compiles, for whatever
-processor it is told, and that need not be the one it runs on.
+The caller pickles `types_by_case()`, which needs engines. The program itself only compiles, for the processor that the
+environment names, which may differ from the one that it runs on.
 """
 
 from __future__ import annotations
@@ -39,21 +39,21 @@ from granchain_core.kernels.samples import KernelIO
 from granchain_core.orbits.stroboscopic_map import StroboscopicMap
 from granchain_core.scene.effects import EFFECTS
 
-#: The types of the arguments by case and kernel, and those of the flow by case.
+#: Argument types by case and kernel, and those of the flow by case.
 Types = tuple[dict[str, dict[str, tuple]], dict[str, tuple]]
 NOTHING = {knob: value for effect in EFFECTS for knob, value in effect.off.items()}
-#: Instructions by what they do; a multiplication and an addition in one count as both.
+#: Instructions by kind; a fused multiplication and addition counts as both.
 KINDS = {"mul": "multiply", "add": "add", "sub": "add", "fmadd": "both", "fmsub": "both", "fnmadd": "both",
          "fnmsub": "both", "sqrt": "root", "div": "divide", "rsqrt14": "root", "max": "choose", "min": "choose",
          "blendm": "choose", "and": "choose", "cmp": "compare", "permt2": "shuffle", "perm": "shuffle",
          "expand": "shuffle", "align": "shuffle", "shuf": "shuffle"}
-#: The number in a fused multiplication and addition says which register takes the result.
+#: The digits in the name of a fused instruction say which register receives the result.
 _FORM = re.compile(r"(?<=^v)(fn?m(?:add|sub))(?:132|213|231)")
 _PACKED = re.compile(r"^v([a-z]+?(?:14)?)(?:\d{3})?(?:eq|lt|le|gt|ge|neq|nlt|nle|ngt|nge|ord|unord)?pd$")
 
 
 def functions(text: str) -> dict[str, list[str]]:
-    """Instructions of every function of a module's assembly, the wrappers for Python left out."""
+    """Return the instructions of every function in a module's assembly, without the wrappers for Python."""
     found: dict[str, list[str]] = {}
     name = None
     for line in text.splitlines():
@@ -65,7 +65,7 @@ def functions(text: str) -> dict[str, list[str]]:
 
 
 def counts(kernel, arguments) -> dict:
-    """Packed arithmetic by kind, and all instructions and mnemonics of the kernel with what it calls."""
+    """Count packed arithmetic by kind, and all instructions and mnemonics, of the kernel and the functions it calls."""
     kernel.compile(arguments)
     text = kernel.inspect_asm(kernel.signatures[-1])
     found, mnemonics = Counter(), Counter()
@@ -73,7 +73,7 @@ def counts(kernel, arguments) -> dict:
         for line in lines:
             mnemonic, *operands = line.replace(",", " ").split()
             if mnemonic.startswith("vxorp") and operands[0] == operands[1]:
-                continue  # a zero, which is a matter of registers and no arithmetic
+                continue  # sets a register to zero: not arithmetic
             mnemonics[_FORM.sub(r"\1", mnemonic)] += 1
             packed = _PACKED.match(mnemonic)
             if packed and "xmm" not in line and packed.group(1) in KINDS:
@@ -88,7 +88,7 @@ _ZERO = ("0.000000e+00", "-0.000000e+00", "zeroinitializer")
 
 
 def products(kernel, arguments) -> dict:
-    """Multiplications in LLVM's optimised code of a kernel, and how many of them have a constant 0 as a factor."""
+    """Count the multiplications in LLVM's optimised code of a kernel, and those with a constant 0 as a factor."""
     kernel.compile(arguments)
     found = _PRODUCT.findall(kernel.inspect_llvm(kernel.signatures[-1]))
     by_zero = [pair for pair in found if any(one.strip() in _ZERO for one in pair.partition(", !")[0].split(","))]
@@ -96,7 +96,7 @@ def products(kernel, arguments) -> dict:
 
 
 def flow_types(knobs: dict) -> tuple:
-    """Types of the arguments of the flow with tangents for section 2's chain with these knobs."""
+    """Return the argument types of the flow with tangents, for section 2's chain with these knobs."""
     stroboscopic_map = StroboscopicMap(scene("sec2").evolve(N=3, **knobs), 1)
     e = stroboscopic_map.engine
     problem = FlowProblem(e.stepper.trajectory(e.y)._replace(workspace=stroboscopic_map._work), stroboscopic_map._contacts,
@@ -105,7 +105,7 @@ def flow_types(knobs: dict) -> tuple:
 
 
 def argument_types(knobs: dict) -> dict[str, tuple]:
-    """Types of the arguments of both kernels for section 2's chain with these knobs."""
+    """Return the argument types of both kernels, for section 2's chain with these knobs."""
     chain = scene("sec2").evolve(**knobs)
     e, block = Engine(chain, MethodSetting("rk4-split"), 1), Batch(chain, Stop())
     stepper = e.stepper
@@ -114,41 +114,41 @@ def argument_types(knobs: dict) -> dict[str, tuple]:
 
 
 def with_effect(knobs: dict) -> dict:
-    """Knobs of section 2's chain without any effect, and with these."""
+    """Return knobs that switch all effects of section 2's chain off, with these knobs set in addition."""
     return {**{knob: value for knob, value in NOTHING.items() if not (knob == "k" and "kappa" in knobs)}, **knobs}
 
 
 def vector_effects() -> dict[str, dict]:
-    """The usual knobs, by slot, of every effect in the table that vectors have code for: a new effect is among them."""
+    """Return, by slot, the usual knobs of all effects in the table for which vectors have code, including new ones."""
     slots = {effect.slot: scale_chain(scene("sec2").evolve(**with_effect(dict(effect.usual)))).slots for effect in EFFECTS}
     return {effect.slot: with_effect(dict(effect.usual)) for effect in EFFECTS
             if getattr(slots[effect.slot], effect.slot) is not None and not unknown_slots(slots[effect.slot], "rk4")}
 
 
 def cases() -> dict[str, dict]:
-    """Knobs by case: nothing, and one effect alone."""
+    """Return the knobs by case: no effect, and each effect alone."""
     return {"nothing": NOTHING, **vector_effects()}
 
 
 def everything() -> dict:
-    """Knobs of section 2's chain with all of these effects."""
+    """Return the knobs of section 2's chain with all of these effects."""
     return with_effect({knob: value for effect in EFFECTS if effect.slot in vector_effects() for knob, value in effect.usual.items()})
 
 
 def flows() -> dict[str, dict]:
-    """Knobs by case of the flow."""
+    """Return the flow's knobs by case."""
     return {"nothing": NOTHING, "everything": everything()}
 
 
 def types_by_case() -> Types:
-    """The types of all kernels' arguments."""
+    """Return the argument types of all kernels."""
     return ({case: argument_types(knobs) for case, knobs in cases().items()},
             {case: flow_types(knobs) for case, knobs in flows().items()})
 
 
 def main() -> None:
     """Read the types and print the counts."""
-    # A loop is read once: how many of its first rounds the compiler writes out is its own choice, case by case.
+    # Every loop is counted once: without this, the compiler would peel a different number of iterations in each case.
     llvmlite.binding.set_option("machine_code", "-unroll-allow-peeling=false")
     kernels = {"chain": run_short_chain, "batch": batch_steps}
     signatures, of_flow = pickle.loads(sys.stdin.buffer.read())

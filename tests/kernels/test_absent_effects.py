@@ -1,5 +1,4 @@
-"""An absent effect leaves nothing behind: no slot and no array. test_machine_code.py shows that no instruction is left.
-"""
+"""An absent effect has no slot and no array; test_machine_code.py shows that it leaves no instruction either."""
 
 from __future__ import annotations
 
@@ -23,7 +22,7 @@ def test_absent_effect_has_an_empty_slot(absent):
 
 @pytest.mark.parametrize("knobs", [{"D": 0.0}, {"dissipation": "none"}, {"D": 0.0, "tension": "cut"}])
 def test_no_damping_means_no_dissipation_slot_no_cut_and_no_array(knobs):
-    """D = 0 is as absent as the law `none`, and without damping there is nothing to cut."""
+    """D = 0 is equivalent to the law `none`, and without damping there is no tension to cut."""
     scaled = scale_chain(scene("sec2").evolve(**knobs))
     assert scaled.slots.dissipation is None
     assert scaled.slots.tension is None
@@ -31,7 +30,7 @@ def test_no_damping_means_no_dissipation_slot_no_cut_and_no_array(knobs):
 
 
 def test_an_effect_switched_on_has_its_slot_and_its_array():
-    """The opposite of the above, so that it is no accident."""
+    """This is the counterpart of the tests above, without which they could pass by accident."""
     full = scale_chain(scene("sec2").evolve(k=1e4, F0=1.0, tension="cut"), account=True)
     assert None not in full.slots
     assert full.forces().G is not None
@@ -39,7 +38,7 @@ def test_an_effect_switched_on_has_its_slot_and_its_array():
 
 @pytest.mark.parametrize("method", ["rk4", "rk4-split", "dop853"])
 def test_without_an_energy_account_there_is_no_array_for_it(method):
-    """The account's two integrals and three columns exist only where they were asked for."""
+    """The account's two integrals and three columns exist only if they were requested."""
     with_account, without = (Engine(scene("sec2"), MethodSetting(method, tolerance=1e-6), 4, account=b) for b in (True, False))
     assert len(with_account.y) == len(without.y) + 2
     assert without.empty_samples(3).energy is None

@@ -1,4 +1,4 @@
-"""Batches of all sizes say the same of every scene, on every machine."""
+"""Batches of all sizes give the same results for every scene, on every machine."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from granchain_core import BadInput, resonance_curve, scene
 from granchain_core.kernels import batch_size
 
 FREQUENCIES = [130.0, 255.0, 340.0, 470.0, 850.0, 1130.0, 1576.0, 2000.0, 2500.0]
-#: In a process of its own, because kernels are compiled for one number of members.
+#: Runs in a separate process, because kernels are compiled for one batch size.
 OTHER = """
 import json, sys
 from granchain_core import resonance_curve, scene
@@ -34,7 +34,7 @@ def test_every_size_of_a_batch_gives_the_same_curve(other: int) -> None:
     compared = 0
     for mine, (regime, period, force, error) in zip(here, json.loads(printed), strict=True):
         assert (mine.regime.name, mine.regime.period) == (regime, period)
-        if mine.force_errors.output is None or error is None:  # 130 Hz is quasi-periodic: a maximum of no period
+        if mine.force_errors.output is None or error is None:  # 130 Hz is quasi-periodic: no period to take a maximum over
             assert mine.force_errors.output is error
             continue
         assert mine.max_output_force == pytest.approx(force, rel=mine.force_errors.output + error)
@@ -44,13 +44,13 @@ def test_every_size_of_a_batch_gives_the_same_curve(other: int) -> None:
 
 @pytest.mark.quick
 @pytest.mark.parametrize(("features", "name", "host", "wide"), [
-    # Numba's settings name the features: neither the name nor this machine counts
+    # Numba's settings list the features: neither the processor name nor this machine counts
     ("+avx2,+avx512f,+fma", None, {}, True),
     ("+avx2,-avx512f", None, {"avx512f": True}, False),
     ("+avx512fp16", "icelake-server", {"avx512f": True}, False),
-    # they name a processor: Numba keeps this machine's features, and four scenes are right on every one
+    # they name only a processor: Numba keeps this machine's features, and four scenes work on every processor
     (None, "znver3", {"avx512f": True}, False),
-    # they name nothing: this machine
+    # they name neither: this machine counts
     (None, None, {"avx512f": True}, True),
     (None, None, {"avx512f": False}, False),
     (None, None, {}, False),
@@ -67,7 +67,7 @@ def test_avx512_is_that_of_the_machine_the_kernels_are_compiled_for(
 
 @pytest.mark.quick
 def test_without_avx_in_numbas_settings_there_is_no_avx512(monkeypatch: pytest.MonkeyPatch) -> None:
-    """NUMBA_ENABLE_AVX=0: Numba takes these instructions away, and LLVM ends the process if a kernel has one."""
+    """With NUMBA_ENABLE_AVX=0, Numba disables these instructions, and LLVM aborts the process if a kernel has one."""
     monkeypatch.setattr(numba.config, "CPU_FEATURES", None)
     monkeypatch.setattr(numba.config, "CPU_NAME", None)
     monkeypatch.setattr(numba.config, "ENABLE_AVX", 0)

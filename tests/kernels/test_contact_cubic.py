@@ -1,4 +1,4 @@
-"""An overlap within a step as a cubic: where it turns and where it is zero."""
+"""The cubic that approximates an overlap within a step: its turning point and its zeros."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from granchain_core.kernels import contact_cubic
 
 
 def ends_of(*roots: float, sign: float = 1.0) -> tuple[float, float, float, float]:
-    """Values and slopes at 0 and 1 of sign·Π(x − root), a polynomial of degree three at most."""
+    """Return values and slopes at 0 and 1 of sign·Π(x − root), a polynomial of degree three at most."""
     p = sign * np.poly1d(np.poly(roots))
     return p(0.0), p.deriv()(0.0), p(1.0), p.deriv()(1.0)
 
 
 @pytest.mark.parametrize(("roots", "sign", "first"), [
     ((0.3, -2.0, 4.0), 1.0, 0.3), ((0.3, -2.0, 4.0), -1.0, 0.3), ((0.9,), 1.0, 0.9),
-    ((0.2, 0.7), 1.0, 0.2), ((0.2, 0.7), -1.0, 0.2), ((0.5, 0.6, 3.0), -1.0, 0.5),  # there and back inside the step
+    ((0.2, 0.7), 1.0, 0.2), ((0.2, 0.7), -1.0, 0.2), ((0.5, 0.6, 3.0), -1.0, 0.5),  # two events within the step
     ((1.2, 1.7), 1.0, 2.0), ((-0.2, 1.5), -1.0, 2.0), ((0.5 + 0.2j, 0.5 - 0.2j), 1.0, 2.0), ((0.5 + 0.2j, 0.5 - 0.2j), -1.0, 2.0),
 ])
 def test_a_contact_changes_at_the_cubics_first_root(roots, sign, first) -> None:  # type: ignore[no-untyped-def]
-    """Contacts that open, close, do both, and neither; 2 means not in this step."""
+    """The contacts open, close, do both or do neither; 2 means that there is no event in this step."""
     found = contact_cubic.contact_root.py_func(*(float(np.real(x)) for x in ends_of(*roots, sign=sign)))
     assert found == pytest.approx(first, abs=1e-11)  # the iteration ends at 1e-12
 
@@ -40,7 +40,7 @@ def test_the_turn_is_where_the_slope_is_zero() -> None:
 
 
 def exact_turn(s0: float, a: float, b: float) -> float:
-    """Where s0 x + b x² + a x³ turns between 0 and 1, computed with 50 digits."""
+    """Return the turning point of s0 x + b x² + a x³ between 0 and 1, computed with 50 digits."""
     with localcontext() as context:
         context.prec = 50
         disc = (Decimal(b) ** 2 - 3 * Decimal(a) * Decimal(s0)).sqrt()
@@ -51,7 +51,7 @@ def exact_turn(s0: float, a: float, b: float) -> float:
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 @pytest.mark.parametrize("exponent", range(-18, 0))
 def test_the_turn_is_exact_however_slowly_an_overlap_moves_at_first(exponent: int, sign: float) -> None:
-    """The turn far from the start, where slope and curvature have the same sign there, and the turn near it."""
+    """The turn is far from the start if slope and curvature have the same sign there, and near it otherwise."""
     b = sign * 2.0**-10
     s0 = 10.0**exponent * b
     for slope, a in ((s0, -b), (-s0, 0.5 * b)):
@@ -61,7 +61,7 @@ def test_the_turn_is_exact_however_slowly_an_overlap_moves_at_first(exponent: in
 
 @pytest.mark.parametrize("exponent", range(-18, -3))
 def test_a_contact_that_comes_nearer_slowly_at_first_closes(exponent: int) -> None:
-    """δ = −1e-5 + s0 x + 1e-3 (x² − x³) closes near x = 0.1, and opens again before the end."""
+    """A contact with δ = −1e-5 + s0 x + 1e-3 (x² − x³) closes near x = 0.1, and opens again before the end."""
     d0, s0 = -1e-5, 1e-3 * 10.0**exponent
     first = min(root.real for root in np.roots([-1e-3, 1e-3, s0, d0]) if root.real > 0.0)
     for sign in (1.0, -1.0):

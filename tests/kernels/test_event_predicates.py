@@ -1,4 +1,4 @@
-"""The predicates for a contact event inside a step, in every form that a kernel needs, agree with the cubic."""
+"""The predicates for a contact event within a step, in every form that a kernel uses, agree with the cubic."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from granchain_core.kernels.error_control.bracket import may_turn
 from granchain_core.kernels.rk4.long_chain import comes_nearer
 from granchain_core.kernels.rk4.step import may_change
 
-#: Overlaps and rates of all sizes that a step may have.
+#: Magnitudes of the overlaps and rates that a step may have.
 _SIZE = st.floats(-15.0, 0.7).map(lambda exponent: 10.0**exponent)
-#: Rounding of a cubic's value, as a part of the largest of its ends and slopes.
+#: Rounding error of a cubic's value, relative to the largest of its end values and slopes.
 _ROUNDING = 1e-14
 _NUMBER = st.tuples(_SIZE, st.sampled_from([-1.0, 1.0])).map(lambda pair: pair[0] * pair[1])
 _STEP = st.tuples(_NUMBER, _NUMBER, _NUMBER, _NUMBER)
@@ -26,14 +26,14 @@ _ALL_SIGNS = [tuple(float(sign) for sign in signs) for signs in itertools.produc
 
 
 def may_change_of(d0: float, s0: float, d1: float, s1: float) -> bool:
-    """`may_change` for a single contact with these overlaps and rates at the ends of a step."""
+    """Call `may_change` for a single contact with these overlaps and rates at the ends of a step."""
     slots = SimpleNamespace(preload=None, chain=SimpleNamespace(stiffness=np.ones(1)))
     y, slope, end, end_slope = (np.array([value, 0.0]) for value in (d0, s0, d1, s1))
     return bool(may_change.py_func(slots, y, slope, end, end_slope))
 
 
 def nearer_in_long_chain(overlap: float, rate: float) -> bool:
-    """`comes_nearer` for a chain of one contact."""
+    """Call `comes_nearer` for a chain with one contact."""
     slots = SimpleNamespace(chain=SimpleNamespace(stiffness=np.ones(1)))
     simd = SimpleNamespace(overlap=np.full((1, 8), overlap), velocity=np.full((1, 8), -rate))
     first, _ = comes_nearer.py_func(simd, slots, 0.0)
@@ -41,14 +41,16 @@ def nearer_in_long_chain(overlap: float, rate: float) -> bool:
 
 
 def test_all_signs_at_the_ends_of_a_step() -> None:
-    """Towards zero first and away last is a possible event, as is another sign; nothing else is."""
+    """An event is possible if the sign changes, or if the overlap first approaches zero and finally leaves it;
+    otherwise it is not.
+    """
     seen = {signs for signs in _ALL_SIGNS if may_change_of(*signs)}
     other_sign = {signs for signs in _ALL_SIGNS if signs[0] != signs[2]}
     assert seen == other_sign | {(-1.0, 1.0, -1.0, -1.0), (1.0, -1.0, 1.0, 1.0)}
 
 
 def test_the_form_for_all_contacts_at_once_is_that_for_one() -> None:
-    """Contact c is bit c; contacts beyond the chain's last are masked by the callers."""
+    """Contact c is bit c; bits beyond the last contact are masked by the callers."""
     closed, rising, rising_after = (
         sum(int(signs[place] > 0.0) << c for c, signs in enumerate(_ALL_SIGNS)) for place in (0, 1, 3))
     together = turns(closed, rising, rising_after)
@@ -58,7 +60,7 @@ def test_the_form_for_all_contacts_at_once_is_that_for_one() -> None:
 
 
 def test_the_form_of_a_long_chain_looks_at_one_state_at_a_time() -> None:
-    """An overlap that came nearer at one step and goes away at the next has turned in between."""
+    """An overlap that approaches zero at one step and leaves it at the next has turned in between."""
     for d0, s0, d1, s1 in _ALL_SIGNS:
         if d0 == d1:
             turned = nearer_in_long_chain(d0, s0) and not nearer_in_long_chain(d1, s1)
@@ -67,9 +69,9 @@ def test_the_form_of_a_long_chain_looks_at_one_state_at_a_time() -> None:
 
 @given(_STEP)
 def test_whatever_crosses_zero_is_looked_into(step: tuple[float, float, float, float]) -> None:
-    """No form misses a cubic that crosses zero and turns at most once: its values at 400 places say whether it does.
+    """No form misses a cubic that crosses zero and turns at most once; its values at 401 points decide whether it does.
 
-    One that turns twice within a step would need a step half as long.
+    A cubic that turns twice within a step would need a step half as long.
     """
     d0, s0, d1, s1 = step
     values = hermite_value(d0, s0, d1, s1, np.linspace(0.0, 1.0, 401))
@@ -77,7 +79,7 @@ def test_whatever_crosses_zero_is_looked_into(step: tuple[float, float, float, f
     crosses, turns_twice = d0 * d1 < 0.0 or bool(beyond.any()), s0 * s1 > 0.0 < d0 * d1
     assume(not (crosses and turns_twice))
     root = contact_root(d0, s0, d1, s1)
-    assume(crosses or root == 2.0)  # else it crosses between two of the places, or within rounding
+    assume(crosses or root == 2.0)  # otherwise it crosses between two of the points, or within rounding
     assert (root < 2.0) == crosses
     assert may_change_of(*step) or not crosses
     if np.sign(d0) == np.sign(d1):
@@ -87,7 +89,7 @@ def test_whatever_crosses_zero_is_looked_into(step: tuple[float, float, float, f
 
 @given(_STEP)
 def test_the_forms_that_ask_how_near_it_comes_look_into_nothing_else(step: tuple[float, float, float, float]) -> None:
-    """`may_turn` and `may_touch` are refinements of `turns`, which is a refinement of `may_change`."""
+    """`may_turn` and `may_touch` refine `turns`, which refines `may_change`."""
     d0, s0, d1, s1 = step
     assume(d0 * d1 > 0.0)
     sign = -float(np.sign(d0))
@@ -98,7 +100,7 @@ def test_the_forms_that_ask_how_near_it_comes_look_into_nothing_else(step: tuple
 
 @given(st.floats(0.05, 5.0), _SIZE, st.floats(0.05, 0.95))
 def test_a_parabola_that_touches_is_never_ruled_out(curvature: float, height: float, place: float) -> None:
-    """The straight lines of `may_turn` along a parabola's slopes at both ends lie above its top."""
+    """The tangents that `may_turn` uses at both ends of a parabola lie above its top."""
     for sign in (-1.0, 1.0):
         d0, s0 = height - curvature * place**2, 2.0 * curvature * place
         d1, s1 = height - curvature * (1.0 - place) ** 2, -2.0 * curvature * (1.0 - place)
@@ -108,7 +110,7 @@ def test_a_parabola_that_touches_is_never_ruled_out(curvature: float, height: fl
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_where_the_cubic_through_a_steps_ends_crosses_a_touch_is_looked_for(sign: float) -> None:
-    """A contact of the same sign at both ends of a step: open ones that may close, closed ones that may open."""
+    """The overlap has the same sign at both ends: open contacts that may close, and closed ones that may open."""
     rng, crossed = np.random.default_rng(1), 0
     x = np.linspace(0.0, 1.0, 401)
     for _ in range(400):
@@ -118,5 +120,5 @@ def test_where_the_cubic_through_a_steps_ends_crosses_a_touch_is_looked_for(sign
         if cubic.max() > 0.0:
             crossed += 1
             assert may_turn.py_func(sign * d0, sign * s0, sign * d1, sign * s1, sign)
-        assert not may_turn.py_func(sign * d0, -sign * s0, sign * d1, sign * s1, sign)  # moves away at first
+        assert not may_turn.py_func(sign * d0, -sign * s0, sign * d1, sign * s1, sign)  # it moves away at first
     assert 100 < crossed < 300

@@ -1,13 +1,15 @@
-"""An absent effect leaves no trace in the code of short chains, batches and the flow: each effect with code in vectors.
+"""Absent effects leave no trace in the code of short chains, batches and the flow; tested for all effects that vectors
+have code for.
 
-What is counted is code for a processor whose registers hold a whole vector of eight doubles. It is compiled for that
-processor wherever the test runs, and not run. With narrower registers the compiler has too few of them for a step and
-computes some values twice instead of storing them; which ones differs from one source to the next, and the
-instructions then count its choices, not the effects.
+The counted code is for a processor whose registers hold a whole vector of eight doubles. It is compiled for that
+processor wherever the test runs, and never executed. With narrower registers, the compiler has too few of them for a
+step, and computes some values twice instead of storing them. Which ones depends on details of the source, so the counts
+would reflect the compiler's choices instead of the effects.
 
-The counts are those of one LLVM. Another version may choose otherwise, and the exact ones then need a second look. They
-are kept in the folder of compiled kernels: nothing is compiled again until kernels, the program that counts or the
-compiler change. Long chains and dop853-root are not looked at; the functions of effects that they call are the same.
+The counts are those of one version of LLVM. Another version may choose differently, and the exact counts then need to
+be reviewed. They are kept in the folder of compiled kernels: nothing is compiled again until the kernels, the counting
+program or the compiler change. Long chains and dop853-root are not examined, since they call the same functions of the
+effects.
 """
 
 from __future__ import annotations
@@ -40,14 +42,14 @@ EFFECTS_BY_COST = ("foundation", "preload", "dissipation")
 x86 = pytest.mark.skipif(platform.machine() not in ("x86_64", "AMD64"), reason="reads x86-64 assembly")
 
 
-#: The processor whose code is read, by LLVM's name; its features are the ones a vector of eight doubles needs. Where a
-#: register is narrower or a batch has fewer scenes, the compiler computes again what it cannot keep or merge.
+#: The processor whose code is read, by LLVM's name, with the features that a vector of eight doubles needs. With
+#: narrower registers or fewer scenes in a batch, the compiler recomputes values that it cannot keep or merge.
 TARGET = {VARIABLE: "8", "NUMBA_CPU_NAME": "skylake-avx512", "NUMBA_CPU_FEATURES": "+avx2,+fma,+avx512f,+avx512dq,+avx512vl"}
 
 
 @functools.cache
 def code() -> dict:
-    """What machine_code.py finds in freshly compiled kernels; kept until what is compiled or the compiler changes."""
+    """Return the counts of machine_code.py, which are kept until the compiled sources or the compiler change."""
     types = types_by_case()
     if CACHE_FOLDER is None:
         return json.loads(measured(types))
@@ -60,7 +62,7 @@ def code() -> dict:
 
 
 def measured(types: Types) -> bytes:
-    """What machine_code.py writes with an empty folder of kernels."""
+    """Run machine_code.py with an empty kernel cache and return its output."""
     with tempfile.TemporaryDirectory() as cache:
         environment = {**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p), **TARGET, "GRANCHAIN_CACHE": cache}
         done = subprocess.run([sys.executable, PROGRAM], env=environment, input=pickle.dumps(types), capture_output=True,
@@ -70,16 +72,16 @@ def measured(types: Types) -> bytes:
 
 
 def all_that_decides(types: Types) -> str:
-    """Hash of the types that the kernels are compiled for, of the program that counts, and of the processor.
+    """Return a hash of the argument types, of the counting program, and of the processor.
 
-    The folder of kernels, in which it is a name, stands for their sources and the compiler.
+    It is a file name in the folder of kernels, whose own name depends on their sources and the compiler.
     """
     digest = hashlib.sha256(f"{types} {TARGET} {sys.version_info[:2]} {hash_of_code(PROGRAM)}".encode())
     return digest.hexdigest()[:16]
 
 
 def added(kernel: str, effect: str) -> dict:
-    """Packed instructions by kind that an effect adds to the bare kernel."""
+    """Return the packed instructions, by kind, that an effect adds to the bare kernel."""
     bare, more = (code()[kernel][case]["packed"] for case in ("nothing", effect))
     return {kind: more[kind] - bare.get(kind, 0) for kind in more if more[kind] != bare.get(kind, 0)}
 
@@ -87,7 +89,7 @@ def added(kernel: str, effect: str) -> dict:
 @x86
 @pytest.mark.parametrize("kernel", KERNELS)
 def test_the_code_is_vector_code(kernel):
-    """Guards the counts below: the kernels must be vectorised."""
+    """The counts below are meaningful only if the kernels are vectorised."""
     assert code()[kernel]["nothing"]["packed"]["multiply"] > 100
 
 
@@ -95,7 +97,7 @@ def test_the_code_is_vector_code(kernel):
 @pytest.mark.parametrize("kernel", KERNELS)
 @pytest.mark.parametrize("effect", vector_effects())
 def test_every_effect_of_the_table_adds_code_that_is_not_there_without_it(kernel, effect):
-    """Its multiplications or additions, for each root in the code; none of the bare kernel's go."""
+    """It adds multiplications or additions per root in the code, and removes none from the bare kernel."""
     bare, more = code()[kernel]["nothing"]["packed"], code()[kernel][effect]["packed"]
     a_root = [{kind: case[kind] / case["root"] for kind in ("multiply", "add")} for case in (bare, more)]
     assert any(a_root[1][kind] > a_root[0][kind] for kind in a_root[0])
@@ -104,9 +106,10 @@ def test_every_effect_of_the_table_adds_code_that_is_not_there_without_it(kernel
 
 @x86
 def test_switching_an_effect_on_adds_its_whole_formula_at_every_slope_of_a_chain():
-    """One root is taken for each slope in the code. A foundation adds to each one multiplication and one subtraction, a
-    preload one addition, which is all there is to them: so without them not one of these is left. A linear dashpot adds
-    at least its difference, product and sum, and no root or division."""
+    """The code takes one root for each evaluation of the slope. To each, a foundation adds one multiplication and one
+    subtraction, and a preload one addition. These are their whole formulas, so none of them is left when the effect is
+    absent. A linear dashpot adds at least its difference, product and sum, and no root or division.
+    """
     slopes = code()["chain"]["nothing"]["packed"]["root"]
     assert slopes > 0
     assert added("chain", "foundation") == {"multiply": slopes, "add": slopes}
@@ -118,8 +121,8 @@ def test_switching_an_effect_on_adds_its_whole_formula_at_every_slope_of_a_chain
 
 @x86
 def test_switching_an_effect_on_adds_nothing_else_to_a_batch():
-    """As above, for each root in the code: of how many beads' slopes the compiler writes a copy is its own choice, and
-    differs by one from case to case. A dashpot's jumps, which a batch looks for, take roots and divisions of their own.
+    """Counts are per root in the code, because the number of beads for which the compiler unrolls the slope differs by
+    one from case to case. A batch also looks for the jumps of a dashpot, which need further roots and divisions.
     """
     bare, founded, pressed, damped = (code()["batch"][case]["packed"] for case in ("nothing", *EFFECTS_BY_COST))
     for more in (founded, pressed):
@@ -132,16 +135,17 @@ def test_switching_an_effect_on_adds_nothing_else_to_a_batch():
 
 
 def test_nothing_is_multiplied_by_an_absent_effect_in_the_flow_with_tangents():
-    """`x * 0.0` is what an absent effect leaves where its zero is multiplied, since the compiler may not drop it. The
-    method's table has zeros of its own, which are products by zero too; there are as many of them where every effect
-    is present."""
+    """If an absent effect were a zero that is multiplied, `x * 0.0` would remain, since the compiler may not drop it.
+    The zeros of the method's table are multiplied too, and there are just as many products by zero when every effect is
+    present.
+    """
     nothing, everything = code()["flow"]["nothing"], code()["flow"]["everything"]
     assert everything["products"] > nothing["products"] > 100
     assert nothing["by_zero"] == everything["by_zero"] > 0
 
 
 def test_absent_effects_have_no_arrays_in_the_simd_workspaces():
-    """None in place of the static overlaps, of the damping and the foundation of a batch, of unequal beads."""
+    """They are None: the static overlaps of a chain; damping, foundation and unequal beads of a batch."""
     bare = scene("sec2").evolve(dissipation="none")
     assert Engine(bare, MethodSetting("rk4-split"), 1).stepper.work.simd.preload is None
     values = Batch(bare, Stop()).members

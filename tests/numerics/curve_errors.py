@@ -1,9 +1,11 @@
-"""Program: are the errors that a curve states for a periodic point above the true ones? Random drive, A₀, D and k.
+"""A program that compares the errors that a curve states for periodic points with the true ones, for random drives, A₀,
+D and k.
 
     python -m tests.numerics.curve_errors --count 1000 [--seed 1]
 
-Points come from batches, from rest. True is dop853 on the same orbit: from the point's state through as many periods as
-it takes until the orbit repeats itself to 1e-9, then its largest input and output force.
+Points are computed in batches, from rest. The true forces are those of dop853 on the same orbit: the motion is
+continued from the point's state until the orbit repeats itself to 1e-9, and then its largest input and output forces
+are found.
 """
 
 from __future__ import annotations
@@ -23,15 +25,15 @@ from granchain_core.steady.batch.jobs_in_batch import batch_results
 #: Section 2's chain with each damping law, and the rig.
 BASES = (*LAWS, "rig")
 
-#: The orbit repeats itself to this, or the point is not judged after this many periods.
+#: The orbit must repeat itself to this relative difference within this many periods; otherwise the point is not judged.
 REPEATS, PATIENCE = 1e-9, 3000
-#: Instants in a period at which the true force is looked at: one that jumps is then missed by a few 1e-4 of its rise.
+#: Samples per period of the true force: the top of a force that jumps is then missed by a few 1e-4 of its rise.
 FINE = 8192
 
 
 @dataclass(frozen=True)
 class Point:
-    """A periodic point: relative errors of input and output force (2,), what is stated of them, scene and period."""
+    """A periodic point: true and stated relative errors of input and output force (2,), scene and period."""
 
     error: np.ndarray
     stated: np.ndarray
@@ -40,7 +42,9 @@ class Point:
 
 
 def random_scene(rng: np.random.Generator, base: str) -> Scene:
-    """Section 2's chain with a damping law, or the rig with other springs and dampers: one structure and one N."""
+    """Return section 2's chain with a damping law, or the rig with random k and D; each base has one structure and one
+    N.
+    """
     if base in LAWS:
         return scene("sec2").evolve(dissipation=base, f=10.0 ** rng.uniform(2.0, 3.8), A0=10.0 ** rng.uniform(-7.0, -5.5),
                                     D=10.0 ** rng.uniform(1.3, 2.6), kappa=10.0 ** rng.uniform(-4.0, -2.0))
@@ -49,7 +53,8 @@ def random_scene(rng: np.random.Generator, base: str) -> Scene:
 
 
 def true_forces(chosen: Scene, state, period: int) -> np.ndarray | None:
-    """Largest input and output force (2,) on the orbit through `state`, scaled; None where it never repeats itself."""
+    """Return the largest input and output force (2,), scaled, on the orbit through `state`; None if it never repeats.
+    """
     engine = Engine(chosen, MethodSetting("rk4-split", refine=16), 1)
     engine.start(state)
     for _ in range(PATIENCE // (8 * period)):
@@ -64,7 +69,7 @@ def true_forces(chosen: Scene, state, period: int) -> np.ndarray | None:
 
 
 def points(count: int, seed: int, base: str) -> Iterator[Point]:
-    """Periodic points among `count` random scenes, judged."""
+    """Yield the periodic points among `count` random scenes, with their true errors."""
     rng = np.random.default_rng(seed)
     for r in batch_results((random_scene(rng, base) for _ in range(count)), Stop()):
         if r.regime.name != "periodic" or r.failure or r.undecided:
@@ -76,7 +81,7 @@ def points(count: int, seed: int, base: str) -> Iterator[Point]:
 
 
 def main() -> None:
-    """Print how many are bounded, and those that are not."""
+    """Print how many errors are bounded, and the points where they are not."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--count", type=int, default=1000)
     parser.add_argument("--seed", type=int, default=1)

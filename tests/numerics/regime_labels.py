@@ -1,12 +1,13 @@
-"""Program: is what a sweep calls a motion true? Past the special points of section 2's period-1 branch, both ways.
+"""A program that checks the regime labels of frequency sweeps past the special points of section 2's period-1 branch,
+in both directions.
 
     python -m tests.numerics.regime_labels [--places 255.8 832.5] [--width 2] [--step 0.25] [--starts up down rest]
 
-Every point is run once more from the state in which the sweep began it, through 5,000 periods of a quarter of the live
-method's step, and longer where that does not decide. It is periodic with the shortest n over which its strobes repeat
-to 1e-9 while changes over shorter n stay what they are; of other motions the Lyapunov exponent is measured twice over
-2,000 periods: chaotic if both are well above zero, quasi-periodic if both are zero. What that rule cannot decide is not
-judged.
+Every point is run again from the state in which the sweep began it, for 5,000 periods with a quarter of the live
+method's step, and longer if that does not decide. The motion is periodic with the smallest n for which its strobes
+repeat to 1e-9, provided that changes over shorter n are constant. For other motions, the Lyapunov exponent is measured
+twice over 2,000 periods: they are chaotic if both values are well above zero, and quasi-periodic if both are near zero.
+Motions that this rule cannot decide are not judged.
 """
 
 from __future__ import annotations
@@ -23,20 +24,20 @@ from granchain_core.integrate import Engine, MethodSetting
 from granchain_core.scene.state import rest
 from granchain_core.steady.lyapunov import growth_along
 
-#: Frequencies [Hz] at which the period-1 branch of section 2 changes its stability (`granchain branch sec2`).
+#: Frequencies [Hz] at which the stability of section 2's period-1 branch changes (`granchain branch sec2`).
 PLACES = (146.42, 233.52, 255.80, 511.94, 832.5, 889.0, 1235.6, 1304.9)
-#: Periods run at a time, most in all, the shortest step's divisor, and what counts as repeated.
+#: Periods per run, most periods in total, the refinement of the step, and the relative change that counts as repeated.
 PERIODS, PATIENCE, REFINE, REPEATS = 5000, 60_000, 4, 1e-9
-#: Longest period looked for.
+#: The longest period considered.
 LONGEST = 60
-#: An exponent per period that shows neither chaos nor an approach: errors of means over 2,000 periods of a torus are
-#: smaller.
+#: An exponent per period below this shows neither chaos nor an approach: on a torus, means over 2,000 periods have
+#: smaller errors.
 ZERO = 2e-3
 
 
 @dataclass(frozen=True)
 class Judged:
-    """A point of a sweep with what it is called and what it is; "undecided" where the rule does not tell."""
+    """A point of a sweep with its label and its true regime; "undecided" if the rule cannot tell."""
 
     direction: str
     point: CurvePoint
@@ -50,17 +51,17 @@ class Judged:
 
     @property
     def false(self) -> bool:
-        """Whether the label claims what is not so."""
+        """Whether the label is false: both regimes are decided and differ."""
         return "un" not in (self.called[:2], self.true[:2]) and self.called != self.true
 
     @property
     def missing(self) -> bool:
-        """Whether nothing is claimed."""
+        """Whether the label claims no regime."""
         return self.called == "unsettled"
 
 
 def truth(chosen: Scene, start: State | None) -> str:
-    """What becomes of the motion from a state at phase 0, None for rest."""
+    """Return the true regime of the motion from a state at phase 0; None is rest."""
     engine = Engine(chosen, MethodSetting("rk4-split", refine=REFINE), 1)
     engine.start(rest(chosen) if start is None else start)
     for _ in range(PATIENCE // PERIODS):
@@ -77,24 +78,25 @@ def truth(chosen: Scene, start: State | None) -> str:
 
 
 def _on_its_way(strobes: np.ndarray) -> bool:
-    """Whether changes over some period still become smaller or larger."""
+    """Return whether changes over some period still shrink or grow."""
     return any(_changing(strobes, n) for n in range(1, LONGEST + 1))
 
 
 def _moved(strobes: np.ndarray, n: int) -> np.ndarray:
-    """Largest relative change over n periods in the last 2,000 periods and, second, in the last 1,000."""
+    """Return the largest relative changes over n periods in the last 2,000 periods: in their first half and the second.
+    """
     change = np.abs(strobes[n:] - strobes[:-n]) / np.abs(strobes).max(axis=(0, 2))[:, None]
     return np.asarray(change.max(axis=(1, 2))[-2000:].reshape(2, -1).max(axis=1))
 
 
 def _changing(strobes: np.ndarray, n: int) -> bool:
-    """Whether changes over n periods become smaller or larger still: a slow turn nearly comes back after some n."""
+    """Return whether changes over n periods still shrink or grow; on a slow rotation, those over some n are small."""
     before, now = _moved(strobes, n)
     return not 0.99 * before <= now <= 1.01 * before
 
 
 def judged(place: float, width: float, step: float, direction: str) -> Iterator[Judged]:
-    """The points of one sweep, judged."""
+    """Yield the judged points of one sweep."""
     chain = scene("sec2")
     count = round(2.0 * width / step) + 1
     found = list(iter_curve(chain, np.linspace(place - width, place + width, count), direction))
@@ -106,7 +108,7 @@ def judged(place: float, width: float, step: float, direction: str) -> Iterator[
 
 
 def main() -> None:
-    """Print every false and every missing label, and how many there are."""
+    """Print every false, missing or undecided label, and their numbers."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--places", type=float, nargs="+", default=PLACES)
     parser.add_argument("--width", type=float, default=2.0)

@@ -1,8 +1,9 @@
-"""Program: is what `drive` states for a motion that is known at samples above the true error? Random chains and tones.
+"""A program that compares the errors that `drive` states for sampled motions with the true ones, for random chains and
+tones.
 
     python -m tests.numerics.sampled_drives --count 100 [--seed 12]
 
-True is the motion under the formula, with an accuracy of 1e-7. Samples are taken at its knots.
+The true motion is the one under the formula, with an accuracy of 1e-7. Samples are taken at its knots.
 """
 
 from __future__ import annotations
@@ -19,13 +20,13 @@ from granchain_core.tables import MAXIMA
 
 #: Knots from sample to sample.
 SPACINGS = (1, 2, 5, 10, 20)
-#: What the true motion is off by itself: by its steps, and by the formula's velocity in the largest input force.
+#: Errors of the true motion itself: from its steps and, in the largest input force, from the formula's velocity.
 _KNOWN = np.array([2e-6, 3e-5, 2e-6, 2e-6])
 
 
 @dataclass(frozen=True)
 class Sampled:
-    """A motion by samples: what was sampled, samples a period, true and stated errors (4,), and its scene."""
+    """A sampled motion: the sampled quantity, samples per period, true and stated errors (4,), and its scene."""
 
     kind: str
     samples: float
@@ -35,20 +36,22 @@ class Sampled:
 
     @property
     def worst(self) -> float:
-        """The largest true error over what is stated of it."""
+        """The largest ratio of a true error to the stated one."""
         return float(((self.errors - _KNOWN) / self.stated).max())
 
 
 def random_scene(rng: np.random.Generator) -> Scene:
-    """One to eight beads with any damping, some of them precompressed."""
+    """Return a chain of one to eight beads with any damping, sometimes precompressed."""
     return scene("sec2").evolve(N=int(rng.integers(1, 9)), dissipation=str(rng.choice(["linear", "tsuji", "none"])),
                                 F0=float(rng.choice([0.0, 0.0, 1.0])), accuracy=1e-7)
 
 
 def random_tones(rng: np.random.Generator, amplitude: float) -> tuple[Signal, dict[str, np.ndarray]]:
-    """Two sines of any phases from 200 Hz to 2 kHz, for three to twelve periods of the faster one; values at the knots.
+    """Return two sines of random phases, the faster one from 200 Hz to 2 kHz, over three to twelve of its periods, and
+    their values at the knots.
 
-    A formula's own velocities are moved a little so that its displacements are right; sensors have the formula's.
+    A signal made from a formula has slightly shifted velocities, so that its displacements are right; the sensors'
+    values are those of the formula.
     """
     high = rng.uniform(200.0, 2000.0)
     omega = 2.0 * np.pi * high * np.array([1.0, rng.uniform(0.2, 1.0)])
@@ -60,13 +63,13 @@ def random_tones(rng: np.random.Generator, amplitude: float) -> tuple[Signal, di
     def velocity(t: np.ndarray) -> np.ndarray:
         return np.asarray((size * omega * np.cos(np.multiply.outer(t, omega) + phase)).sum(axis=-1))
 
-    duration = (1.0 - 1e-9) * int(rng.integers(3, 13)) / high  # not one knot more by rounding
+    duration = (1.0 - 1e-9) * int(rng.integers(3, 13)) / high  # rounding must not add a knot
     signal = Signal.of(velocity, displacement, duration, high, "tones")
     return signal, {"velocity": velocity(signal.time), "displacement": displacement(signal.time)}
 
 
 def sampled(seed: int, count: int) -> Iterator[Sampled]:
-    """Every random motion from samples of its velocity and of its displacement, at all spacings."""
+    """Yield every random motion, computed from samples of its velocity and of its displacement, at all spacings."""
     rng = np.random.default_rng(seed)
     for _ in range(count):
         chosen = random_scene(rng)
@@ -86,7 +89,7 @@ def sampled(seed: int, count: int) -> Iterator[Sampled]:
 
 
 def main() -> None:
-    """Print, for every kind and rate, the medians of the errors of displacements and the worst of all errors."""
+    """Print, for every quantity and sampling rate, median displacement errors and the worst of all errors."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--count", type=int, default=100)
     parser.add_argument("--seed", type=int, default=12)

@@ -1,10 +1,11 @@
-"""Program: is the error that `run` states above the true one? Random scenes, a table, and every one where it is not.
+"""A program that compares the error that `run` states with the true one: it prints a table for random scenes, and every
+scene whose error is larger than stated.
 
     python -m tests.numerics.stated_errors --count 1000 [--seed 1] [--few]
 
-Drive, amplitude, damping, foundation, 1 to 20 beads, wall, law, tension, preload, a bead that is thrown and the
-accuracy asked for are drawn at random. True is dop853 at 3e-15 per step; what it changes against 3e-14 is
-how well the truth is known, and an error is judged to within three times that.
+Drive, amplitude, damping, foundation, 1 to 20 beads, wall, law, tension, preload, a thrown bead and the requested
+accuracy are drawn at random. The reference is dop853 at 3e-15 per step. Its difference from dop853 at 3e-14 is the
+uncertainty of the reference, and an error is judged to within three times that.
 """
 
 from __future__ import annotations
@@ -29,13 +30,13 @@ STRUCTURES = with_every_law([
     ("kuwabara-kono", "cut", False, False), ("none", "allowed", True, True), ("kuwabara-kono", "allowed", True, True),
     ("tsuji", "allowed", True, True),
 ])
-#: Those that the test suite has time to compile.
+#: The structures that the test suite has time to compile.
 FEW = STRUCTURES[:4]
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """A scene with relative errors: true, stated, asked for, and how well the truth is known."""
+    """A scene with relative errors: true, stated and requested ones, and the uncertainty of the reference."""
 
     scene: Scene
     error: float
@@ -46,7 +47,7 @@ class Verdict:
 
     @property
     def judged(self) -> bool:
-        """Whether the truth is known better than what is stated about it."""
+        """Whether the reference is known well enough to judge the stated error."""
         return self.known < 0.3 * self.stated
 
     @property
@@ -56,7 +57,7 @@ class Verdict:
 
 
 def random_scene(rng: np.random.Generator, structures: list) -> Scene:
-    """One scene."""
+    """Draw a scene."""
     law, tension, founded, pressed = structures[rng.integers(len(structures))]
     chosen = scene("sec2").evolve(
         f=10.0 ** rng.uniform(1.7, 3.5), A0=10.0 ** rng.uniform(-7.5, -5.0), D=10.0 ** rng.uniform(0.5, 2.6),
@@ -74,14 +75,14 @@ def random_scene(rng: np.random.Generator, structures: list) -> Scene:
 
 
 def reference(chosen: Scene, tolerance: float) -> np.ndarray:
-    """Displacements (T, N) in m."""
+    """Return the displacements (T, N) [m] of dop853."""
     engine = Engine(chosen, MethodSetting("dop853", tolerance=tolerance), SAMPLES, account=True)
     engine.start(rest(chosen))
     return engine.record(PERIODS * SAMPLES).displacement * engine.scaled.scales.length
 
 
 def judge(chosen: Scene) -> Verdict | None:
-    """The verdict on one scene; None where the numbers fail, which is said and no dishonesty."""
+    """Judge one scene; None if the computation fails, which `run` reports."""
     try:
         found = run(chosen, periods=0, record=PERIODS, samples=SAMPLES)
         true, nearly = reference(chosen, 3e-15), reference(chosen, 3e-14)
@@ -93,7 +94,7 @@ def judge(chosen: Scene) -> Verdict | None:
 
 
 def verdicts(count: int, seed: int, structures: list) -> Iterator[Verdict | None]:
-    """Verdicts on `count` random scenes."""
+    """Judge `count` random scenes."""
     rng = np.random.default_rng(seed)
     for _ in range(count):
         yield judge(random_scene(rng, structures))

@@ -1,4 +1,4 @@
-"""Contacts that open and close are found, however short they touch, and the account of steps says so."""
+"""Contacts that close and open are found, however brief the touch, and are counted as events."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from granchain_core.kernels.samples import Samples
 
 
 def grazing(depth: float, method: str, tolerance: float = 1e-9) -> tuple[Engine, Samples]:
-    """One bead at rest `depth` (scaled) below the top of a slow driver's stroke, held apart from both sides.
+    """Run one bead at rest, at a distance `depth` (scaled) short of the turning point of a slow driver.
 
-    The bead is thrown by a touch that lasts only while the driver is above 1 − depth.
+    A touch that lasts only while the driver is above 1 − depth throws the bead; the wall exerts no force.
     """
     chain = scene("sec2").evolve(N=1, f=500.0, D=100.0)
     engine = Engine(chain, MethodSetting(method, refine=1, tolerance=tolerance), 64)
     slots = engine.scaled.slots
-    far = slots.chain._replace(stiffness=np.array([1.0, 0.0]))  # the wall pushes with no force
+    far = slots.chain._replace(stiffness=np.array([1.0, 0.0]))  # the wall exerts no force
     engine.use(replace(engine.scaled, slots=slots._replace(chain=far, dissipation=type(slots.dissipation)(0.0))))
     engine.start(State(np.array([(1.0 - depth) * chain.A0]), np.zeros(1), phase=0.125))
     return engine, engine.record(16)
@@ -32,18 +32,18 @@ def grazing(depth: float, method: str, tolerance: float = 1e-9) -> tuple[Engine,
 @pytest.mark.parametrize("depth", [1e-3, 1e-4, 1e-6])
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-7, 1e-10])
 def test_a_brief_touch_is_not_stepped_over(depth: float, tolerance: float) -> None:
-    """A driver that only grazes a bead at rest throws it, found at every tolerance."""
+    """The touch of a driver that only grazes a bead at rest is found at every tolerance, and throws the bead."""
     engine, kept = grazing(depth, "dop853", tolerance)
     assert engine.counts.events == 2
     expected = thrown_by_a_touch(depth, engine.scaled.beta)
-    # the motion is measured against a displacement of 1, 1/depth of the touch; the bead's own motion and cos θ are
-    # corrections of order depth
+    # errors are relative to a displacement of 1, which is 1/depth times that of the touch; the bead's own motion and
+    # cos θ are corrections of order depth
     assert kept.velocity[-1, 0] == pytest.approx(expected, rel=max(4e-3, 4 * depth))
 
 
 def test_counted_events_are_the_openings_and_closings_that_a_fine_sampling_shows() -> None:
-    """Sign changes of all overlaps in 4096 samples a period: all 36, none of them between two samples. The first
-    contact at t = 0 is none, because it happens before the first sample.
+    """The overlaps change sign 36 times in 4096 samples per period, and no event is hidden between two samples. The
+    first contact at t = 0 is not counted, because it happens before the first sample.
     """
     chain = scene("sec2").evolve(accuracy=1e-8)
     engine = Engine(chain, MethodSetting("dop853", tolerance=1e-10), 4096)
@@ -55,7 +55,7 @@ def test_counted_events_are_the_openings_and_closings_that_a_fine_sampling_shows
 
 
 def test_across_events_dop853_keeps_to_a_hundred_tolerances() -> None:
-    """Without event location a method of order 8 has the order of the kink that it steps over."""
+    """Without event location, a method of order 8 would have only the order of the kink that it steps over."""
     chain = scene("sec2").evolve(F0=0.0)
     true = Engine(chain, MethodSetting("dop853", tolerance=1e-14), 8).record(16).displacement
     found = Engine(chain, MethodSetting("dop853", tolerance=1e-10), 8).record(16).displacement
@@ -63,14 +63,14 @@ def test_across_events_dop853_keeps_to_a_hundred_tolerances() -> None:
 
 
 def test_a_chain_that_never_opens_has_no_events() -> None:
-    """Pressed together and driven gently, every contact stays closed."""
+    """With a preload and a gentle drive, every contact stays closed."""
     result = run(scene("sec2").evolve(F0=20.0, A0=1e-8, accuracy=1e-8), periods=1, record=2)
     assert (result.overlap > 0.0).all()
     assert result.cost.events == 0
 
 
 def test_located_steps_end_on_the_events() -> None:
-    """After a step that found a contact opening or closing its overlap is zero, to the tolerance of event location."""
+    """After a step in which a contact opens or closes, its overlap is zero to the tolerance of event location."""
     chain = scene("sec2").evolve(f=1130.0)
     engine = Engine(chain, MethodSetting("dop853", tolerance=1e-9), 1)
     engine.periods(2)
@@ -88,6 +88,6 @@ def test_located_steps_end_on_the_events() -> None:
         if t >= engine.scaled.period * (1 - 1e-12):
             break
     assert len(landed) > 5
-    # the search for the end just past an event aims at 1e-15 and stops at four times that (located_step.py); some
-    # events are too slow for Newton
+    # the search for the end just past an event aims at 1e-15 and accepts four times that (located_step.py); for some
+    # events, the overlap changes too slowly for Newton's method
     assert np.quantile(landed, 0.9) < 4e-15 and max(landed) < 1e-11

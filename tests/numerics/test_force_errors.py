@@ -1,5 +1,6 @@
-"""The largest forces that are given are within what is stated of them; the computation that judges them (forces/) is
-first held against closed forms, the scaling law and SciPy."""
+"""The largest forces are within their stated errors. The computation that judges them (forces/) is first compared with
+closed forms, the scaling law and SciPy.
+"""
 
 from __future__ import annotations
 
@@ -16,18 +17,19 @@ from tests.numerics.forces.located import located
 from tools.fuzzing import oracle
 
 CONTACTS = [("linear", "allowed"), ("linear", "cut"), ("tsuji", "cut"), ("kuwabara-kono", "allowed")]
-#: Seed of the slice of random scenes, not one by which factors were chosen.
+#: Seed of the sample of random scenes, which was not used to choose safety factors.
 SEED = 2026
-#: Runs of several periods take no longer than so many times 1/φ, a third of the program's: the truth of a slow drive's
-#: second and third period costs most.
+#: Runs of several periods last at most this many times 1/φ, a third of the program's limit: the reference is most
+#: expensive for the second and third periods of slow drives.
 LONGEST = 3e3
-#: Seconds for a run: a few do not reach their accuracy in six seconds either, and say so after this time.
+#: Time allowed for a run [s]: the few runs that do not reach their accuracy in it would not reach it in six seconds
+#: either, and report this.
 BUDGET = 1.0
 
 
 def test_the_force_jumps_where_the_driver_starts_against_a_bead() -> None:
-    """The bead rests against a driver that starts with 2πf A0: the right limit at t = 0 is D·2πf A0, and it is the
-    largest force where damping outweighs all else, λ = 45, and the wall is far.
+    """The bead rests against a driver that starts at 2πf A0. The right limit of the force at t = 0 is D·2πf A0, which
+    is the largest force if damping dominates (λ = 45) and the wall is far.
     """
     one = scene("sec2").evolve(N=1, D=2e4, f=500.0)
     jump = one.D * 2.0 * np.pi * one.f * one.A0
@@ -37,8 +39,8 @@ def test_the_force_jumps_where_the_driver_starts_against_a_bead() -> None:
 
 
 def test_a_touch_shorter_than_a_step_is_seen_where_and_as_hard_as_it_is() -> None:
-    """The driver's crest comes a millionth of A0 farther than to the resting bead, whose wall is far: it is there at
-    sin θ = 1 − 1e-6, at 2πf A0 cos θ.
+    """The driver's turning point is a millionth of A0 beyond a resting bead, whose wall is far: they meet at sin θ = 1
+    − 1e-6, with the speed 2πf A0 cos θ.
     """
     one = scene("sec2").evolve(N=1, f=100.0, D=10.0)
     low = 1.0 - 1e-6
@@ -51,17 +53,18 @@ def test_a_touch_shorter_than_a_step_is_seen_where_and_as_hard_as_it_is() -> Non
 
 
 def test_a_collision_with_the_wall_has_the_peak_of_hertz() -> None:
-    """1.1432626 K^{2/5} m^{3/5} v^{6/5}, known to its eight digits; half a period holds the first collision only."""
+    """The peak is 1.1432626 K^{2/5} m^{3/5} v^{6/5}, known to its eight digits; the record has only this collision."""
     one = scene("sec2").evolve(N=1, dissipation="none", f=1000.0, A0=1e-9)
     thrown = replace(one, start_velocity=((1, 1e-3),))
     peak = 1.1432626 * one.K**0.4 * one.bead(1).mass ** 0.6 * 1e-3**1.2
-    # at its end the bead meets the driver, 1e-9 m × 2π × 1000 Hz = 6e-6 m/s slow, and does not come back in this period
+    # the bead finally meets the driver, whose speed is only 1e-9 m × 2π × 1000 Hz = 6e-6 m/s, and does not return to
+    # the wall within this period
     assert located(thrown, 0, 1).maxima[1:] == pytest.approx([peak, peak], rel=5e-8)
 
 
 def test_the_largest_output_force_of_an_overdamped_chain_stands_at_its_closing() -> None:
-    """Section 2 with D = 300 at 100 Hz, settled: 0.14733 N, the right limit at the wall's closing, not the top behind
-    it.
+    """Section 2's chain with D = 300 N s/m at 100 Hz, settled: 0.14733 N is the right limit at the closing of the wall
+    contact, and exceeds the maximum after it.
     """
     found = located(scene("sec2").evolve(D=300.0, f=100.0), 100, 1)
     at_wall = found.closings[found.closings[:, 1] == 11][:, 2]
@@ -71,8 +74,8 @@ def test_the_largest_output_force_of_an_overdamped_chain_stands_at_its_closing()
 
 @pytest.mark.parametrize(("law", "tension"), CONTACTS)
 def test_the_computation_scales_and_agrees_with_itself_and_with_scipy(law: str, tension: str) -> None:
-    """Measured: forces at 1e-10 and 1e-12 differ by less than 1e-9, displacements from SciPy's by 7e-9, which is its
-    error.
+    """Measured: forces at 1e-10 and 1e-12 differ by less than 1e-9, and displacements differ from SciPy's by 7e-9,
+    which is SciPy's error.
     """
     s = 3.0
     one = scene("sec2").evolve(dissipation=law, tension=tension, kappa=0.01)
@@ -85,7 +88,7 @@ def test_the_computation_scales_and_agrees_with_itself_and_with_scipy(law: str, 
 
 @functools.cache
 def slice_of(kind: str, count: int) -> list[Verdict]:
-    """Verdicts on a few draws."""
+    """Judge a few draws."""
     found = verdicts(kind, count, SEED, FEW if kind == "run" else FEW[:1], longest=LONGEST, budget=BUDGET)
     return [v for v in found if isinstance(v, Verdict)]
 
@@ -93,8 +96,8 @@ def slice_of(kind: str, count: int) -> list[Verdict]:
 @pytest.mark.long
 @pytest.mark.parametrize(("kind", "count"), [("run", 12), ("curve", 3), ("map", 3)])
 def test_largest_forces_are_within_what_is_stated_of_them(kind: str, count: int) -> None:
-    """All but one of these forces at most, and none is wrong by more than 1e-3 plus ten times what is stated. How many
-    are in thousands of scenes is measured in docs/accuracy.md (`python -m tests.numerics.forces`).
+    """At most one of these forces is not, and none is wrong by more than 1e-3 plus ten times the stated error. The
+    rates for thousands of scenes are in docs/accuracy.md (`python -m tests.numerics.forces`).
     """
     found = slice_of(kind, count)
     judged = np.array([v.judged & ~np.isnan(v.stated) for v in found])

@@ -1,4 +1,4 @@
-"""A contact whose tension is cut touches without force: before it opens, and before it pushes again."""
+"""A no-tension contact may be closed without force: before it opens, or before it pushes again."""
 
 from __future__ import annotations
 
@@ -10,21 +10,23 @@ from granchain_core import Scene, State, scene
 from granchain_core.integrate import Engine, MethodSetting
 from granchain_core.kernels.effects.dissipation import damping
 
-#: Kernels take long to compile: of the other laws the hard cases and the fuzzer see enough.
+#: Kernels take long to compile, and the hard cases and the fuzzer cover the other laws well enough.
 LAW = "tsuji"
 SAMPLES = 4096
 
 
 def thrown() -> Scene:
-    """Precompressed beads, the last one thrown at the wall: the contact behind it stops pushing at once, and pushes
-    again before it opens."""
+    """Return precompressed beads, the last one thrown at the wall: the contact behind it stops pushing at once, and
+    pushes again before it opens.
+    """
     pressed = scene("sec2").evolve(N=3, f=300.0, A0=1.2e-8, F0=0.18, D=850.0, dissipation=LAW, tension="cut")
     return replace(pressed, start_velocity=((3, 1e-3),))
 
 
 def test_a_force_free_contact_pushes_again() -> None:
-    """Against RK4 with steps so short that the one kink, which it does not see, costs it less than 1e-8: its own change
-    from half as many steps."""
+    """Compared with RK4 with steps so short that the only kink, which RK4 does not locate, costs less than 1e-8: the
+    change from half as many steps shows this.
+    """
     chain = thrown()
     found, fine, finer = (Engine(chain, setting, SAMPLES).record(SAMPLES // 8) for setting in (
         MethodSetting("dop853", 1.0, 1e-12), MethodSetting("rk4", 32.0), MethodSetting("rk4", 64.0)))
@@ -37,9 +39,10 @@ def test_a_force_free_contact_pushes_again() -> None:
 
 
 def test_a_force_free_contact_moves_as_if_it_were_open() -> None:
-    """Two beads that fly apart from an overlap: neither feels the other, from the first step to the opening and on.
+    """Two beads that fly apart from an overlap exert no force on each other, from the first step on.
 
-    Against RK4, whose error is that of a force's fourth root at the opening, below 1e-6 with these steps.
+    They are compared with RK4, whose error comes from a force's fourth root at the opening: below 1e-6 with these
+    steps.
     """
     apart = scene("sec2").evolve(N=2, f=2000.0, A0=1e-9, F0=1e-3, D=800.0, dissipation=LAW, tension="cut")
     apart = replace(apart, start_velocity=((1, -2e-3), (2, 2e-3)))
@@ -54,7 +57,7 @@ def test_a_force_free_contact_moves_as_if_it_were_open() -> None:
 
 
 def test_a_start_on_the_kink_may_be_taken_for_either_side() -> None:
-    """Where F = 0 up to rounding its sign says nothing: starts a billionth to either side lead to the same motion."""
+    """Where F = 0 up to rounding, its sign is arbitrary; starts a billionth to either side lead to the same motion."""
     rng = np.random.default_rng(3)
     for preload in 10.0 ** rng.uniform(-3.0, 0.0, 30):
         chain = scene("sec2").evolve(N=2, f=300.0, A0=1e-9, F0=preload, D=800.0, dissipation=LAW, tension="cut")

@@ -1,4 +1,4 @@
-"""What of a long impact cannot be computed to the accuracy asked for: slow beads behind the pulse, not the pulse."""
+"""Of a long impact, the slow beads behind the pulse cannot be computed to the requested accuracy, but the pulse can."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ SAMPLES = 500
 
 @pytest.mark.long
 def test_two_fine_computations_disagree_behind_the_pulse_only() -> None:
-    """The numbers of docs/hard-cases.md, "Slow beads behind an impact"."""
+    """The numbers are those of docs/hard-cases.md, "Slow beads behind an impact"."""
     shown = scene("impact").evolve(N=500, f=20.0)
     setting = method_for(1e-6, False)
     found = []
@@ -31,7 +31,7 @@ def test_two_fine_computations_disagree_behind_the_pulse_only() -> None:
     assert 1e-7 < difference[:60].max() < 1e-4 and difference.argmax() < 60
     assert difference[100:].max() < 2e-8
     np.testing.assert_allclose(one.force.max(axis=0), other.force.max(axis=0), rtol=2e-8)
-    # half-way, the beads behind the pulse nearly touch and nearly rest
+    # halfway, the beads behind the pulse are nearly in contact and nearly at rest
     middle = SAMPLES // 2
     gaps = np.diff(other.displacement[middle])[[29, 39, 49, 59]] / length
     assert (gaps > 0.0).all() and gaps[0] > 1e-3 and gaps[-1] < 1e-7

@@ -1,5 +1,6 @@
-"""Every method moves every chain as dop853 does, or refuses it in a sentence, and so does a batch: an effect that a
-method does not know is never left out silently."""
+"""Every method and every batch moves each chain as dop853 does, or refuses it with a message: an effect that a method
+does not know is never left out silently.
+"""
 
 from __future__ import annotations
 
@@ -23,52 +24,53 @@ from granchain_core.kernels.rk4.long_chain import LongChain
 from granchain_core.scene.effects import EFFECTS
 from granchain_core.scene.state import rest
 
-#: Every damping law, effect, kind of beads, of walls and of drives; most of these kernels are compiled for other tests
-#: too (tests/numerics/test_orders.py). Every method knows them.
+#: Every damping law and effect, and all kinds of beads, walls and drives, which every method knows. Most of these
+#: kernels are compiled for other tests too (tests/numerics/test_orders.py).
 KNOWN: dict[str, dict[str, object]] = {
     **{law: {"dissipation": law} for law in LAWS}, "foundation": {"kappa": 0.05}, "preload": {"F0": 5.0},
     "dimer": {"dimer": 0.4}, "taper": {"taper": 0.7}, "soft-wall": {"wall": 0.1}, "rigid-wall": {"wall": "rigid"},
     "struck": {"drive": "rest", "strike": 0.01},
 }
-#: Of the added ones dop853-root knows none yet: the tension cut, and any new effect, with its usual values.
+#: In addition, effects that dop853-root does not know: the tension cut, and any new effect, with its usual values.
 CHAINS = KNOWN | {effect.name: dict(effect.usual) for effect in EFFECTS if effect.name not in (*KNOWN, "dashpot")}
-#: Chains that a batch or a method's vectors for long chains may know: one with each effect.
+#: One chain with each effect; a batch, or the vectors for long chains, may know them.
 WITH_EFFECT = CHAINS | {"dashpot": {}}
 EFFECT_NAMES = [effect.name for effect in EFFECTS]
-#: Beads of a chain in one vector, and of one that is too long for it (kernels/rk4/long_chain.py).
+#: Numbers of beads of a chain in one vector, and of one too long for that (kernels/rk4/long_chain.py).
 BEADS, LONG = 11, 40
-#: The methods with fixed steps take 32 times the usual ones. In scaled time, in which a motion changes by its size
-#: in about 1, a method of order p is off by about the p-th power of a step.
+#: Fixed-step methods take 32 times as many steps as usual. In scaled time, in which a motion changes by its own size in
+#: a time of about 1, the error of a method of order p is about the p-th power of a step.
 _REFINED = 32
-#: With error control, as in tests/numerics/test_orders.py, the error is below a thousand tolerances.
+#: With error control, the error is below a thousand tolerances, as in tests/numerics/test_orders.py.
 _TOLERANCE, _PER_TOLERANCE = 1e-8, 1000.0
-#: A batch with a twelfth of its usual step is off by less than 2e-7 (tests/kernels/batch/test_batch_steps.py).
+#: With a twelfth of the usual step, the error of a batch is below 2e-7 (tests/kernels/batch/test_batch_steps.py).
 _BATCH_REFINED, _BATCH_ERROR = 12.0, 1e-6
 _PERIODS, _SAMPLES = 2, 8
 
-#: dop853 near rounding.
+#: dop853 with an error near rounding.
 _TRUE = MethodSetting("dop853", tolerance=1e-12)
 
 
 def chain(name: str, beads: int = BEADS) -> Scene:
-    """A scene of the tables above."""
+    """Return a scene from the tables above."""
     return scene("sec2").evolve(f=900.0, N=beads, **WITH_EFFECT[name])  # type: ignore[arg-type]
 
 
 @functools.cache
 def motion(name: str, setting: MethodSetting, beads: int = BEADS) -> np.ndarray:
-    """The samples of the first periods from rest, in scaled units."""
+    """Return samples of the first periods from rest, in scaled units."""
     engine = Engine(chain(name, beads), setting, _SAMPLES, account=METHODS[setting.method].error_control)
     return engine.record(_PERIODS * _SAMPLES).displacement
 
 
 def difference(found: np.ndarray, true: np.ndarray) -> float:
-    """Largest difference over the largest displacement."""
+    """Return the largest difference, relative to the largest displacement."""
     return float(np.abs(found - true).max() / np.abs(true).max())
 
 
 def of_its_order(setting: MethodSetting, one: Scene) -> float:
-    """A step to the power of the order that the method's row states for such a chain, or 1 where it states none."""
+    """Return a step to the power of the order that the method's row states for such a chain, or of 1 if it states none.
+    """
     method = METHODS[setting.method]
     order = method.observed_with_cut if one.cuts_tension else method.observed_order
     order = 1.0 if np.isnan(order) else order
@@ -92,7 +94,7 @@ def test_every_method_moves_a_chain_as_dop853_does_or_refuses_it(name: str, meth
 
 @pytest.mark.parametrize("name", EFFECT_NAMES)
 def test_a_long_chain_moves_with_each_effect_as_dop853_moves_it(name: str) -> None:
-    """In vectors along the chain where they know the effect."""
+    """It uses vectors along the chain if they know the effect."""
     setting = MethodSetting(RK4_SPLIT, refine=_REFINED)
     engine = Engine(chain(name, LONG), setting, _SAMPLES)
     known = not unknown_slots(engine.scaled.slots, "rk4")
@@ -104,7 +106,7 @@ def test_a_long_chain_moves_with_each_effect_as_dop853_moves_it(name: str) -> No
 
 @pytest.mark.parametrize("name", [*CHAINS, "dashpot"])
 def test_a_batch_moves_each_chain_as_dop853_moves_it(name: str) -> None:
-    """A chain at whose end nothing moves, or with an effect that batches do not know, cannot share one."""
+    """A chain that is not driven, or with an effect that batches do not know, cannot be in one."""
     one, scaled = chain(name), scale_chain(chain(name))
     assert can_share_batch(one) == (one.is_driven and not unknown_slots(scaled.slots, "batch"))
     if not can_share_batch(one):
@@ -118,7 +120,7 @@ def test_a_batch_moves_each_chain_as_dop853_moves_it(name: str) -> None:
 
 
 def test_a_batch_refuses_a_driver_at_rest() -> None:
-    """In all its lanes the driver's displacement is sin θ."""
+    """In all lanes, the driver's displacement is sin θ."""
     struck = chain("struck")
     assert not can_share_batch(struck)
     scaled = scale_chain(struck)
@@ -129,7 +131,8 @@ def test_a_batch_refuses_a_driver_at_rest() -> None:
 @pytest.mark.parametrize(("name", "beads"), [*((name, BEADS) for name in CHAINS if name != "linear"),
                                              *((name, LONG) for name in EFFECT_NAMES if name != "dashpot")])
 def test_a_method_that_left_an_effect_out_would_be_noticed(name: str, beads: int) -> None:
-    """It moves the chain by more than the tests above allow, and at the strobes by more than that of a batch does."""
+    """Each effect changes the motion by more than the tests above allow, and the strobes by more than that of a batch.
+    """
     bare, true = motion("linear", _TRUE, beads), motion(name, _TRUE, beads)
     seen = difference(bare, true)
     print(f"{name}: {seen:.3f}")
@@ -139,7 +142,7 @@ def test_a_method_that_left_an_effect_out_would_be_noticed(name: str, beads: int
 
 @pytest.mark.parametrize("driver", [PrescribedMotion(np.zeros(3)), None])
 def test_dop853_root_refuses_other_drives(driver: PrescribedMotion | None) -> None:
-    """One with a given motion, and none at all, which pieces of chains have."""
+    """It refuses a driver with a prescribed motion, and a missing driver, as in pieces of chains."""
     scaled = scale_chain(scene("sec2"))
     with pytest.raises(BadInput, match="with a driver that is harmonic or at rest"):
         Dop853RootStepper(1e-8, replace(scaled, slots=scaled.slots._replace(driver=driver)), 8)

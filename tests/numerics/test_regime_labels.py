@@ -1,4 +1,5 @@
-"""What a motion is called is what becomes of it: a slice of regime_labels.py, and the orbit beside a motion by itself.
+"""Regime labels agree with the further course of the motion (a sample of regime_labels.py), and the orbit near a motion
+is found.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from tests.numerics.regime_labels import judged
 
 @pytest.mark.parametrize(("place", "width"), [(256.0, 0.75), (832.5, 0.25)])
 def test_labels_beside_a_period_doubling_are_what_becomes_of_the_motion(place: float, width: float) -> None:
-    """Down, in steps of 0.25 Hz: on the unstable orbit the chain lingers for hundreds of periods, and that is not
+    """Swept down in steps of 0.25 Hz, the chain lingers on the unstable orbit for hundreds of periods, which is not
     chaos.
     """
     found = list(judged(place, width, 0.25, "down"))
@@ -28,7 +29,7 @@ def test_labels_beside_a_period_doubling_are_what_becomes_of_the_motion(place: f
 
 
 def beside(f: float, period: int, offset: float, **knobs: float) -> NearbyOrbit:
-    """The orbit found from a state so far away from the exact one, relative."""
+    """Return the orbit found from a state at this relative offset from the exact one."""
     chain = scene("sec2").evolve(f=f, **knobs)
     exact = orbit(chain, period)
     x = FiniteDifferenceMap(chain, period).inner(scale_chain(chain).from_si(exact.state))
@@ -40,14 +41,15 @@ def beside(f: float, period: int, offset: float, **knobs: float) -> NearbyOrbit:
 
 @pytest.mark.parametrize(("f", "period"), [(340.0, 1), (1130.0, 3), (1980.0, 1), (1330.0, 1)])
 def test_differences_give_the_multipliers_of_the_tangent_flow(f: float, period: int) -> None:
-    """Two routes to |μ|. At four times the default steps the map is right to some 1e-7, its differences to some 1e-5.
+    """Both give the same |μ|. With four times the default steps, the map is accurate to about 1e-7, and its differences
+    to about 1e-5.
     """
     exact = float(np.abs(orbit(scene("sec2").evolve(f=f), period).multipliers[0]))
     assert beside(f, period, 1e-4).modulus == pytest.approx(exact, abs=2e-5)
 
 
 def test_newtons_method_ends_where_the_tangent_flows_does() -> None:
-    """The fixed point of the map by steps of a quarter is the orbit to the map's error over 1 − |μ|."""
+    """The fixed point of the map with quarter steps agrees with the orbit to the map's error over 1 − |μ|."""
     chain = scene("sec2").evolve(f=340.0)
     stroboscopic_map = FiniteDifferenceMap(chain, 1)
     exact = stroboscopic_map.inner(scale_chain(chain).from_si(orbit(chain, 1).state))
@@ -57,8 +59,7 @@ def test_newtons_method_ends_where_the_tangent_flows_does() -> None:
 
 
 def test_an_orbit_of_a_part_of_the_period_is_told_as_that() -> None:
-    """Newton's method on four periods of a period-1 motion finds that orbit; its multipliers are those of one period.
-    """
+    """For four periods of a period-1 motion, Newton's method finds that orbit, with the multipliers of one period."""
     chain = scene("sec2").evolve(f=340.0)
     x = FiniteDifferenceMap(chain, 4).inner(scale_chain(chain).from_si(settle(chain).state))
     found = orbit_of(chain, 4, x, Stop())
@@ -66,7 +67,8 @@ def test_an_orbit_of_a_part_of_the_period_is_told_as_that() -> None:
 
 
 def test_a_slow_orbit_is_approached_and_an_unstable_one_is_not() -> None:
-    """1980 Hz: |μ| = 0.99946. 1330 Hz: |μ| = 1.026, and a departure is drawn out along what grows only."""
+    """At 1980 Hz, |μ| = 0.99946. At 1330 Hz, |μ| = 1.026, and a departure is amplified only in the growing direction.
+    """
     slow, left = beside(1980.0, 1, 1e-4), beside(1330.0, 1, 1e-6)
     assert slow.stable and not slow.unstable and slow.approached()
     assert left.unstable and not left.stable and not left.approached()
@@ -75,21 +77,21 @@ def test_a_slow_orbit_is_approached_and_an_unstable_one_is_not() -> None:
     assert np.abs((further - left.point.x) / sizes(left.point.x)).max() == pytest.approx(3e-3, rel=1e-9)
     now, later = (np.linalg.norm((s - left.point.x) / sizes(left.point.x), axis=1).max()
                   for s in left.stroboscopic_map.passed(further, 16, 16))
-    assert later / now == pytest.approx(left.modulus**32, rel=0.1)  # in a turn of 16 orbits, and still nearly linear
+    assert later / now == pytest.approx(left.modulus**32, rel=0.1)  # over twice 16 orbits, and still nearly linear
     beyond = left.point.x + 1.5 * (further - left.point.x)
     assert NearbyOrbit(left.stroboscopic_map, left.point, beyond, left.modulus).amplified_departure() is None
 
 
 @pytest.mark.long
 def test_a_closed_curve_beside_a_stable_orbit_is_not_that_orbit() -> None:
-    """146.42 Hz, swept up: |μ| = 0.9993, and yet the chain stays on a closed curve 0.008 away, to 16,000 periods."""
+    """Swept up to 146.42 Hz, the chain stays on a closed curve 0.008 away for 16,000 periods, although |μ| = 0.9993."""
     swept = resonance_curve(scene("sec2"), np.arange(145.92, 146.5, 0.25), "up")
     assert swept.points[-1].regime.name == "quasi-periodic"
 
 
 @pytest.mark.parametrize("f", [1980.0, 1990.0])
 def test_one_motion_has_one_name_from_curve_and_page(f: float) -> None:
-    """|μ| = 0.9995 and 0.9987: the orbit is claimed by both, with its multiplier, and with the same force."""
+    """With |μ| = 0.9995 and 0.9987, both report the orbit, with its multiplier and the same force."""
     chain = scene("sec2").evolve(f=f)
     pictured, drawn = settle(chain), resonance_curve(chain, [f]).points[0]
     assert (pictured.regime.name, pictured.regime.period) == (drawn.regime.name, drawn.regime.period) == ("periodic", 1)
@@ -101,9 +103,9 @@ def test_one_motion_has_one_name_from_curve_and_page(f: float) -> None:
 
 
 def test_a_slow_approach_is_not_quasi_periodic() -> None:
-    """A0 = 0.3 µm at 1500 Hz: |μ| = 0.9995.
+    """With A0 = 0.3 µm at 1500 Hz, |μ| = 0.9995.
 
-    300 periods look like a closed curve; `run` claims nothing that it is not yet.
+    After 300 periods, the motion looks like a closed curve; `run` labels it unsettled.
     """
     chain = scene("sec2").evolve(A0=3e-7, f=1500.0)
     assert run(chain, periods=300).regime.name == "unsettled"

@@ -1,8 +1,9 @@
-"""Program and kernel: brief touches by the hundred thousand, and whether dop853 misses one.
+"""A program and its kernel: checks with a hundred thousand brief touches that dop853 misses none.
 
     python -m tests.numerics.touches --count 100000 [--seed 1]
 
-Single touches are those of the hard case (granchain_core/hard_cases/touches.py); two in one step are here.
+Single touches are those of the hard case (granchain_core/hard_cases/touches.py); pairs within one step are defined
+here.
 """
 
 from __future__ import annotations
@@ -40,7 +41,7 @@ __all__ = ["CLOSINGS", "CLOSING_ERROR", "DEPTH", "OPENING_ERROR", "TOLERANCE", "
 
 @kernel
 def two_touches(rate, gaps, tolerance, work, y, counts, static, chain, times):
-    """Times at which two beads on springs, thrown apart with amplitude 1, reach standing driver and wall."""
+    """Compute when two beads on springs, thrown apart with amplitude 1, reach the resting driver and the wall."""
     static[0], static[1], static[2] = -gaps[0], -1e3, -gaps[1]
     slots = Slots(chain, None, None, Foundation(rate * rate), Preload(static), Harmonic(0.0, rate), None)
     end = 0.5 * pi / rate
@@ -64,8 +65,8 @@ def two_touches(rate, gaps, tolerance, work, y, counts, static, chain, times):
 
 
 def run_pairs(count: int, seed: int, tolerance: float) -> np.ndarray:
-    """(count, 3): the time between two touches as a part of the period, log-uniform from 1e-13, and both touches'
-    errors.
+    """Return rows (count, 3): the time between two touches as a fraction of the period, log-uniform from 1e-13, and the
+    errors of both.
     """
     rng = np.random.default_rng(seed)
     work, found = workspace(4), np.zeros((count, 3))
@@ -81,13 +82,13 @@ def run_pairs(count: int, seed: int, tolerance: float) -> np.ndarray:
 
 
 def main() -> None:
-    """Print what was missed and how near the closings are."""
+    """Print missed touches and the accuracy of the closings."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--count", type=int, default=100_000)
     parser.add_argument("--seed", type=int, default=1)
     args = parser.parse_args()
     for driven in (True, False):
-        run(draw(2, 0, driven), driven)  # compiled
+        run(draw(2, 0, driven), driven)  # compiles the kernel
         began = time.perf_counter()
         cases = draw(args.count, args.seed, driven)
         found = run(cases, driven)

@@ -1,4 +1,4 @@
-"""Forces that tests feed to observers: computed by dop853 from a chain whose states are known too."""
+"""Forces for the observers in tests, computed by dop853 from a chain whose states are known too."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from granchain_core.integrate import Engine, MethodSetting
 
 @dataclass(frozen=True)
 class Recorded:
-    """A chain on its orbit: times, input and output force, displacements (T, N), and the state at the first time.
+    """A chain on its orbit: times, input and output forces, displacements (T, N), and the state at the first time.
 
-    `largest` (2,) are the largest output force and the largest of its elastic part, between the samples too.
+    `largest` (2,) has the largest output force and its largest elastic part, including maxima between samples.
     """
 
     time: np.ndarray
@@ -26,7 +26,7 @@ class Recorded:
 
 
 def recorded(scene: Scene, samples: int, periods: int = 3) -> Recorded:
-    """`periods` drive periods of the settled chain of `scene`, `samples` samples each."""
+    """Record `periods` drive periods of the settled chain of `scene`, with `samples` samples each."""
     start = orbit(scene).state
     engine = Engine(scene, MethodSetting("dop853", tolerance=1e-12), samples)
     engine.start(start)
@@ -37,5 +37,5 @@ def recorded(scene: Scene, samples: int, periods: int = 3) -> Recorded:
 
 
 def error(found: np.ndarray, true: np.ndarray) -> float:
-    """Largest difference over the largest value."""
+    """Return the largest difference, relative to the largest value."""
     return float(np.abs(found - true).max() / np.abs(true).max())

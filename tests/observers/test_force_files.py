@@ -1,4 +1,5 @@
-"""Measured forces from files: what is meant is read, what cannot be is refused with its line, and files come round."""
+"""Measured forces from files are read as meant or refused with a line number, and saved observations can be read again.
+"""
 
 from __future__ import annotations
 
@@ -63,7 +64,7 @@ def test_a_comparison_that_is_not_made_is_said_first() -> None:
 
 
 def lines(changes: dict[int, str]) -> str:
-    """Sixty samples with some lines replaced; line 1 is the header, line 2 the first sample."""
+    """Return sixty samples with some lines replaced; line 1 is the header, line 2 the first sample."""
     text = csv(pulse()).splitlines()
     return "\n".join(changes.get(number, line) for number, line in enumerate(text, 1))
 
@@ -92,7 +93,7 @@ def test_units_that_contradict_the_header_are_refused() -> None:
 
 
 def test_a_number_with_two_readings_is_asked_for_and_read_as_answered() -> None:
-    """An option of the command, --decimal, gives the answer."""
+    """The command's option --decimal gives the answer."""
     text = "\n".join(f"{row}.100;0,5" for row in range(1, 13))
     with pytest.raises(Unclear, match=r"'1\.100' is 1\.1 with a decimal point and 1100 with a decimal comma"):
         read_force_csv(text.replace("0,5", "5"))
@@ -134,12 +135,14 @@ def test_a_gap_is_bridged_only_as_chosen_and_said() -> None:
     assert any("1 gap interpolated" in note for note in smooth.record.notes)
     assert (zero.record.force == 0.0).sum() == 2 and len(smooth.time) == len(kept)
     true = observe(CHAIN, time, force)
-    # across 20 samples of a slow force a cubic is good to some per cent; zero force is another force
+    # across 20 samples of a slow force, a cubic is accurate to a few per cent; zero is a different force
     assert error(smooth.displacement[-1], true.displacement[-1]) < 0.1 * error(zero.displacement[-1], true.displacement[-1])
 
 
 def test_the_error_beside_a_gap_does_not_depend_on_which_sample_is_the_last_before_it() -> None:
-    """Zero force was put into the gap; a sensor half as fast has it at twice the distance, whatever the parity."""
+    """Zero force was inserted into the gap; with half the sampling rate, it is at twice the distance, whatever the
+    parity.
+    """
     shown, step, finer = scene("sec2").evolve(N=3, k=1e5), 2e-6, 4
     dense = np.arange(finer * 1000) * step / finer
     force = np.maximum(0.0, np.sin(2.0 * np.pi * 800.0 * dense)) ** 2
@@ -157,7 +160,7 @@ def test_the_error_beside_a_gap_does_not_depend_on_which_sample_is_the_last_befo
 
 
 def test_a_sample_beside_a_gap_is_named_as_in_its_source() -> None:
-    """Too coarse a record is refused with the place of its largest force, zeros in gaps not counted."""
+    """A record that is too coarse is refused with the place of its largest force; zeros in gaps are not counted."""
     time, force = np.arange(60) * 1e-3, np.zeros(60)
     force[50] = 1.0
     with pytest.raises(BadInput, match="Sample 45: a pulse of 1 N"):
@@ -197,7 +200,7 @@ def test_a_run_written_by_granchain_is_observed_and_comes_round(tmp_path: Path, 
 
 
 def test_a_difference_from_an_output_of_zeros_has_no_per_cent(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """There is nothing to divide by: the key stays and its value is null, in the JSON and in the file."""
+    """There is nothing to divide by, so the key has the value null, in the JSON and in the file."""
     table, out = tmp_path / "force.csv", tmp_path / "seen.h5"
     table.write_text("time_s,force_N,output_force_N\n" + "".join(f"{i * STEP:.9g},{one:.9g},0\n" for i, one in enumerate(pulse())))
     words = ["observe", "fig11-founded", "--input", str(table)]

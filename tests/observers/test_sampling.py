@@ -1,4 +1,4 @@
-"""An observer of a known chain: it follows to the interpolation's error, which has the order that is stated."""
+"""An observer follows a known chain to the error of the interpolation, which has the expected order."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ def test_the_observer_follows_its_chain_to_the_error_it_states(known) -> None:  
         r = records[samples]
         seen = observe(shown, r.time, r.force, r.output, start=r.start)
         assert error(seen.displacement, r.displacement) <= seen.displacement_error
-        assert seen.displacement_error < 0.1  # a bound that says something
-        assert seen.status == "accuracy-not-reached"  # 1e-6 is asked for, and the samples are too far apart for it
+        assert seen.displacement_error < 0.1  # a meaningful bound
+        assert seen.status == "accuracy-not-reached"  # 1e-6 is requested, but the samples are too far apart for it
         found = np.array([seen.max_output_force, seen.max_output_force_elastic])
         assert (np.abs(found / r.largest - 1.0) <= seen.force_errors.row[1:]).all()
         assert seen.residual is not None and seen.residual.relative < 0.01
@@ -42,7 +42,7 @@ def test_the_dashpots_jump_costs_orders(known) -> None:  # type: ignore[no-untyp
     dense = records[16000]
 
     def lost(samples: int) -> float:
-        """RMS error of the interpolated force over its largest value."""
+        """Return the RMS error of the interpolated force, relative to its largest value."""
         from scipy.interpolate import PchipInterpolator
 
         r = records[samples]
@@ -50,9 +50,9 @@ def test_the_dashpots_jump_costs_orders(known) -> None:  # type: ignore[no-untyp
         return float(np.sqrt(np.mean((found - dense.force) ** 2)) / np.abs(dense.force).max())
 
     order = np.polyfit(np.log(RATES), [-np.log(lost(n)) for n in RATES], 1)[0]
-    # A jump within one spacing h: an error of order 1 over a time h, in root mean square h^{1/2}. The
-    # elastic onset δ^{3/2} gives h^2, which dominates at these rates; for much finer ones Kuwabara and Kono's damping,
-    # which begins as the root of the time, gives h. Where the jump lies in its interval moves the fit by some tenths.
+    # A jump within one spacing h gives an error of order 1 over a time h: h^{1/2} in root mean square. The elastic
+    # onset δ^{3/2} gives h^2, which dominates at these rates; at much finer ones, Kuwabara and Kono's damping, which
+    # begins as the root of time, gives h. The place of the jump in its interval changes the fit by a few tenths.
     assert order == pytest.approx(0.5, abs=0.3) if shown is FOUNDED else order == pytest.approx(2.0, abs=0.5)
 
 
@@ -82,12 +82,12 @@ def test_the_accuracy_is_reached_where_steps_and_samples_suffice() -> None:
     r = recorded(SMOOTH, 500)
     seen = observe(SMOOTH.evolve(accuracy=2e-3), r.time, r.force, start=r.start)
     assert seen.status == "done" and 1e-3 < seen.displacement_error <= 2e-3
-    # the steps alone reach it
+    # only the steps reach it
     assert observe(SMOOTH.evolve(accuracy=1e-3), r.time, r.force, start=r.start).status == "accuracy-not-reached"
 
 
 def test_steps_of_a_chain_that_cuts_tension_are_known_to_the_error_that_is_stated() -> None:
-    """Its steps have order 1 and their error falls unevenly: two computations agree to a fifth of it."""
+    """Its steps have order 1, and their error falls unevenly: two computations may agree to a fifth of it."""
     shown = scene("sec2").evolve(N=3, f=1000.0, dissipation="tsuji", tension="cut", accuracy=1e-3)
     given = run(shown, periods=0, record=15, samples=400)
     seen = observe(shown, given.time, given.input_force)
@@ -101,4 +101,4 @@ def test_an_observer_without_foundation_does_not_hide_what_it_loses() -> None:
     r = recorded(free, 2000)
     seen = observe(free, r.time, r.force, start=r.start)
     assert error(seen.displacement, r.displacement) <= seen.displacement_error
-    assert seen.interpolation_error > 0.01  # its multiplier 4.4 a period makes much of little
+    assert seen.interpolation_error > 0.01  # its multiplier of 4.4 per period amplifies small errors

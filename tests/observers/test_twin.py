@@ -1,4 +1,4 @@
-"""Chain and observer in one integration: they synchronise or diverge as the observer's leading multiplier predicts."""
+"""Chain and observer, integrated together, synchronise or diverge as the observer's leading multiplier predicts."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ def test_the_distance_goes_with_the_leading_multiplier(shown, frequency: float) 
     found = twin(shown.evolve(f=frequency), 1e-7, 60)
     assert found.leading is not None and found.rate is not None
     assert len(found.measured) == (1 if found.leading.imag == 0.0 else 2)
-    # The recurrence is exact for one or two multipliers; the others, and distances up to 0.03, leave a few per mille.
+    # The recurrence is exact for one or two multipliers; the others, and distances up to 0.03, cost a few per mille.
     nearest = min(abs(z - found.leading) for z in found.measured)
     assert nearest < 5e-3 * abs(found.leading)
-    # A line fitted to an oscillating logarithm is less accurate: two per cent over a window of ten periods.
+    # A line fitted to an oscillating logarithm is less accurate: 2 % over a window of ten periods.
     assert found.rate == pytest.approx(abs(found.leading), rel=0.03)
 
 
@@ -38,8 +38,8 @@ def test_without_foundation_the_observer_drifts_and_the_verdict_says_so() -> Non
     assert found.verdict == "drifts" and "drifts" in found.sentence
     assert "a common shift of all its beads grows exponentially" in found.sentence
     assert found.leading is not None and found.leading.real > 1.0 and found.leading.imag == 0.0
-    assert found.translation > 0.8  # the uniform shift is most of what grows
-    assert found.distance[-1] > 0.5  # and it is left in: nothing brings the observer back
+    assert found.translation > 0.8  # most of the growth is a uniform shift
+    assert found.distance[-1] > 0.5  # and it remains: nothing brings the observer back
     assert np.abs(found.offset[-1]) > 0.05 * FREE.A0
 
 
@@ -53,7 +53,7 @@ def test_a_drift_is_a_shift_that_nothing_holds_and_that_does_not_turn(chain: Sce
 
 
 def test_each_verdict_has_its_condition() -> None:
-    """Of one twin without foundation, whose rate, leading multiplier and shape are given."""
+    """A twin without a foundation is given various rates, leading multipliers and shapes."""
     found = twin(FREE, 1e-6, 30)
     assert found.orbit is not None and found.orbit.observer_multipliers is not None
     others = found.orbit.observer_multipliers[1:]
@@ -89,7 +89,7 @@ def test_an_observer_that_starts_where_its_chain_is_stays_there(changes) -> None
     pair.start(rest(shown), rest(shown))
     rows, n = pair.engine.record(96), shown.N
     assert np.abs(rows.displacement[:, :n]).max() > 0.01
-    # 2e-14 where the compiler sums the two halves in different orders, nothing where it does not
+    # 2e-14 if the compiler sums the two halves in different orders, otherwise zero
     assert rows.displacement[:, n + 1 :] == pytest.approx(rows.displacement[:, :n], abs=1e-12)
     one, other = pair.states
     assert other.velocity == pytest.approx(one.velocity, abs=1e-12 * np.abs(one.velocity).max())
@@ -102,7 +102,7 @@ def test_the_chain_of_a_pair_moves_as_it_does_alone() -> None:
     pair.start(rest(FOUNDED), granchain_core.orbit(FOUNDED).state)
     alone = Engine(FOUNDED, MethodSetting("dop853", tolerance=1e-13), 16)
     together, single = pair.engine.record(80), alone.record(80)
-    # two runs of dop853 with other steps
+    # two runs of dop853 with different steps
     assert together.displacement[:, : FOUNDED.N] == pytest.approx(single.displacement, abs=1e-9)
 
 
@@ -124,7 +124,7 @@ def test_the_observers_multipliers_are_finite_differences_of_the_pair() -> None:
     found = np.linalg.eigvals(np.stack(columns, axis=1))
     found = found[np.argsort(-np.abs(found))]
     assert orbit.observer_multipliers is not None
-    # central differences over kinks of contacts err by about h
+    # central differences over kinks of contacts have errors of about h
     assert np.abs(found) == pytest.approx(np.abs(orbit.observer_multipliers), abs=2e-4)
 
 
@@ -138,7 +138,7 @@ def test_how_much_foundation_makes_an_observer_stable() -> None:
 
 
 def test_a_jump_to_another_branch_is_no_threshold(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Stability changes between two values whose orbits have one period, but were reached from rest each."""
+    """Stability changes between two values whose orbits have the same period, but were each reached from rest."""
     shown = FREE.evolve(f=200.0)
     real = stability.periodic_orbit
 
@@ -178,7 +178,7 @@ def test_one_multiplier_is_not_fitted_by_two() -> None:
 
 
 def test_a_rate_near_one_decides_nothing_without_a_multiplier() -> None:
-    """Distances that scatter by a tenth about a constant: either sign of the slope is within its error."""
+    """Distances scatter by a tenth about a constant, so either sign of the slope is within its error."""
     found = twin(CHAOTIC, 1e-9, 40, samples=8)
     distances = np.exp(0.1 * np.random.default_rng(1).standard_normal(12))[:, None]
     rate, error = rate_of(distances)
@@ -190,7 +190,7 @@ def test_a_rate_near_one_decides_nothing_without_a_multiplier() -> None:
 
 
 def test_an_observer_that_is_in_step_before_a_rate_shows_synchronises() -> None:
-    """Two strobes are linear, and the next is rounding; one that began in step has shown nothing."""
+    """The distance is linear for two strobes, and then only rounding. An observer that began in step proves nothing."""
     slow = twin(FOUNDED, 1e-6, 6, samples=8)
     fast = np.repeat([1e-3, 1e-7, 1e-15], 8)
     time = np.arange(24) / 8 * FOUNDED.period

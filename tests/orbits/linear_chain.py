@@ -1,4 +1,4 @@
-"""Multipliers of a preloaded chain that hardly moves, from the matrix exponential of its linear equations."""
+"""Multipliers of a preloaded chain with small motion, from the matrix exponential of its linear equations."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from granchain_core.orbits.orbit import sorted_multipliers
 
 
 def linear_multipliers(shown: Scene) -> np.ndarray:
-    """Eigenvalues of exp(A T) of the linearised chain in SI, largest modulus first."""
+    """Return the eigenvalues of exp(A T) for the linearised chain in SI units, largest modulus first."""
     n, mass = shown.N, shown.masses()
     spring = 1.5 * shown.contact_stiffness() * np.sqrt(shown.static_overlap())
     joins = np.zeros((n + 1, n))  # overlap of contact c = u_{c-1} − u_c

@@ -1,4 +1,4 @@
-"""Branches that are stopped, saved, continued and refused: the branch stays the same, and refusals are one sentence."""
+"""Branches that are stopped, saved and continued stay the same, and refusals are one sentence."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ from granchain_core.store import load_branch, save_branch
 
 
 def begun() -> Branch:
-    """A branch of few orbits with special points, both ways."""
+    """Begin a branch in both directions, with few orbits and some special points."""
     return begin_branch(scene("sec2").evolve(f=1550.0), "f", 1400.0, 1650.0, 1, both=True)
 
 
 @pytest.fixture(scope="module")
 def whole() -> Branch:
-    """That branch, followed without a break."""
+    """That branch, followed without interruption."""
     return Continuation(begun()).run()
 
 
 def assert_same(one: Branch, other: Branch) -> None:
-    """Equal to the last bit, special points and next steps included."""
+    """Assert equality to the last bit, including special points and next steps."""
     assert [arm.step for arm in one.half_branches] == [arm.step for arm in other.half_branches]
     assert [arm.reason for arm in one.half_branches] == [arm.reason for arm in other.half_branches]
     for mine, its in zip([*one.points, *(p for s in one.special for p in (s.before, s.after))],
@@ -59,7 +59,7 @@ def test_a_branch_that_was_saved_goes_on_as_if_it_had_never_stopped(tmp_path: Pa
 
 
 def test_checkpoints_keep_the_names_that_orbits_had_in_them(whole: Branch) -> None:
-    """A branch that was interrupted by an earlier version is resumed from its file."""
+    """This way, a branch that was interrupted in an earlier version can be resumed from its file."""
     special = whole.special[0]
     kept = json.loads(json.dumps(special_as_json(special)))
     assert {"liouville", "turns"} < set(kept["before"]) and not {"liouville_error", "overlap_extrema"} & set(kept["before"])
@@ -71,7 +71,7 @@ def test_checkpoints_keep_the_names_that_orbits_had_in_them(whole: Branch) -> No
 def test_points_one_by_one_are_those_of_both_threads(whole: Branch) -> None:
     one_by_one = begun()
     count = sum(1 for _ in Continuation(one_by_one))
-    assert count == len(whole.points) - 1  # the starting orbit was there before
+    assert count == len(whole.points) - 1  # the starting orbit existed before
     assert_same(one_by_one, whole)
 
 

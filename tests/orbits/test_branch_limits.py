@@ -1,4 +1,4 @@
-"""Branches to the ends F0 = 0 and D = 0, where contacts just touch and where nothing is damped."""
+"""Branches to F0 = 0, where contacts just touch, and to D = 0, where nothing is damped."""
 
 from __future__ import annotations
 
@@ -21,7 +21,9 @@ from granchain_core.store import load_branch, save_branch
 
 
 def stands(shown: Scene, found: Branch) -> None:
-    """The branch has reached its end, is right everywhere, and its last orbit is that of a search of its own."""
+    """Assert that the branch is right everywhere and has reached its end, and that a direct search finds its last
+    orbit.
+    """
     last = found.points[-1]
     assert found.half_branches[0].ended == "reached" and last.knob == found.axis.end and check_branch(found) == []
     assert found.summary()[1] == found.half_branches[0].reason  # which says "reached" itself
@@ -34,7 +36,7 @@ def stands(shown: Scene, found: Branch) -> None:
     (1.0, {"N": 2, "f": 2000.0, "dissipation": "tsuji"}),
 ])
 def test_a_branch_over_the_preload_reaches_zero_and_begins_there(preload: float, changes: dict[str, object]) -> None:
-    """The static overlap goes as F0^{2/3}, and so do the orbits near F0 = 0."""
+    """The static overlap varies as F0^{2/3}, and so do the orbits near F0 = 0."""
     shown = scene("sec2").evolve(**changes)
     down, up = (branch(shown.evolve(F0=ends[0]), "F0", *ends, 1) for ends in ((preload, 0.0), (0.0, preload)))
     stands(shown, down)
@@ -57,11 +59,11 @@ def test_the_coordinate_of_the_preload_and_its_inverse() -> None:
 
 
 def test_a_file_from_before_goes_on_in_its_own_coordinate(tmp_path: Path) -> None:
-    """Tangents and P_p of a file without the attribute belong to a coordinate that is linear in F0."""
+    """In a file without the attribute, tangents and P_p are for a coordinate that is linear in F0."""
     shown = scene("sec2").evolve(N=2, f=2000.0, F0=1.0)
     begun = begin_branch(shown, "F0", 1.0, 0.5, 1)
     assert load_branch(save_branch(begun, tmp_path / "new.h5")).axis == begun.axis
-    # what the earlier version followed: the same seed with its tangent in the linear coordinate
+    # as in the earlier version: the same seed with its tangent in the linear coordinate
     seed, axis = begun.points[0], replace(begun.axis, by_overlap=False)
     ratio = axis.slope(1.0) / begun.axis.slope(1.0)
     tangent = np.append(seed.tangent[:-1], seed.tangent[-1] / ratio)
@@ -81,7 +83,7 @@ def test_a_file_from_before_goes_on_in_its_own_coordinate(tmp_path: Path) -> Non
 
 @pytest.mark.parametrize("changes", [{"N": 3, "f": 1500.0}, {"N": 2, "f": 2000.0}])
 def test_the_end_without_damping_is_no_special_point(changes: dict[str, object], tmp_path: Path) -> None:
-    """At D = 0 the map is conservative: whether |μ| of a stable pair is above 1 was decided by rounding."""
+    """At D = 0, the map is conservative; rounding used to decide whether |μ| of a stable pair is above 1."""
     shown = scene("sec2").evolve(**changes)
     found = branch(shown, "D", 50.0, 0.0, 1)
     stands(shown, found)
@@ -108,7 +110,8 @@ def test_without_damping_stability_changes_only_where_multipliers_leave_the_circ
 
 @pytest.mark.parametrize(("name", "frequency", "amplitude"), [("rig", 100.0, 1e-9), ("sec2", 84.0, 1e-8)])
 def test_a_branch_of_a_small_drive_under_preload_is_found(name: str, frequency: float, amplitude: float) -> None:
-    """Beads that follow a slow drive rest at phase 0: relative to displacements there, rounding was a residual."""
+    """Beads that follow a slow drive are at rest at phase 0; relative to such displacements, rounding was a residual.
+    """
     shown = scene(name).evolve(N=3, F0=1.0, f=frequency, A0=amplitude)
     found = branch(shown, "f", frequency, 1.003 * frequency, 1)
     assert found.half_branches[0].ended == "reached" and check_branch(found) == []

@@ -1,4 +1,4 @@
-"""Branches: what holds on each of them, and what the settled motion, symmetries and direct solutions say about them."""
+"""Branches satisfy their invariants, and agree with settled motions, symmetries and direct solutions."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ from granchain_core.orbits import (
 )
 from granchain_core.orbits.branch.half_branch import HalfBranch, HalfContinuation
 
-#: What the settled picture is asked for; its converged orbit then agrees with a branch's to some multiples of it.
+#: Accuracy requested of the settled picture; its orbit then agrees with that of a branch to a few times this.
 _ASKED = 1e-8
 
 
 @pytest.fixture(scope="module")
 def folded() -> Branch:
-    """sec2 upwards from 340 Hz: two folds, back and forth, to the first period doubling behind them."""
+    """sec2 upwards from 340 Hz, through two folds, back and forth, to the first period doubling after them."""
     begun = begin_branch(scene("sec2"), "f", 340.0, 400.0, 1)
     for _ in Continuation(begun):
         if any(s.kind == "period_doubling" for s in begun.special) and not begun.points[-1].stable:
@@ -42,12 +42,13 @@ def doubling() -> Branch:
 
 
 def special_point(branch: Branch, kind: str, number: int = 0) -> SpecialPoint:
-    """One special point of a kind."""
+    """Return one special point of a kind."""
     return [s for s in branch.special if s.kind == kind][number]
 
 
 def departure_after_disturbance(branch: Branch, point: BranchPoint, disturbed: float = 1e-4) -> float:
-    """Relative distance in output force from the orbit to where the slightly disturbed chain settles."""
+    """Return the relative difference in output force between the orbit and the motion of the slightly disturbed chain.
+    """
     state, shown = branch.state(point), branch.axis.scene_at(point.knob).evolve(accuracy=_ASKED)
     start = State(state.displacement * (1.0 + disturbed), state.velocity)
     found = settle(shown, start).run.max_output_force_elastic
@@ -68,12 +69,12 @@ def test_special_points_are_enclosed_narrowly_and_their_multipliers_are_critical
         assert s.interval[1] - s.interval[0] <= 1e-5 * s.knob
         if s.kind != "grazing":
             assert s.multiplier is not None
-            assert abs(s.multiplier) == pytest.approx(1.0, abs=2e-2)  # at a fold |μ| − 1 goes with the root of the width
+            assert abs(s.multiplier) == pytest.approx(1.0, abs=2e-2)  # at a fold, |μ| − 1 varies as the root of the width
             assert (s.multiplier.real > 0) == (s.kind == "fold")
 
 
 def test_stability_is_what_the_disturbed_chain_does(folded: Branch) -> None:
-    """On both sides of each change of stability: back to the orbit where it is stable, away where it is not."""
+    """On both sides of each change of stability, it returns to the orbit if this is stable, and leaves it if not."""
     chosen = {}
     for place, s in enumerate(t for t in folded.special if t.kind != "grazing"):
         before = [p for p in folded.points if p.arclength <= s.before.arclength and abs(abs(p.multipliers[0]) - 1) > 0.01]
@@ -81,13 +82,13 @@ def test_stability_is_what_the_disturbed_chain_does(folded: Branch) -> None:
         chosen[place] = (before[-1], *after[:1])
     points = [point for pair in chosen.values() for point in pair]
     assert {point.stable for point in points} == {True, False}
-    for point in points:  # back: to the error of a picture's largest force, 96 samples a period
+    for point in points:  # it returns to the error of a picture's largest force, with 96 samples per period
         departure = departure_after_disturbance(folded, point)
         assert departure < 1e-5 if point.stable else departure > 1e-4
 
 
 def test_the_folds_are_where_up_and_down_sweeps_jump(folded: Branch) -> None:
-    """Settling from the last stable orbit: it stays 0.2 Hz inside the fold and leaves 0.2 Hz beyond it."""
+    """A motion from the last stable orbit stays near it 0.2 Hz before the fold, and leaves it 0.2 Hz beyond."""
     upper = special_point(folded, "fold")
     sweep = granchain_core.branch(scene("sec2"), "f", 340.0, upper.interval[0] - 0.2, 1)
     edge, state = sweep.points[-1], sweep.state(sweep.points[-1])
@@ -95,7 +96,7 @@ def test_the_folds_are_where_up_and_down_sweeps_jump(folded: Branch) -> None:
     beyond = settle(sweep.axis.scene_at(upper.interval[1] + 0.2), state).run.max_output_force_elastic
     assert inside == pytest.approx(edge.max_output_force_elastic, rel=1e-5)
     assert beyond != pytest.approx(inside, rel=5e-3)
-    # and the other stable piece, behind the second fold, is there at the same frequency: hysteresis
+    # the other stable part, after the second fold, exists at the same frequency: hysteresis
     lower = special_point(folded, "fold", 1)
     other = next(p for p in folded.points if p.arclength > lower.after.arclength and p.knob > lower.knob)
     assert other.stable and lower.knob < other.knob < upper.knob
@@ -114,7 +115,7 @@ def test_a_doubling_has_a_doubled_branch_that_leads_to_the_next_one(doubling: Br
     begun = switch_to_doubled(doubling, parting)
     seed = begun.points[0]
     once = begin_branch(begun.axis.scene, "f", seed.knob, 225.0, 1, begun.state(seed)).points[0]
-    # two orbits at one frequency: that of one period, unstable, and one that alternates about it
+    # two orbits at one frequency: an unstable one of period 1, and one that alternates about it
     assert begun.period == 2 and seed.stable and not once.stable
     assert np.abs(once.x - seed.x).max() > 1e-3 * np.abs(seed.x).max()
     found = Continuation(begun).run()
@@ -133,7 +134,9 @@ def test_a_doubling_has_a_doubled_branch_that_leads_to_the_next_one(doubling: Br
 
 
 def test_doublings_beside_grazings_bound_one_doubled_branch() -> None:
-    """The normal forms have coefficients of some thousands: only orbits very near the doubling are found from it."""
+    """The coefficients of the normal forms are in the thousands, so only orbits very near the doubling are found from
+    it.
+    """
     valley = branch(scene("sec2"), "f", 390.0, 402.0, 1)
     lower, upper = (s for s in valley.special if s.kind == "period_doubling")
     doubled = Continuation(switch_to_doubled(valley, upper)).run()
@@ -168,13 +171,13 @@ def test_every_continuous_knob_can_be_followed(knob: str, start: float, end: flo
     assert found.half_branches[0].ended == "reached" and check_branch(found) == []
     last = found.points[-1]
     direct = orbit(shown.evolve(**{knob: end}), 1, found.state(last))
-    # both are fixed points to 1e-11 of the same map; near grazing Newton's basins are small, so it starts there
+    # both are fixed points of the same map to 1e-11; near a grazing, Newton's basins are small, so it starts there
     np.testing.assert_allclose(direct.state.displacement, found.state(last).displacement, rtol=1e-8)
     assert last.knob == end and found.points[0].knob == start
 
 
 def test_a_preloaded_chain_has_no_special_points_at_small_drive() -> None:
-    """All contacts stay closed and the chain is nearly linear: nothing happens, whatever its resonances."""
+    """All contacts stay closed and the chain is nearly linear, so resonances cause no special points."""
     shown = scene("sec2").evolve(F0=50.0, A0=1e-7, N=4)
     found = granchain_core.branch(shown, "f", 800.0, 1500.0, 1)
     assert found.special == [] and check_branch(found) == []
@@ -193,7 +196,7 @@ def test_beyond_a_torus_point_the_chain_leaves_its_orbit() -> None:
 
 
 def closed_loop() -> tuple[Scene, float, int]:
-    """A chain with an isola: frequency and period of an orbit on it."""
+    """Return a chain with an isola, and frequency and period of an orbit on it."""
     return scene("sec2").evolve(N=3, D=40.0), 720.0, 3
 
 
@@ -206,13 +209,13 @@ def test_an_isola_closes_on_itself() -> None:
 
 
 def again(begun: Branch) -> Branch:
-    """A branch that goes on by itself from where another one begins."""
+    """Return a separate branch with the beginning of another one."""
     return replace(begun, half_branches=tuple(HalfBranch(half.direction, list(half.points)) for half in begun.half_branches))
 
 
 @pytest.fixture(scope="module")
 def isola() -> tuple[Branch, HalfBranch]:
-    """A branch that has begun on the isola, and the arm that is kept where both go on alternately."""
+    """A branch begun on the isola, and the half-branch that is kept if both are continued alternately."""
     shown, frequency, period = closed_loop()
     begun = begin_branch(shown.evolve(f=frequency), "f", 100.0, 3000.0, period, both=True)
     alternately = Continuation(again(begun))
@@ -224,8 +227,7 @@ def isola() -> tuple[Branch, HalfBranch]:
 @pytest.mark.parametrize("slow", [1, -1])
 def test_the_threads_do_not_decide_which_arm_of_an_isola_is_kept(slow: int, isola: tuple[Branch, HalfBranch],
                                                                  monkeypatch: pytest.MonkeyPatch) -> None:
-    """That with fewer orbits, also where it takes longer; and it is the one that is kept where both go on alternately.
-    """
+    """The half-branch with fewer orbits is kept, even if it takes longer, as when both are continued alternately."""
     begun, expected = isola
     step = HalfContinuation.__next__
 

@@ -1,7 +1,7 @@
-"""The scene `breather` is the left half of a chain that is shaken at both ends: against that whole chain, computed
-apart.
+"""The scene `breather` is the left half of a chain that is driven at both ends, and agrees with a separate computation
+of the whole chain.
 
-The whole chain's equations, its Jacobian and Newton's method are written here with NumPy and SciPy alone.
+The whole chain's equations, its Jacobian and Newton's method are implemented here with NumPy and SciPy only.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ HALF, WHOLE = CHAIN.N, 2 * CHAIN.N + 1
 
 
 class Whole(NamedTuple):
-    """An orbit of the whole chain: amplitude of each bead [m], largest force in the middle [N], multipliers."""
+    """An orbit of the whole chain: amplitude of each bead [m], start, largest force in the middle [N], multipliers."""
 
     amplitude: np.ndarray
     start: np.ndarray
@@ -29,7 +29,7 @@ class Whole(NamedTuple):
 
 
 def slopes(t: float, y: np.ndarray) -> np.ndarray:
-    """d/dt of displacements, velocities and 2·WHOLE tangents, in units of the static overlap and a period.
+    """Return d/dt of displacements, velocities and 2·WHOLE tangents, in units of the static overlap and the period.
 
     All contacts stay closed: F = δ^{3/2} + c δ̇ with δ = 1 + u_j − u_{j+1}, and u_0 = −u_{N+1}.
     """
@@ -51,7 +51,7 @@ def slopes(t: float, y: np.ndarray) -> np.ndarray:
 
 
 def flow(x: np.ndarray, times: np.ndarray) -> np.ndarray:
-    """States and tangents (times, 2·WHOLE, 1 + 2·WHOLE) from x at t = 0."""
+    """Return states and tangents (times, 2·WHOLE, 1 + 2·WHOLE) from x at t = 0."""
     start = np.column_stack([x, np.eye(2 * WHOLE)]).ravel()
     found = solve_ivp(slopes, (0.0, 1.0), start, "DOP853", times, rtol=1e-11, atol=1e-13)
     return found.y.T.reshape(len(times), 2 * WHOLE, -1)
@@ -59,10 +59,10 @@ def flow(x: np.ndarray, times: np.ndarray) -> np.ndarray:
 
 @functools.cache
 def whole() -> Whole:
-    """The whole chain's orbit by Newton's method, from the orbit of the half chain and its mirror image."""
+    """Find the whole chain's orbit by Newton's method, starting from the half chain's orbit and its mirror image."""
     start, overlap = orbit(CHAIN, 1).state, CHAIN.static_overlap()[0]
     u, v = start.displacement / overlap, start.velocity / (overlap * CHAIN.f)
-    # 1e-4 off, so that Newton's method has something to do, and on the two sides differently
+    # shifted by 1e-4, differently on the two sides, so that Newton's method has something to do
     x = np.concatenate([u, [0.0], -u[::-1], v, [0.0], -v[::-1]]) + 1e-4 * np.sin(np.arange(2 * WHOLE))
     times = np.linspace(0.0, 1.0, 257)
     for _ in range(8):
@@ -82,7 +82,7 @@ def test_the_whole_chain_has_the_same_motion_on_both_sides_of_a_bead_that_stands
     found = orbit(CHAIN, 1)
     ours = run(CHAIN.evolve(accuracy=1e-9), periods=0, record=1, samples=256, start=found.state)
     amplitude = 0.5 * np.ptp(ours.displacement, axis=0)
-    # SciPy's tolerance, over a period of a motion whose disturbances do not grow
+    # SciPy's tolerance, over a period of a motion whose disturbances hardly grow
     assert whole().amplitude[:HALF] == pytest.approx(amplitude, rel=1e-7)
     assert whole().amplitude[HALF + 1:] == pytest.approx(amplitude[::-1], rel=1e-7)
     assert whole().amplitude[HALF] < 1e-7 * amplitude.max()
@@ -90,8 +90,9 @@ def test_the_whole_chain_has_the_same_motion_on_both_sides_of_a_bead_that_stands
 
 
 def test_its_multipliers_are_among_those_of_the_whole_chain() -> None:
-    """The others belong to disturbances that are not mirror images, which the half chain cannot have. One pair of them
-    grows, as docs/scenes.md says."""
+    """The others are those of disturbances that are not mirror images, which the half chain cannot have. One pair of
+    them grows, as docs/scenes.md says.
+    """
     left = list(whole().multipliers)
     for mu in orbit(CHAIN, 1).multipliers:
         nearest = min(left, key=lambda other: abs(other - mu))
@@ -109,5 +110,5 @@ def test_bright_and_faint_states_coexist_between_two_folds() -> None:
     at = np.array([(point.knob, point.unstable_multipliers, point.max_output_force) for point in arm.points])
     between = at[(at[:, 0] > 75e-9) & (at[:, 0] < 94e-9)]
     stable = between[between[:, 1] == 0]
-    assert np.ptp(stable[:, 2]) > 1.0  # [N]: two states, a newton apart
+    assert np.ptp(stable[:, 2]) > 1.0  # [N]: two states that differ by more than a newton
     assert (between[:, 1] > 0).any()

@@ -1,4 +1,4 @@
-"""The criticality of a branch's special points, compared with the doubled orbits and closed curves that begin there."""
+"""The criticality of a branch's special points agrees with the doubled orbits and closed curves that begin there."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ from granchain_core.store import load_branch, save_branch
 
 @pytest.fixture(scope="module")
 def doubling() -> Branch:
-    """sec2 across two period doublings, at 255.8 and 233.5 Hz."""
+    """sec2 across two period doublings at 255.8 and 233.5 Hz."""
     return granchain_core.branch(scene("sec2"), "f", 262.0, 225.0, 1)
 
 
@@ -47,13 +47,13 @@ def torus() -> Branch:
 
 
 def special_point(branch: Branch, kind: str, number: int = 0) -> SpecialPoint:
-    """One special point of a kind."""
+    """Return one special point of a kind."""
     return [s for s in branch.special if s.kind == kind][number]
 
 
 @pytest.mark.parametrize(("number", "criticality"), [(0, "subcritical"), (1, "supercritical")])
 def test_the_doubled_orbit_is_on_the_side_that_the_criticality_says(doubling: Branch, number: int, criticality: str) -> None:
-    """In the plane at amplitude ξ along q, by Newton's method on the doubled map, which does not use normal forms."""
+    """The orbit is found at amplitude ξ along q by Newton's method on the doubled map, without normal forms."""
     special = special_point(doubling, "period_doubling", number)
     form = special.normal_form
     assert form is not None and form.criticality == criticality
@@ -65,7 +65,7 @@ def test_the_doubled_orbit_is_on_the_side_that_the_criticality_says(doubling: Br
     beyond = (twice.value(solved.z) - special.knob) * (unstable.knob - special.knob) > 0.0
     assert abs(twice.value(solved.z) - special.knob) > 0.5 * (special.interval[1] - special.interval[0])
     assert beyond == (criticality == "supercritical")
-    # (−1 − β + 3cξ²)² with β = cξ²; at 255.8 Hz the next order in ξ is a sixth of it
+    # (−1 − β + 3cξ²)² with β = cξ²; at 255.8 Hz, the next order in ξ is a sixth of it
     leading = sorted_multipliers(solved.flow.derivative)[0].real
     assert (leading < 1.0) == beyond
     assert (1.0 - leading) / (4.0 * amplitude**2) == pytest.approx(form.coefficient, rel=0.25)
@@ -76,7 +76,7 @@ def test_a_subcritical_doubling_has_hysteresis(doubling: Branch) -> None:
     subcritical, supercritical = (special_point(doubling, "period_doubling", number) for number in (0, 1))
     doubled = Continuation(switch_to_doubled(doubling, supercritical)).run()
     fold, end = special_point(doubled, "fold"), doubled.special[-1]
-    # μ − 1 = 2aξ along the branch, so two orbits and their multipliers have the same coefficient
+    # μ − 1 = 2aξ along the branch, so two orbits and their multipliers give the coefficient
     before, after = (min(point.multipliers, key=lambda z: abs(z - 1.0)).real for point in (fold.before, fold.after))
     apart = np.sqrt(np.mean((fold.after.x - fold.before.x) ** 2))
     assert fold.normal_form is not None
@@ -84,7 +84,7 @@ def test_a_subcritical_doubling_has_hysteresis(doubling: Branch) -> None:
     assert fold.criticality == "generic" and fold.knob > subcritical.interval[1] + 0.5
     assert end.kind == "period_doubling" and end.normal_form is None
     assert end.knob == pytest.approx(subcritical.knob, abs=sum(s.interval[1] - s.interval[0] for s in (end, subcritical)))
-    # between the doubling and the fold the chain stays on whichever orbit it is near: both attract
+    # between the doubling and the fold, the chain stays on the orbit that it is near: both attract
     between = next(p for p in doubled.points if p.stable and p.knob > subcritical.interval[1])
     chain = doubled.axis.scene_at(between.knob)
     once = granchain_core.branch(scene("sec2"), "f", between.knob, 262.0, 1).points[0]
@@ -100,7 +100,7 @@ def test_a_coefficient_agrees_with_that_of_smaller_amplitudes_within_its_error(d
 
 
 def test_the_closed_curve_grows_as_the_root_of_the_distance(torus: Branch) -> None:
-    """|z|² = −β/Re d on it, with β = |μ| − 1: 1e-5 m beside the orbit the chain goes to the curve and stays there."""
+    """On the curve, |z|² = −β/Re d with β = |μ| − 1. A chain that starts near it moves to the curve and stays there."""
     form = special_point(torus, "neimark_sacker").normal_form
     assert form is not None and form.criticality == "supercritical"
     equations = BranchEquations(torus.axis, 1)
@@ -123,12 +123,12 @@ def test_the_closed_curve_grows_as_the_root_of_the_distance(torus: Branch) -> No
 
 def again(branch: Branch, special: SpecialPoint, amplitudes: dict[str, tuple[float, ...]] = AMPLITUDES,
           tolerance: float = 1e-12) -> SpecialPoint:
-    """The special point with its normal form computed anew."""
+    """Return the special point with its normal form computed again."""
     return with_normal_forms([special], between(branch, special), amplitudes, tolerance)[0]
 
 
 def between(branch: Branch, special: SpecialPoint) -> Between:
-    """The orbits between those on both sides of a special point."""
+    """Return the orbits between those on both sides of a special point."""
     equations = BranchEquations(branch.axis, branch.period)
     near = [Near(equations.stroboscopic_map(p.knob)(p.x).derivative, p.slope) for p in (special.before, special.after)]
     return Between(equations, special.before, special.after, (near[0], near[1]))
@@ -149,7 +149,7 @@ def test_nothing_is_decided_where_a_contact_grazes_in_the_same_interval(doubling
 
 @pytest.mark.parametrize("frequency", [228.0, 252.0])
 def test_the_order_of_contact_events_counts_where_none_grazes(doubling: Branch, frequency: float) -> None:
-    """At about 228 Hz a closing passes the strobe phase 0; at about 252 Hz events of distant contacts change places."""
+    """At about 228 Hz, a closing passes phase 0; at about 252 Hz, events of distant contacts exchange their order."""
     points = doubling.points
     after = next(i for i, point in enumerate(points) if point.knob < frequency)
     special = replace(special_point(doubling, "period_doubling"), before=points[after - 1], after=points[after])
@@ -170,7 +170,7 @@ def test_the_order_of_contact_events_counts_where_none_grazes(doubling: Branch, 
     ([1, -1, 4, 2, -4, -2], True, True),
     ([1, 2, -1, 4, -4, -2], True, False),  # contacts 1 and 2 have a common bead
     ([-1, 4, -4, 2, -2, 1], False, False),  # a closing passes phase 0
-    ([-1, 4, -4, 2, -2], False, False),  # at one end of the period only
+    ([-1, 4, -4, 2, -2], False, False),  # at only one end of the period
     ([1, -1, 4, -4, 2, -2, 2, -2], False, False),  # contact 2 grazes
     ([1, -1, 4, -4, 2, -2, 6, -6], False, False),
 ])
@@ -184,7 +184,7 @@ def test_a_normal_form_needs_the_sequence_as_far_as_its_derivatives_do(other: li
 
 
 def test_no_state_is_used_along_which_contacts_close_in_another_order(doubling: Branch) -> None:
-    """At 255.8 Hz a contact grazes between the amplitudes 3e-4 and 1e-3."""
+    """At 255.8 Hz, a contact grazes between the amplitudes 3e-4 and 1e-3."""
     form = again(doubling, special_point(doubling, "period_doubling"), {"period_doubling": (1e-3,)}).normal_form
     assert form is not None and (form.criticality, form.reason) == ("not decided", SEQUENCE_NEAR)
 
@@ -244,7 +244,7 @@ def test_the_criticality_is_given_in_words_and_numbers(doubling: Branch, torus: 
     assert criticality_words(special_point(torus, "neimark_sacker")).endswith("a closed curve of the map attracts")
     assert criticality_words(special_point(doubling, "grazing")) == ""
     assert supercritical.normal_form is not None
-    assert supercritical.normal_form.coefficient == pytest.approx(699.0, rel=2e-3)  # with the tolerance it moves by 3e-4
+    assert supercritical.normal_form.coefficient == pytest.approx(699.0, rel=2e-3)  # it depends on the tolerance by 3e-4
     said = branch_json(torus)["normal_form"][torus.special.index(special_point(torus, "neimark_sacker"))]
     assert said["criticality"] == "supercritical" and said["coefficient"] < 0.0 < said["error"] and said["reason"] == ""
     assert said["angle"] == pytest.approx(1.1995, abs=1e-4)

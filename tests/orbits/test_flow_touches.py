@@ -1,4 +1,4 @@
-"""The flow misses no touch: every touch is in the map and in its derivative, by the order that the law gives it."""
+"""The flow misses no touch: every touch changes the map and its derivative with the order that the law implies."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ from granchain_core.scene.laws import LAWS
 
 @pytest.mark.parametrize("depth", [1e-3, 1e-4])
 def test_a_brief_touch_is_in_the_map_and_in_its_derivative(depth: float) -> None:
-    """A driver that just touches a resting bead throws it with a speed that goes as depth², so by u it changes with
-    −2/depth times that.
+    """A driver that just touches a resting bead throws it with a speed that varies as depth², so its derivative by u is
+    −2/depth times the speed.
     """
     stroboscopic_map = StroboscopicMap(scene("sec2").evolve(N=1, f=500.0), 1)
     scaled, slots = stroboscopic_map.engine.scaled, stroboscopic_map.engine.scaled.slots
-    # the wall pushes with no force, and no contact is damped
+    # the wall exerts no force, and no contact is damped
     slots = slots._replace(chain=slots.chain._replace(stiffness=np.array([1.0, 0.0])),
                            dissipation=type(slots.dissipation)(0.0))
     stroboscopic_map.engine.use(replace(scaled, slots=slots))
     flow = stroboscopic_map(np.array([1.0 - depth, 0.0]))
     assert [int(contact) for contact, _ in flow.contact_events] == [1, -1]
-    # the touch lasts 1.4 % and 0.45 % of a period, a step of the flow up to a sixteenth
+    # the touches last 1.4 % and 0.45 % of a period; a step of the flow may be a sixteenth of a period
     top, width = flow.contact_events[:, 1].mean(), np.ptp(flow.contact_events[:, 1])
     assert top == pytest.approx(0.25, abs=1e-4) and width == pytest.approx(np.sqrt(2.0 * depth) / np.pi, rel=1e-2)
     speed = thrown_by_a_touch(depth, scaled.beta)
@@ -39,16 +39,16 @@ def test_a_brief_touch_is_in_the_map_and_in_its_derivative(depth: float) -> None
 @pytest.mark.parametrize("depth", [1e-4, 1e-5])
 @pytest.mark.parametrize("law", LAWS)
 def test_a_grazing_changes_the_derivative_by_a_power_of_its_depth(law: str, depth: float) -> None:
-    """The power 1/2 + a for a law with the exponent a: √depth for the linear dashpot (docs/orbits.md).
+    """The power is 1/2 + a for a law with exponent a: √depth for the linear dashpot (docs/orbits.md).
 
-    The driver is at δ = depth − θ²/2 in a bead at rest. Without the elastic force w stays, so the dashpot moves the
-    bead by ∫G(δ) dt with G = c δ^{1+a}/(1 + a), which is c √2 B(1/2, 2 + a)/((1 + a) β) · depth^{3/2+a}. The elastic
-    force throws it as above. What is left out is of relative order √depth; measured: up to 5 √depth.
+    The driver overlaps a bead at rest by δ = depth − θ²/2. Without the elastic force, w is constant, so the dashpot
+    moves the bead by ∫G(δ) dt with G = c δ^{1+a}/(1 + a), which is c √2 B(1/2, 2 + a)/((1 + a) β) · depth^{3/2+a}. The
+    elastic force throws it as above. Neglected terms are of relative order √depth; measured: up to 5 √depth.
     """
     chain = scene("sec2").evolve(N=2, f=500.0, dissipation=law, D=100.0)
     stroboscopic_map = StroboscopicMap(chain, 1)
     scaled = stroboscopic_map.engine.scaled
-    # the second bead rests five amplitudes away, against a wall that pushes with no force
+    # the second bead rests five amplitudes away, at a wall that exerts no force
     slots = scaled.slots._replace(chain=scaled.slots.chain._replace(stiffness=np.array([1.0, 1.0, 0.0])))
     stroboscopic_map.engine.use(replace(scaled, slots=slots))
 
@@ -60,6 +60,6 @@ def test_a_grazing_changes_the_derivative_by_a_power_of_its_depth(law: str, dept
     assert (len(beyond.contact_events), len(before.contact_events)) == (2, 0)
     a, beta, coefficient = LAWS[law].exponent, scaled.beta, slots.dissipation.coefficient
     moved = coefficient * sqrt(2.0) * gamma(0.5) * gamma(2.0 + a) / gamma(2.5 + a) / (1.0 + a) / beta * depth**(1.5 + a)
-    speed, rest = thrown_by_a_touch(depth, beta), 1.5 * pi / beta  # rest: from the driver's crest to the period's end
+    speed, rest = thrown_by_a_touch(depth, beta), 1.5 * pi / beta  # rest: from the driver's turning point to the end of the period
     change = (beyond.derivative - before.derivative)[0, 0] + 2.0 * speed / depth * rest
     assert change == pytest.approx(-(1.5 + a) * moved / depth, rel=6.0 * sqrt(depth))

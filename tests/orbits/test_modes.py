@@ -1,4 +1,6 @@
-"""Floquet modes against the matrix exponential and themselves, the section against runs, and the search for orbits."""
+"""Floquet modes agree with the matrix exponential and close on themselves, sections agree with runs, and searches find
+orbits.
+"""
 
 from __future__ import annotations
 
@@ -19,12 +21,12 @@ from granchain_core.steady.poincare import Section, iter_section, most_periods
 
 @cache
 def orbit_of(name: str, **knobs: float) -> Orbit:
-    """The settled orbit of a scene."""
+    """Return the settled orbit of a scene."""
     return granchain_core.orbit(scene(name).evolve(**knobs))
 
 
 def section(name: str, periods: int, **knobs: float) -> Section:
-    """The whole section from rest."""
+    """Return the whole section from rest."""
     *_, last = iter_section(scene(name).evolve(**knobs), None, periods)
     return last
 
@@ -37,7 +39,7 @@ def test_a_mode_comes_back_as_its_multiplier_says(name: str, knobs: dict[str, fl
     orbit = orbit_of(name, **knobs)
     found = mode(orbit, rank)
     assert abs(found.multiplier) == pytest.approx(abs(orbit.multipliers[rank]), rel=1e-6)
-    assert found.closure < 1e-6  # measured 2e-9 to 2e-7: ε = 1e-5 against the noise 1e-13/ε
+    assert found.closure < 1e-6  # measured 2e-9 to 2e-7, for ε = 1e-5 and noise of 1e-13/ε
     first, last = found.displacement[0], found.displacement[-1]
     assert np.abs(last - found.multiplier * first).max() < 1e-5 * np.abs(found.displacement).max()
     assert np.abs(found.displacement).max() == pytest.approx(1.0)
@@ -45,7 +47,8 @@ def test_a_mode_comes_back_as_its_multiplier_says(name: str, knobs: dict[str, fl
 
 
 def linear_matrix(shown: Scene) -> np.ndarray:
-    """A of ẋ = A x for a chain whose contacts are springs 1.5 K √δ0 and dashpots D, x = (u, v) in SI."""
+    """Return A of ẋ = A x for a chain whose contacts are springs 1.5 K √δ0 and dashpots D, with x = (u, v) in SI units.
+    """
     n, mass = shown.N, shown.masses()
     joins = np.eye(n + 1, n, -1) - np.eye(n + 1, n)  # overlap of contact c = u_{c-1} − u_c
     spring = 1.5 * shown.contact_stiffness() * np.sqrt(shown.static_overlap())
@@ -54,7 +57,7 @@ def linear_matrix(shown: Scene) -> np.ndarray:
 
 
 def test_the_mode_of_a_preloaded_chain_is_that_of_its_linear_equations() -> None:
-    # strong preload, tiny drive: the chain is linear up to A0/δ0, and δ(t) = exp(A t) v
+    # with a strong preload and a tiny drive, the chain is linear up to A0/δ0, and δ(t) = exp(A t) v
     shown = scene("sec2").evolve(F0=50.0, A0=1e-10, N=5, D=20.0, f=2000.0)
     found = mode(granchain_core.orbit(shown, period=1), samples=8)
     matrix = linear_matrix(shown)

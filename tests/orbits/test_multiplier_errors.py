@@ -1,5 +1,5 @@
-"""The errors stated of multipliers: maps of larger tolerances against the finest, and a derivative that is known
-exactly.
+"""The stated errors of multipliers are checked with coarser maps against the finest one, and with an exactly known
+derivative.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ def found(request: pytest.FixtureRequest) -> Orbit:
 
 
 def of_a_coarser_map(chain: Scene, exact: Orbit, tolerance: float) -> tuple[np.ndarray, np.ndarray]:
-    """Multipliers and stated errors of the same orbit by a map of this tolerance."""
+    """Return multipliers and stated errors of the same orbit, from a map with this tolerance."""
     coarse = StroboscopicMap(chain, exact.period, tolerance=tolerance)
     x = coarse.inner(coarse.engine.scaled.from_si(exact.state))
     for _ in range(3):
@@ -41,7 +41,7 @@ def of_a_coarser_map(chain: Scene, exact: Orbit, tolerance: float) -> tuple[np.n
 
 @pytest.mark.parametrize("tolerance", [1e-10, 1e-11, 1e-12])
 def test_coarser_maps_are_as_near_as_they_say(found: Orbit, tolerance: float) -> None:
-    """Multipliers at 1e-13 serve as exact ones; the bound is also narrow enough to be of use."""
+    """Multipliers at 1e-13 serve as exact ones. The bound is also narrow enough to be useful."""
     shown, errors = of_a_coarser_map(found.scene, found, tolerance)
     distances = np.abs(shown[:, None] - found.multipliers[None, :])
     mine, theirs = linear_sum_assignment(distances)
@@ -52,13 +52,13 @@ def test_coarser_maps_are_as_near_as_they_say(found: Orbit, tolerance: float) ->
 
 
 def test_the_error_follows_a_known_change_of_the_derivative() -> None:
-    """To first order in a symmetric matrix, whose eigenvectors are orthogonal: between the change and twice it."""
+    """For a symmetric matrix, whose eigenvectors are orthogonal, it is twice the first-order change."""
     matrix, change = np.diag([0.5, -0.3, 0.1]), 1e-6 * np.diag([1.0, 2.0, 0.0])
     np.testing.assert_allclose(errors_of(np.array([-0.3, 0.5, 0.1]), matrix, change), [4e-6, 2e-6, 0.0], atol=1e-15)
 
 
 def test_where_two_multipliers_meet_nothing_is_claimed() -> None:
-    """A Jordan block: a change ε of the matrix moves the multipliers by √ε, and no first order holds."""
+    """In a Jordan block, a change ε of the matrix moves the multipliers by √ε, so first order is not valid."""
     errors = errors_of(np.array([0.5, 0.5]), np.array([[0.5, 1.0], [0.0, 0.5]]), np.full((2, 2), 1e-12))
     assert np.all(errors > 1e-6)
 
@@ -74,7 +74,7 @@ def test_as_near_to_the_circle_as_its_error_is_not_decided(found: Orbit) -> None
     assert found.stability_words() in found.summary()[0] and found.stability_words() in ("stable", "unstable")
     second = replace(found, multipliers=np.array([0.99, 0.98, 0.1, 0.1]))
     second.__dict__["multiplier_errors"] = np.array([1e-9, 0.05, 1e-9, 1e-9])
-    assert not second.stability_certain  # not the largest one, but it may be outside
+    assert not second.stability_certain  # it is not the largest one, but may be outside
     second.__dict__["multiplier_errors"] = np.array([1e-9, 0.01, 1e-9, 1e-9])
     assert second.stability_certain
     outside = replace(found, multipliers=np.array([1.2, 1.0, 0.1, 0.1]))

@@ -1,7 +1,7 @@
-"""The derivative of the stroboscopic map against monodromy.npz, finite differences in extended precision.
+"""The derivative of the stroboscopic map agrees with monodromy.npz, which has finite differences in extended precision.
 
-The file's derivatives are of (u, v) and know nothing of variational equations; the product's are of (u, w). With
-v_i = w_i + (G_{i−1} − G_i)/m_i and B = ∂v/∂u at fixed w they are the same map in other variables,
+The derivatives in the file are in (u, v), and need no variational equations; granchain's are in (u, w). With v_i = w_i
++ (G_{i−1} − G_i)/m_i and B = ∂v/∂u at fixed w, they are the same map in different variables:
 
     M_uv = T(u_end) M_uw T(u_start)^{−1},    T = [[1, 0], [B, 1]].
 """
@@ -32,7 +32,7 @@ _EXPONENT = {"linear": 0.0, "none": 0.0, "tsuji": 0.25, "kuwabara-kono": 0.5}
 
 
 def shear(shown: Scene, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(v − w, T) at scaled displacements u and phase 0, for equal beads."""
+    """Return (v − w, T) at scaled displacements u and phase 0, for equal beads."""
     n, a = shown.N, _EXPONENT[shown.dissipation]
     rate = np.sqrt(shown.K * np.sqrt(shown.A0) / shown.bead(1).mass)
     strength = 0.0 if shown.dissipation == "none" else shown.D / (shown.bead(1).mass * rate)
@@ -47,7 +47,7 @@ def shear(shown: Scene, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def product_map(name: str) -> tuple[np.ndarray, np.ndarray]:
-    """End state and derivative of the product's map in (u, v), from the stored start."""
+    """Return end state and derivative of granchain's map in (u, v), from the stored start."""
     shown = recorded_scene(record(name)["scene"])
     start, n = _STORED[f"{name}/start"], shown.N
     before, first = shear(shown, start[:n])
@@ -59,23 +59,23 @@ def product_map(name: str) -> tuple[np.ndarray, np.ndarray]:
 
 
 def record(name: str) -> dict:
-    """The record of a stored case."""
+    """Return the record of a stored case."""
     return json.loads(str(_STORED[f"{name}/record"]))
 
 
 def column_error(found: np.ndarray, exact: np.ndarray) -> float:
-    """Largest difference over the columns, relative to each column's largest entry."""
+    """Return the largest difference in any column, relative to the column's largest entry."""
     return float((np.abs(found - exact).max(axis=0) / np.abs(exact).max(axis=0)).max())
 
 
 def multiplier_error(found: np.ndarray, exact: np.ndarray) -> float:
-    """Largest distance between eigenvalues that are paired one to one."""
+    """Return the largest distance between eigenvalues, paired one to one."""
     distance = np.abs(np.linalg.eigvals(found)[:, None] - np.linalg.eigvals(exact)[None, :])
     return float(distance[linear_sum_assignment(distance)].max())
 
 
 def test_the_file_has_the_cases_of_its_generator(monkeypatch: pytest.MonkeyPatch) -> None:
-    """So that making the file again makes no case that nothing reads, and loses none."""
+    """Generating the file again therefore adds no unused case and loses none."""
     monkeypatch.syspath_prepend(str(REFERENCE))
     generator = importlib.import_module("make_monodromy")
     assert sorted(case.scene.name for case in generator.stored_cases()) == CASES
@@ -87,15 +87,15 @@ def test_the_file_has_the_cases_of_its_generator(monkeypatch: pytest.MonkeyPatch
 def test_map_derivative_and_multipliers_agree_with_the_reference(name: str) -> None:
     end, derivative = product_map(name)
     exact, exact_end = _STORED[f"{name}/derivative"], _STORED[f"{name}/end"]
-    # some 400 steps of 1e-13 each, whose errors the map enlarges by its derivative, a few
+    # about 400 steps with errors of 1e-13, which the map amplifies by its derivative, a small number
     assert np.abs(end - exact_end).max() <= 1e-10 * np.abs(exact_end).max()
-    # the stored differences are exact to a fiftieth of what extrapolation in their step took away, or better
+    # the stored differences are exact to a fiftieth of the change by extrapolation in their step, or better
     assert column_error(derivative, exact) <= max(1e-8, 0.02 * record(name)["columns"])
     assert multiplier_error(derivative, exact) <= 1e-7
 
 
 def test_a_bead_that_meets_a_dashpot_has_the_closed_form_which_a_naive_tangent_misses() -> None:
-    # One bead flies freely, then meets a wall that is a dashpot 2ζ and nothing else, at t* = −u/v; s is the rest.
+    # One bead flies freely, then meets a wall that is only a dashpot 2ζ, at t* = −u/v; `rest` is the time after that.
     zeta, period, u, v = 0.2, 2.0, -0.7, 1.0
     damping, closing = 2.0 * zeta, -u / v
     rest = period - closing
@@ -103,7 +103,7 @@ def test_a_bead_that_meets_a_dashpot_has_the_closed_form_which_a_naive_tangent_m
     end = np.array([v * (1.0 - left) / damping, v * left])
     exact = np.array([[left, (1.0 - left) / damping + closing * left],
                       [-damping * left, left * (1.0 - damping * closing)]])
-    # The (u, v) equations linearised on either side of the closing, without the jump δv −= (D/m) δu at it.
+    # The (u, v) equations linearised on both sides of the closing, without the jump δv −= (D/m) δu at it.
     closed = np.array([[1.0, (1.0 - left) / damping], [0.0, left]])
     naive = closed @ np.array([[1.0, closing], [0.0, 1.0]])
     jump = np.array([[1.0, 0.0], [-damping, 1.0]])
@@ -114,7 +114,7 @@ def test_a_bead_that_meets_a_dashpot_has_the_closed_form_which_a_naive_tangent_m
     assert flow.end - [0.0, damping * flow.end[0]] == pytest.approx(end, abs=1e-12)
     assert found == pytest.approx(exact, abs=1e-10)
     assert flow.log_determinant == pytest.approx(-damping * rest, abs=1e-10)
-    # Liouville sees nothing, the columns do: they are wrong by 68 % and 20 % of their largest entries.
+    # Liouville's formula does not show the error, but the columns are wrong by 68 % and 20 % of their largest entries.
     assert np.linalg.det(naive) == pytest.approx(np.exp(flow.log_determinant), rel=1e-10)
     assert column_error(naive[:, 1:], exact[:, 1:]) == pytest.approx(0.1985, abs=1e-3)
     assert column_error(naive[:, :1], exact[:, :1]) == pytest.approx(0.6820, abs=1e-3)
@@ -122,9 +122,9 @@ def test_a_bead_that_meets_a_dashpot_has_the_closed_form_which_a_naive_tangent_m
 
 @pytest.mark.parametrize("side", [-1.0, 1.0])
 def test_the_second_derivative_jumps_where_a_contact_closes_at_the_strobe(side: float) -> None:
-    """u' = w − γu while the contact is closed and u' = w before it; the closing at −u/w is in the period if u < 0.
+    """u' = w − γu while the contact is closed, and u' = w before; the closing at −u/w is in the period if u < 0.
 
-    So ∂u_end/∂u is e^{−γ(T + u/w)} for u < 0 and e^{−γT} for u > 0: continuous, and no contact grazes.
+    ∂u_end/∂u is therefore e^{−γ(T + u/w)} for u < 0 and e^{−γT} for u > 0: continuous, and no contact grazes.
     """
     damping, period, w, u = 0.4, 2.0, 0.8, 1e-3
     at, beside = (dashpot_wall(damping, period)(np.array([side * fraction * u, w])).derivative[0, 0] for fraction in (1e-6, 1.0))
@@ -134,7 +134,7 @@ def test_the_second_derivative_jumps_where_a_contact_closes_at_the_strobe(side: 
 
 
 def dashpot_wall(damping: float, period: float) -> StroboscopicMap:
-    """The map of one bead far from the driver whose contact with the wall at 0 has a dashpot and no spring."""
+    """Return the map of one bead far from the driver whose contact with the wall at 0 has a dashpot but no spring."""
     stroboscopic_map = StroboscopicMap(scene("sec2").evolve(N=1, F0=0.5), 1)
     scaled, beta = stroboscopic_map.engine.scaled, 2.0 * np.pi / period
     slots = scaled.slots._replace(chain=Chain(scaled.slots.chain.inverse_mass, np.array([1.0, 0.0])),

@@ -1,4 +1,4 @@
-"""Normal forms of maps that are known exactly, and what is not decided of others."""
+"""Normal forms of exactly known maps are right, and uncertain ones are not decided."""
 
 from __future__ import annotations
 
@@ -30,24 +30,24 @@ _BESIDE = 1e-6
 
 
 def near(derivative: Derivative, x: list[float]) -> MapNear:
-    """A map that is smooth everywhere, near its fixed point x."""
+    """Return a map that is smooth everywhere, near its fixed point x."""
     point = np.array(x)
     return MapNear(point, derivative(point), lambda y, columns: derivative(y) @ columns)
 
 
 def found(kind: str, multiplier: complex, family: Callable[[float], MapNear]) -> NormalForm:
-    """The normal form of a family of maps at its critical value 0."""
+    """Return the normal form of a family of maps at its critical value 0."""
     return normal_form(kind, multiplier, (family(-_BESIDE), family(_BESIDE)))
 
 
 def linear_and(cubic: float, eigenvalue: float, power: float = 3.0) -> Callable[[float], MapNear]:
-    """x → eigenvalue (1 + β) x + cubic |x|^power sign x."""
+    """Return the map x → eigenvalue (1 + β) x + cubic |x|^power sign x."""
     return lambda beta: near(lambda x: np.array([[eigenvalue * (1.0 + beta) + cubic * power * abs(x[0]) ** (power - 1.0)]]),
                              [0.0])
 
 
 def logistic(beta: float) -> MapNear:
-    """x → r x (1 − x), which doubles its period at r = 3."""
+    """Return the logistic map x → r x (1 − x), which doubles its period at r = 3."""
     r = 3.0 + beta
     return near(lambda x: np.array([[r * (1.0 - 2.0 * x[0])]]), [1.0 - 1.0 / r])
 
@@ -64,13 +64,13 @@ def test_a_cubic_of_the_other_sign_doubles_subcritically() -> None:
 
 
 def henon(a: float, b: float = 0.3) -> MapNear:
-    """(x, y) → (1 − a x² + y, b x) near its fixed point."""
+    """Return the Hénon map (x, y) → (1 − a x² + y, b x) near its fixed point."""
     x = (b - 1.0 + np.sqrt((1.0 - b) ** 2 + 4.0 * a)) / (2.0 * a)
     return near(lambda z: np.array([[-2.0 * a * z[0], 1.0], [b, 0.0]]), [x, b * x])
 
 
 def test_the_coefficient_is_that_of_henons_cycle() -> None:
-    """Its cycle of two, x = ((1 − b) ± √(4a − 3(1 − b)²))/(2a), lies at ξ² = β/c where the multiplier is −1 − β."""
+    """Its 2-cycle, x = ((1 − b) ± √(4a − 3(1 − b)²))/(2a), is at ξ² = β/c where the multiplier is −1 − β."""
     b = 0.3
     critical = 0.75 * (1.0 - b) ** 2
     form = found("period_doubling", -1.0, lambda beta: henon(critical + beta))
@@ -85,7 +85,7 @@ def test_the_coefficient_is_that_of_henons_cycle() -> None:
 
 
 def turning(angle: float, cubic: complex) -> Callable[[float], MapNear]:
-    """z → e^{i angle} z (1 + β + cubic |z|²) in the plane of (Re z, Im z)."""
+    """Return the map z → e^{i angle} z (1 + β + cubic |z|²) in the plane of (Re z, Im z)."""
     def derivative(x: np.ndarray, beta: float) -> np.ndarray:
         z, turn = complex(*x), np.exp(1j * angle)
         along, across = (turn * (1.0 + beta + 2.0 * cubic * abs(z) ** 2), turn * cubic * z**2)  # ∂/∂z, ∂/∂z̄
@@ -110,12 +110,12 @@ def test_a_strong_resonance_is_not_decided(k: int) -> None:
 
 
 def delayed(r: float) -> MapNear:
-    """(x, y) → (r x (1 − y), x), the delayed logistic map, near its fixed point 1 − 1/r."""
+    """Return the delayed logistic map (x, y) → (r x (1 − y), x) near its fixed point 1 − 1/r."""
     return near(lambda z: np.array([[r * (1.0 - z[1]), -r * z[0]], [1.0, 0.0]]), [1.0 - 1.0 / r] * 2)
 
 
 def test_the_curve_of_the_delayed_logistic_map_has_the_radius_that_the_coefficient_gives() -> None:
-    """Beyond r = 2, where the map turns by 60°, |z|² = −β/Re d with β = |μ| − 1."""
+    """Beyond r = 2, where the map rotates by 60°, |z|² = −β/Re d with β = |μ| − 1."""
     form = found("neimark_sacker", np.exp(1j * np.pi / 3.0), lambda beta: delayed(2.0 + beta))
     assert form.criticality == SUPERCRITICAL
     for beyond in (1e-3, 4e-3):
@@ -135,7 +135,7 @@ def test_the_curve_of_the_delayed_logistic_map_has_the_radius_that_the_coefficie
 
 
 def folding(quadratic: float, beta: float) -> Callable[[float], MapNear]:
-    """x → x + β² − quadratic x² at its fixed points ±β/√quadratic."""
+    """Return the map x → x + β² − quadratic x² at its fixed points ±β/√quadratic."""
     return lambda side: near(lambda x: np.array([[1.0 - 2.0 * quadratic * x[0]]]), [np.sign(side) * beta / np.sqrt(quadratic)])
 
 

@@ -1,6 +1,4 @@
-"""What an orbit claims of itself, number by number: that it comes back, and that its multipliers have Liouville's
-product.
-"""
+"""The evidence for an orbit: its state returns, and its multipliers have the product of Liouville's formula."""
 
 from __future__ import annotations
 
@@ -17,8 +15,9 @@ pytestmark = pytest.mark.quick
 
 @pytest.mark.parametrize("place", [0, 3])
 def test_displacements_and_w_have_to_come_back(place: int) -> None:
-    """Each is relative to its own largest value: with a change of 1e-3 in one w a state is no orbit, even if the
-    displacements return."""
+    """Each is relative to its own largest value: with a change of 1e-3 in one w, a state is not on an orbit, even if
+    the displacements return.
+    """
     state, change = np.array([1.0, -2.0, 0.1, 0.2]), np.zeros(4)
     change[place] = 1e-3
     assert relative_change(change, state) == pytest.approx(1e-3 / (2.0 if place < 2 else 0.2), rel=1e-14)
@@ -32,7 +31,7 @@ def test_liouvilles_formula_is_about_the_product_of_all_multipliers() -> None:
 
 
 def test_newtons_method_goes_on_to_the_maps_own_rounding() -> None:
-    """For x → (x + 1)/2 a state 1e-8 from the fixed point is not yet accepted."""
+    """For x → (x + 1)/2, a state at a distance of 1e-8 from the fixed point is not accepted yet."""
 
     class Half(StroboscopicMap):
         def __init__(self) -> None:

@@ -21,7 +21,7 @@ def test_the_orbit_that_a_doubling_left_unstable_is_found() -> None:
 
 
 def test_the_distance_of_an_orbit_far_away_is_stated() -> None:
-    """Newton's method ends where the motion never comes; the orbit is not refused, but nobody takes it for passed."""
+    """Newton's method ends at an orbit far from the motion. It is not refused, but its distance is reported."""
     found = orbit_near_motion(scene("sec2").evolve(f=700.0), 1)
     assert found.distance_of_motion is not None and found.distance_of_motion > 0.3
     assert granchain_core.orbit(scene("sec2")).distance_of_motion is None

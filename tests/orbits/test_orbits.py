@@ -1,4 +1,5 @@
-"""Periodic orbits: found by Newton, their tangents exact, their multipliers those of closed forms and symmetries."""
+"""Periodic orbits are found by Newton's method, with exact tangents and the multipliers of closed forms and symmetries.
+"""
 
 from __future__ import annotations
 
@@ -19,19 +20,19 @@ from granchain_core.steady.settling.nearby_orbit import orbit_of
 
 pytestmark = pytest.mark.quick
 
-#: Changes of sec2: each damping law and none, and what else may be in the equations.
+#: Variations of sec2: every damping law, and other terms of the equations.
 CHAINS: dict[str, dict[str, object]] = {
     **{law: {"dissipation": law} for law in LAWS}, "founded": {"kappa": 0.001}, "pressed": {"F0": 0.5},
 }
 
-#: A chain whose beads are at rest positions at phase 0, to 3e-8 of their amplitude.
+#: A chain whose beads are at their rest positions at phase 0, to 3e-8 of their amplitude.
 VANISHING = scene("sec2").evolve(N=3, A0=9.787e-8, D=2.0578, kappa=1.835e-3, F0=0.79338, f=84.05)
 
 
 @pytest.mark.parametrize(("frequency", "period"), [(340.0, 1), (615.0, 2), (1130.0, 3), (1576.0, 4)])
 def test_newton_ends_at_the_maps_own_rounding_in_a_few_iterations(frequency: float, period: int) -> None:
     orbit = granchain_core.orbit(scene("sec2").evolve(f=frequency))
-    assert orbit.period == period  # docs/lecture.md: what sec2 reaches from rest
+    assert orbit.period == period  # docs/lecture.md: the motion that sec2 reaches from rest
     assert orbit.residual <= 1e-11  # the map is computed to about 1e-12
     assert len(orbit.newton_residuals) - 1 <= 4  # quadratic convergence from a settled start
     assert orbit.stable
@@ -50,7 +51,7 @@ def test_the_determinant_of_the_derivative_is_liouvilles(name: str) -> None:
 
 @pytest.mark.parametrize("name", CHAINS)
 def test_every_column_of_the_derivative_is_a_finite_difference_of_the_map(name: str) -> None:
-    # Contacts open and close on the way; a missing saltation would show here and not in the determinant.
+    # Contacts open and close; a missing saltation would show here, but not in the determinant.
     shown = scene("sec2").evolve(f=615.0, N=4, **CHAINS[name])
     stroboscopic_map = StroboscopicMap(shown, 1)
     x = 0.3 * np.random.default_rng(2).standard_normal(2 * shown.N)
@@ -64,8 +65,8 @@ def test_every_column_of_the_derivative_is_a_finite_difference_of_the_map(name: 
 
 
 def test_a_preloaded_chain_has_the_multipliers_of_its_linear_modes() -> None:
-    # Small drive on a strong preload: every contact is a spring 1.5 K √δ0 and a dashpot D, and the monodromy
-    # matrix is the matrix exponential of the linear equations; the drive's amplitude moves it by about A0/δ0.
+    # With a small drive and a strong preload, every contact is a spring 1.5 K √δ0 and a dashpot D, and the monodromy
+    # matrix is the matrix exponential of the linear equations; the drive amplitude changes it by about A0/δ0.
     shown = scene("sec2").evolve(F0=50.0, A0=1e-10, N=5, D=20.0, f=2000.0)
     orbit = granchain_core.orbit(shown, period=1)
     assert np.abs(orbit.multipliers) == pytest.approx(np.abs(linear_multipliers(shown)), rel=1e-4)
@@ -75,7 +76,7 @@ def test_an_orbit_is_found_again_with_twice_its_period_and_squared_multipliers()
     once = granchain_core.orbit(scene("sec2"))
     twice = granchain_core.orbit(scene("sec2"), period=2, start=once.state)
     assert twice.state.displacement == pytest.approx(once.state.displacement, rel=1e-9)
-    # the steps that carry the motion to 1e-13 carry its tangents to about 1e-9
+    # steps with which the motion is accurate to 1e-13 give tangents accurate to about 1e-9
     assert np.abs(twice.multipliers) == pytest.approx(np.abs(once.multipliers) ** 2, abs=1e-8)
 
 
@@ -115,7 +116,7 @@ def test_the_state_of_an_orbit_comes_back_after_its_period() -> None:
 def test_an_orbit_whose_displacements_vanish_at_phase_0_is_found() -> None:
     """The beads follow a slow drive and pass their rest positions at phase 0, to 3e-8 of their amplitude.
 
-    Relative to displacements there, rounding kept the residual at 1e-7, and Newton's method was said to fail.
+    Relative to the displacements there, rounding kept the residual at 1e-7, and Newton's method was reported to fail.
     """
     found = granchain_core.orbit(VANISHING)
     assert found.period == 1 and found.stable and found.residual < 1e-9
@@ -123,13 +124,13 @@ def test_an_orbit_whose_displacements_vanish_at_phase_0_is_found() -> None:
 
 
 def test_its_branch_is_found_too() -> None:
-    """Relative to displacements at phase 0 the residual of the seed stayed at 1e-7, and there was no branch."""
+    """Relative to displacements at phase 0, the residual of the seed used to stay at 1e-7, and there was no branch."""
     found = granchain_core.branch(VANISHING, "f", VANISHING.f, VANISHING.f + 0.5, 1)
     assert found.half_branches[0].ended == "reached" and check_branch(found) == []
 
 
 def test_its_multiplier_is_right_where_the_chain_settles() -> None:
-    """A difference relative to these displacements was below the map's noise: |μ| was wrong in its third digit."""
+    """A difference relative to these displacements was below the map's noise, and |μ| was wrong in its third digit."""
     exact = abs(granchain_core.orbit(VANISHING).multipliers[0])
     stroboscopic_map = StroboscopicMap(VANISHING, 1)
     x = stroboscopic_map.inner(stroboscopic_map.engine.scaled.from_si(granchain_core.orbit(VANISHING).state))
@@ -140,7 +141,7 @@ def test_its_multiplier_is_right_where_the_chain_settles() -> None:
 
 
 def test_period_1_of_a_motion_without_a_period_is_taken_with_a_reason(capsys: pytest.CaptureFixture[str]) -> None:
-    """sec2 is quasi-periodic at 1700 Hz: the unstable orbit of period 1 is another motion than the one from rest."""
+    """sec2 is quasi-periodic at 1700 Hz; the unstable orbit of period 1 is not the motion from rest."""
     chain = scene("sec2").evolve(f=1700.0)
     found = granchain_core.orbit(chain)
     reason = "period 1 was assumed, because the motion from rest is quasi-periodic"

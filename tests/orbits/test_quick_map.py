@@ -1,4 +1,4 @@
-"""The map by fixed steps that Newton's method of branches uses, and the steps along a branch."""
+"""The fixed-step map that Newton's method uses for branches, and the steps along a branch."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from granchain_core.steady.returns import relative_change
 
 
 def followed() -> Branch:
-    """A branch with grazings in few orbits: sec2 upwards to its first fold."""
+    """Follow a short branch with grazings: sec2 upwards to its first fold."""
     return branch(scene("sec2"), "f", 340.0, 358.55, 1)
 
 
 @pytest.fixture(scope="module")
 def whole() -> Branch:
-    """The branch as it is found."""
+    """The branch as it is normally found."""
     return followed()
 
 
@@ -67,7 +67,7 @@ def test_where_fixed_steps_would_be_slow_the_flow_takes_their_place(whole: Branc
 
 @pytest.mark.parametrize("wrong", [1e-6, 1e-4])
 def test_a_wrong_quick_map_makes_no_wrong_orbit(whole: Branch, wrong: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Its defect is measured by the exact map, whose residual alone decides whether an orbit is accepted."""
+    """Its defect is measured with the exact map, and only the exact residual decides whether an orbit is accepted."""
     end = BranchEquations.quick_end
     monkeypatch.setattr(BranchEquations, "quick_end",
                         lambda self, x, value, steps: end(self, x, value, steps) + wrong * np.cos(np.arange(len(x))))
@@ -79,7 +79,7 @@ def test_a_wrong_quick_map_makes_no_wrong_orbit(whole: Branch, wrong: float, mon
 
 
 def test_extrema_of_overlaps_count_the_closings_that_the_flow_counts(whole: Branch) -> None:
-    """Rough orbits have the same counts."""
+    """Rough orbits therefore have the same counts."""
     for one in [*whole.points, *(p for s in whole.special for p in (s.before, s.after))]:
         np.testing.assert_array_equal(points._counted_extrema(len(one.closings), one.overlap_extrema), one.closings)
 
@@ -91,7 +91,7 @@ def test_contacts_that_never_open_or_never_close_have_their_own_counts() -> None
 
 
 def test_a_branch_that_comes_back_to_the_least_value_of_its_knob_ends_there() -> None:
-    """At that value the knob cannot decrease further, though its coordinate can."""
+    """At that value, the knob cannot decrease further, although its coordinate can."""
     found = branch(scene("sec2"), "k", 0.0, 1e5, 1, most_points=100)
     assert found.half_branches[0].ended == "returned" and found.points[-1].knob == 0.0
     assert (found.column("knob")[1:-1] > 0.0).all()
@@ -117,7 +117,7 @@ def test_steps_follow_the_turn_and_the_distance_from_the_prediction() -> None:
 
 
 def test_an_orbit_needs_one_exact_derivative(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Without the defect the last steps would need more of them, to the same orbits."""
+    """Without the defect, the last steps would need more derivatives to reach the same orbits."""
     exact, call = [], StroboscopicMap.__call__
 
     def counted(self: StroboscopicMap, x: np.ndarray) -> Flow:
@@ -128,4 +128,4 @@ def test_an_orbit_needs_one_exact_derivative(monkeypatch: pytest.MonkeyPatch) ->
     found = followed()
     orbits = len(found.points) + len({id(p) for s in found.special for p in (s.before, s.after)} - {
         id(p) for p in found.points})
-    assert orbits > 10 and sum(exact) < 1.8 * orbits  # seed and settled start included
+    assert orbits > 10 and sum(exact) < 1.8 * orbits  # including the seed and the settled start

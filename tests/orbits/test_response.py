@@ -1,4 +1,5 @@
-"""The pulse ratio of an orbit; of 1:1, whether the reflected pulse is in step, as at the first peak of the curve."""
+"""The pulse ratio of an orbit and, for 1:1, whether the reflected pulse is in step, as at the first peak of the curve.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +26,7 @@ def test_an_orbit_of_the_first_peak_is_in_step_those_of_valleys_are_not_and_othe
 
 def test_at_the_first_peak_the_push_meets_the_reflected_pulse() -> None:
     peak, valley = response(orbit(at(340.0))), response(orbit(at(470.0)))
-    # the driver moves forward through its middle when the pulse comes back: contact begins before, and peaks near phase
+    # the driver moves forward through its middle when the pulse returns: contact begins before, with a peak near phase
     # 0
     assert peak.contact_phase is not None and 330.0 < peak.contact_phase < 360.0
     assert min(peak.peak_phase, 360.0 - peak.peak_phase) < 15.0

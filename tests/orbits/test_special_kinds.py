@@ -1,4 +1,6 @@
-"""Kinds of special points on branches whose multipliers are given: what a count misses, and what is no fold."""
+"""Kinds of special points on branches with given multipliers, including those that a count misses or that are not
+folds.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,7 @@ AXIS = KnobAxis.of(scene("sec2").evolve(N=2), "f", 1000.0, 2000.0)
 
 
 class GivenOrbits:
-    """Orbits along 1000 to 1001 Hz, at arclength s from 0 to 1, with the multipliers and the turn that are given."""
+    """Orbits from 1000 to 1001 Hz, at arclength s from 0 to 1, with given multipliers and a given turning point."""
 
     def __init__(self, multipliers: Multipliers, turn: float | None = None) -> None:
         self.axis, self.equations, self.multipliers, self.turn = AXIS, self, multipliers, turn
@@ -46,7 +48,7 @@ class GivenOrbits:
 
 
 def found(multipliers: Multipliers, turn: float | None = None) -> list[SpecialPoint]:
-    """The special points between both ends."""
+    """Return the special points between both ends."""
     return special_between(GivenOrbits(multipliers, turn))  # type: ignore[arg-type]
 
 
@@ -64,7 +66,7 @@ def test_a_fold_is_still_a_fold() -> None:
 
 @pytest.mark.parametrize("doubling", [0.3, 0.62])
 def test_a_period_doubling_is_found_though_another_multiplier_comes_back_in_the_same_step(doubling: float) -> None:
-    """The number outside is 1 at both ends."""
+    """The number of multipliers outside the unit circle is 1 at both ends."""
     special = found(lambda s: [1.05 - 0.1 * s, -1.0 - 0.2 * (s - doubling), 0.1, 0.1])
     kinds = {one.kind: one.knob for one in special}
     assert len(special) == 2 and set(kinds) == {"period_doubling", "multiplier_one"}
@@ -82,7 +84,7 @@ def test_a_grazing_says_on_which_side_of_the_knob_a_contact_closes_more_often(
     special = SpecialPoint("grazing", 1000.5, (1000.0, 1001.0), before, after, contact=1, gained="open interval")
     assert special.gained_side == side
     turned = replace(special, after=replace(after, tangent=-after.tangent))
-    assert turned.gained_side is None  # both orbits lie on one side of the turning point
+    assert turned.gained_side is None  # the branch turns back between the two orbits
 
 
 def test_both_are_reported_where_they_pass_within_one_narrow_interval() -> None:

@@ -13,25 +13,25 @@ from granchain_core.orbits.branch.equations import BranchEquations
 
 
 def followed() -> Branch:
-    """A branch with grazings in few orbits: sec2 upwards to its first fold."""
+    """Follow a short branch with grazings: sec2 upwards to its first fold."""
     return branch(scene("sec2"), "f", 340.0, 358.55, 1)
 
 
 def fingerprint(found: list[SpecialPoint]) -> list[tuple[object, ...]]:
-    """Kind, contact and gained interval of special points, without their places."""
+    """Return kind, contact and gained interval of special points, without their places."""
     return [(one.kind, one.contact, one.gained) for one in found]
 
 
 @pytest.fixture(scope="module")
 def fast() -> Branch:
-    """The branch as it is found."""
+    """The branch as it is normally found."""
     return followed()
 
 
 @pytest.mark.parametrize("broken", ["solution", "side"])
 def test_the_careful_search_takes_over_and_finds_the_same(fast: Branch, broken: str,
                                                           monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where a confirmation fails, and where it is not on the side of its rough orbit."""
+    """This happens if a confirmation fails, or is not on the same side as its rough orbit."""
     careful = Between.careful
     used = []
 
@@ -63,7 +63,7 @@ def test_the_walks_orbits_do_not_depend_on_the_search(fast: Branch, monkeypatch:
 
 
 def test_the_ends_of_every_interval_are_exact(fast: Branch) -> None:
-    """Each is a fixed point of the exact map by its own residual, has forces, and its multipliers there."""
+    """By its residual, each is a fixed point of the exact map, with forces and multipliers of its own."""
     equations = BranchEquations(fast.axis, 1)
     assert fast.special
     for one in fast.special:
@@ -93,4 +93,4 @@ def test_a_map_that_is_used_again_is_a_new_one_to_the_last_bit(knob: str) -> Non
 
 def test_nothing_is_searched_between_orbits_that_are_alike(fast: Branch) -> None:
     same = fast.points[0]
-    assert special_search._brackets(fast.axis, same, same, None) == []  # type: ignore[arg-type]  # it is not asked
+    assert special_search._brackets(fast.axis, same, same, None) == []  # type: ignore[arg-type]  # the equations are not used

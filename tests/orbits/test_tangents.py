@@ -1,4 +1,4 @@
-"""The tangent flow by two routes; a missing saltation, which Liouville's formula does not show; long chains."""
+"""The tangent flow by two routes, a missing saltation, which Liouville's formula does not show, and long chains."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def test_tangents_in_w_and_tangents_in_v_with_saltation_are_one_derivative(chang
     stroboscopic_map = StroboscopicMap(shown, 1)
     x = 0.3 * np.random.default_rng(3).standard_normal(2 * shown.N)
     first, second = stroboscopic_map(x).derivative, stroboscopic_map.derivative_by_saltation(x)
-    assert len(stroboscopic_map.contact_events) > 0  # contacts open and close: else there is nothing to jump
+    assert len(stroboscopic_map.contact_events) > 0  # contacts must open and close, otherwise there are no jumps
     assert np.abs(first - second).max() < 1e-9 * np.abs(first).max()
 
 
@@ -39,8 +39,8 @@ def test_a_missing_saltation_shows_in_the_columns_and_not_in_the_determinant() -
     right = stroboscopic_map(x)
     wrong = stroboscopic_map.derivative_by_saltation(x, jumps=False)
     sign, logarithm = np.linalg.slogdet(wrong)
-    assert sign > 0 and logarithm == pytest.approx(right.log_determinant, abs=1e-8)  # Liouville sees nothing
-    assert np.abs(wrong - right.derivative).max() > 0.05 * np.abs(right.derivative).max()  # the columns do
+    assert sign > 0 and logarithm == pytest.approx(right.log_determinant, abs=1e-8)  # Liouville's formula does not show it
+    assert np.abs(wrong - right.derivative).max() > 0.05 * np.abs(right.derivative).max()  # but the columns do
     step, difference = 1e-6, np.zeros((6, 6))
     for column, e in enumerate(step * np.eye(6)):
         difference[:, column] = (stroboscopic_map.end(x + e) - stroboscopic_map.end(x - e)) / (2 * step)
@@ -83,7 +83,7 @@ def test_the_flow_with_and_without_tangents_ends_at_the_same_place_with_the_same
 
 
 def test_a_long_chain_has_the_leading_multipliers_of_its_linear_modes() -> None:
-    # as in the short chain, but by products with single directions only; the drive moves them by about A0/δ0
+    # as for the short chain, but only from products with single directions; the drive changes them by about A0/δ0
     shown = scene("sec2").evolve(N=200, F0=50.0, A0=1e-10, D=1000.0, f=2000.0)
     orbit = granchain_core.orbit(shown, period=1, start=rest(shown))
     assert orbit.residual <= 1e-9 and orbit.liouville_error is None

@@ -1,4 +1,4 @@
-"""The rig's drive amplitudes stand in the presets; every text that names one says what its preset has."""
+"""The rig's drive amplitudes are defined in the presets, and every text that names one agrees with its preset."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from granchain_core.paper import FIGURES
 from granchain_core.paper.computations import MODEL_AMPLITUDES, RIG_AMPLITUDE, STATED_AMPLITUDES, STATES
 
 ROOT = Path(__file__).resolve().parents[2]
-#: Amplitudes of the presets [µm], as they are written.
+#: Amplitudes of the presets [µm], as written in texts.
 RIG, AT_60, AT_90, AT_50 = (f"{1e6 * scene(name).A0:g}" for name in ("rig", *STATES.values()))
 MODELLED = [f"{1e6 * amplitude:g}" for amplitude in MODEL_AMPLITUDES]
-#: Words that each text must have; spaces and line breaks count alike.
+#: Phrases that each text must contain; line breaks count as spaces.
 NAMED = {
     "docs/paper.md": (f"form peak, valley, peak: {AT_60}, {AT_90} and {AT_50} µm", f"at {RIG} µm the broad high region",
                       f"At {RIG} µm, the model has *no* anti-resonance"),
@@ -43,7 +43,8 @@ def test_figures_are_drawn_with_the_amplitudes_of_the_presets() -> None:
 
 
 def test_captions_name_the_amplitudes_of_the_presets() -> None:
-    """Word for word; the caption of figure 1 names the amplitude of section 2, in µm and as a part of a bead."""
+    """They agree word for word; the caption of figure 1 gives the amplitude of section 2 in µm and relative to a bead.
+    """
     assert f"at a constant {RIG} µm" in FIGURES["6"].caption
     for number in ("7", "10", "12"):
         assert f"{AT_60} µm at 60 Hz, {AT_90} µm at 90 Hz, and for the paper's 100 Hz {AT_50} µm at 50 Hz" in FIGURES[number].caption

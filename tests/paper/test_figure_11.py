@@ -1,4 +1,4 @@
-"""Figure 11: without foundation the observer leaves its chain, with it both first beads move alike."""
+"""Figure 11: without a foundation, the observer leaves its chain; with it, both first beads move alike."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def test_both_frequencies_give_the_figure() -> None:
         chain, observer = row.first_beads
         assert row.twin.orbit is not None and row.twin.orbit.stable  # (b), (e)
         assert len(chain) == len(row.twin.time)
-        if founded:  # (d), (e, f): alike but for the first distance, 1e-6 A0, which grows for a while before it decays
+        if founded:  # (d), (e, f): alike up to the initial distance, 1e-6 A0, which grows for a while before it decays
             assert len(row.outside) == 0
             assert np.abs(chain - observer).max() < 1e-5 * row.twin.scene.A0
         else:  # (a), (c)

@@ -1,4 +1,4 @@
-"""A user's files for a figure: what is read, what is refused with its line, and that a series is put in phase."""
+"""A user's files for a figure are read or refused with a line number, and a series is put in phase."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from granchain_core.paper.results import SHOWN
 
 
 def written(folder: Path, text: str) -> str:
-    """The name of a file with this text."""
+    """Write this text to a file and return its name."""
     path = folder / "data.csv"
     path.write_text(text, encoding="utf-8")
     return str(path)
 
 
 def lines(header: str, rows: int = 12) -> str:
-    """A header and some rows of ascending numbers."""
+    """Return a header and some rows of ascending numbers."""
     width = header.count(",") + 1
     return header + "\n" + "".join(",".join(str(i + 1) for _ in range(width)) + "\n" for i in range(rows))
 
@@ -73,7 +73,7 @@ def test_a_missing_file_is_told() -> None:
 
 
 def recorded(periods: int, late: float) -> Series:
-    """Trains of model (5) at 90 Hz over so many periods, begun `late` seconds later, as if they had been measured."""
+    """Return trains of model (5) at 90 Hz over some periods, begun `late` seconds later, as if they were measured."""
     found = column(90.0, None, False, None)
     time = np.arange(periods * 960) / (960 * 90.0)
     phase = np.mod(time + late, 1.0 / 90.0)
@@ -85,7 +85,8 @@ def recorded(periods: int, late: float) -> Series:
 @pytest.mark.parametrize("late", [0.0, 0.0033, 0.0100])
 @pytest.mark.parametrize("only", ["input force", "velocity"])
 def test_a_series_is_put_in_phase(late: float, only: str) -> None:
-    """The model's own trains, cut anywhere, fall on the model: to 1e-3 of the largest, which interpolation costs."""
+    """The model's own trains, cut anywhere, coincide with the model, to the interpolation error of 1e-3 of the largest.
+    """
     series = recorded(20, late)
     if only == "velocity":
         series = Series(series.time, series.velocity, None, series.output_force, "")
@@ -100,8 +101,8 @@ def test_a_series_is_put_in_phase(late: float, only: str) -> None:
 
 
 def test_model_3_is_fed_with_the_measured_force() -> None:
-    """Fed with model (5)'s own force from rest, it finds that motion: at 90 Hz by a factor 0.57 a period, here 21
-    before.
+    """With model (5)'s own force, it approaches that motion from rest: at 90 Hz by a factor of 0.57 per period, here
+    over 21 periods.
     """
     found = column(90.0, recorded(30, 0.0), True, None)
     assert found.observer is not None and found.observer_time is not None and "measured" in found.observer_words

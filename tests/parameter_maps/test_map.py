@@ -1,4 +1,4 @@
-"""The parameter map: its cells are those of curves, and no finished cell is lost or computed twice."""
+"""Parameter maps: cells agree with points of curves, and no finished cell is lost or computed twice."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def test_every_cell_is_the_curves_point_at_its_amplitude(found: ParameterMap) ->
             assert regime is not None
             assert (regime.name, regime.period) == (point.regime.name, point.regime.period)
             cell = found.cells[number]
-            # the same numbers but for the rounding of the batch: far below the error that is claimed
+            # the same numbers up to rounding in the batch, far below the stated error
             assert cell["max_output_force"] == pytest.approx(point.max_output_force, rel=1e-7)
             assert np.isnan(cell["error_estimate"]) == (point.force_errors.output is None)
 
@@ -135,7 +135,7 @@ def test_a_map_comes_back_and_xarray_labels_it(found: ParameterMap, tmp_path: Pa
 
 
 def words(out: Path, *more: str) -> list[str]:
-    """The command line of a map of 20 × 20 cells, a second or two of work and more than two blocks."""
+    """Return the command line of a map of 20 × 20 cells: one or two seconds of work, and more than two blocks."""
     return ["map", "sec2", "--x", "f=200:3000:20", "--y", "A0=2e-7:1e-5:20:log", "--out", str(out), "--json", *more]
 
 
@@ -155,7 +155,7 @@ def test_a_killed_map_resumes_and_computes_nothing_again(tmp_path: Path, capsys:
     there = int((before["regime"] >= 0).sum())
     assert 2 <= there < 400
 
-    assert main(words(out)) == 2  # not without being asked to
+    assert main(words(out)) == 2  # not without --resume
     assert "continue with --resume" in capsys.readouterr().err
     assert main([*words(out, "--resume"), "--set", "D=90"]) == 2
     assert "holds another map" in capsys.readouterr().err
@@ -168,7 +168,7 @@ def test_a_killed_map_resumes_and_computes_nothing_again(tmp_path: Path, capsys:
     kept = before["regime"] >= 0
     assert found.complete and found.cells[kept].tobytes() == before[kept].tobytes()
 
-    assert main(words(out, "--resume")) == 0  # once more: it is there
+    assert main(words(out, "--resume")) == 0  # again: the map is finished
     assert json.loads(capsys.readouterr().out)["computed"] == 0
     assert main([*words(out, "--resume"), "--set", "D=90"]) == 2
     assert "finished map that was computed with other options" in capsys.readouterr().err
@@ -238,7 +238,7 @@ def test_blocks_hold_every_cell_once() -> None:
 
 
 def test_an_axis_may_pass_through_equal_beads() -> None:
-    """Equal beads are computed by other kernels than unequal ones: each cell is that of its own chain."""
+    """Equal beads use different kernels from unequal ones, but each cell agrees with that of its own chain."""
     chain = scene("sec2").evolve(N=3, f=1500.0)
     found = parameter_map(chain, ("dimer", [0.5, 1.0, 2.0]), ("D", [100.0])).column("max_output_force")[0]
     for ratio, force in zip((0.5, 1.0, 2.0), found, strict=True):

@@ -1,4 +1,4 @@
-"""Maps, curves, batches and fits by the workers of a Dask scheduler: two processes on this machine, one of which is
+"""Maps, curves, batches and fits on the workers of a Dask scheduler: two processes on this machine, one of which is
 killed.
 """
 
@@ -35,7 +35,7 @@ from granchain_core.parameter_maps.scheduled import CELLS_IN_TASK, iter_blocks
 from granchain_core.scheduler import dealt, results
 
 CHAIN = scene("sec2").evolve(N=2, f=2000.0)
-#: Four tasks of cells that settle soon.
+#: Four tasks of cells that settle quickly.
 WIDE = (("f", np.linspace(1600.0, 2600.0, 32)), ("A0", np.geomspace(2e-7, 2e-6, 32)))
 
 
@@ -61,7 +61,7 @@ def test_a_map_is_the_same_bytes_though_a_worker_is_killed_midway(client: Any) -
 
 
 def test_a_map_of_python_is_divided_among_the_workers(client: Any) -> None:
-    """`scheduler=`, as of curves and fits; progress is reported after every block, cells that fail are marked."""
+    """The argument is `scheduler=`, as for curves and fits; progress is reported after every block."""
     wide = (("f", np.linspace(1600.0, 2600.0, 20)), ("A0", np.geomspace(2e-7, 2e-6, 16)))
     parts: list[float] = []
     here, there = (parameter_map(CHAIN, *wide, progress=lambda _, part: parts.append(part), scheduler=one) for one in (None, client))
@@ -73,7 +73,7 @@ def test_a_map_of_python_is_divided_among_the_workers(client: Any) -> None:
 
 
 def test_a_curve_is_the_same_and_a_sweep_cannot_be_divided(client: Any) -> None:
-    frequencies = np.linspace(400.0, 1600.0, 80)  # more than a task holds
+    frequencies = np.linspace(400.0, 1600.0, 80)  # more than one task
     here, there = (resonance_curve(scene("sec2"), frequencies, scheduler=one) for one in (None, client))
     for name in ("frequency", "max_output_force", "max_input_force", "max_output_force_elastic"):
         assert there.column(name).tobytes() == here.column(name).tobytes(), name

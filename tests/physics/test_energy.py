@@ -1,7 +1,7 @@
-"""The energy account closes: work of the driver = lost + stored, for every combination of effects.
+"""The energy account closes for every combination of effects: work of the driver = lost + stored energy.
 
-Compiling a combination takes seconds, so by default every two values stand together in one of them; GRANCHAIN_ALL=1
-runs all combinations.
+Compiling a combination takes seconds. By default, the combinations are chosen so that every pair of values occurs in
+one; GRANCHAIN_ALL=1 runs all of them.
 """
 
 from __future__ import annotations
@@ -32,33 +32,33 @@ if not os.environ.get("GRANCHAIN_ALL"):
 
 
 def chain(law: str, tension: str, kappa: float, preload: float):
-    """Five beads in a brisk drive."""
+    """Return five beads with a fast drive."""
     return scene("sec2").evolve(N=5, f=900.0, dissipation=law, tension=tension, kappa=kappa, F0=preload)
 
 
 @pytest.mark.parametrize(("law", "tension", "kappa", "preload"), COMBINATIONS)
 def test_the_account_closes(law, tension, kappa, preload):
-    """Work − lost − stored is a few errors of the motion, over six periods from rest."""
+    """Work − lost − stored is a few times the error of the motion, over six periods from rest."""
     result = run(chain(law, tension, kappa, preload).evolve(accuracy=1e-9), periods=0, record=6, samples=16)
     # undamped and without preload, errors grow at every impact
     assert result.status == "done" or (law == "none" and preload == 0.0 and result.status == "accuracy-not-reached")
-    # the account's integrals are quadratic in what is computed to 1e-9, over some hundred steps
+    # the account's integrals are quadratic in quantities computed to 1e-9, over about a hundred steps
     assert result.energy_residual < 1e-8
 
 
 @pytest.mark.parametrize("law", ["none", "linear"])
 def test_the_account_closes_after_discarded_periods_too(law):
-    """The residual belongs to the recorded part, which may begin anywhere."""
+    """The residual is that of the recorded part, which may begin at any period."""
     result = run(chain(law, "allowed", 0.002, 2.0 if law == "none" else 0.0).evolve(accuracy=1e-6), periods=10, record=3, samples=16)
-    assert result.energy_residual < 1e-5  # ten times the accuracy asked for, energies being quadratic
+    assert result.energy_residual < 1e-5  # ten times the requested accuracy, since energies are quadratic
 
 
 @pytest.mark.parametrize(("law", "tension", "kappa", "preload"), [("linear", "cut", 0.0, 0.0), ("tsuji", "cut", 0.002, 0.05)])
 def test_dop853s_account_of_cut_contacts_closes(law, tension, kappa, preload):
-    """Kinks where a contact stops pushing, and force-free contacts, lose no energy that is not accounted for."""
+    """Neither kinks where a contact stops pushing nor force-free contacts lose energy that is not accounted for."""
     engine = Engine(chain(law, tension, kappa, preload).evolve(D=400.0), MethodSetting("dop853", tolerance=1e-11), 16, account=True)
     stored, work, lost = engine.record(16 * 6).energy.T
-    # the tolerance of a step, over some hundred kinks at which a step begins anew
+    # the tolerance of a step, for about a hundred kinks at which a new step begins
     assert np.abs(stored - stored[0] - work + lost).max() < 1e-10 * np.abs(work).max()
 
 
@@ -66,7 +66,7 @@ def test_dop853s_account_of_cut_contacts_closes(law, tension, kappa, preload):
 def test_work_and_loss_are_the_integrals_of_force_times_velocity(law, tension, kappa, preload):
     """W = ∫ F_0 v_0 dt and Q = ∫ Σ (F − F_el) δ̇ dt, by the trapezoidal rule over fine samples.
 
-    So that the account is the energies themselves and not two numbers that happen to cancel.
+    This shows that the account contains the energies themselves, and not two numbers that happen to cancel.
     """
     shown = chain(law, tension, kappa, preload)
     engine = Engine(shown, MethodSetting("dop853", tolerance=1e-9), 4096, account=True)
@@ -82,11 +82,11 @@ def test_work_and_loss_are_the_integrals_of_force_times_velocity(law, tension, k
     work = np.trapezoid(kept.force[:, 0] * v0, dx=spacing)
     lost = np.trapezoid(((kept.force - elastic) * (speeds[:, :-1] - speeds[:, 1:])).sum(axis=1), dx=spacing)
     _, found_work, found_lost = kept.energy[-1] - kept.energy[0]
-    # the dashpot force jumps some forty times, by a part of its largest value: half a spacing of that each
+    # the dashpot force jumps about forty times by a fraction of its largest value, which costs half a spacing each time
     near = 40 * 0.5 * spacing * np.abs(kept.force).max() * np.abs(speeds).max() * 0.2
     assert found_work == pytest.approx(work, abs=near)
     assert found_lost == pytest.approx(lost, abs=near)
-    assert abs(work) > 20 * near  # the comparison says something
+    assert abs(work) > 20 * near  # the comparison is meaningful
     stored = (0.5 * kept.velocity**2).sum(axis=1) + (0.4 * scaled.slots.chain.stiffness * overlap**2.5).sum(axis=1)
     stored += 0.5 * shown.kappa * (kept.displacement**2).sum(axis=1)
     np.testing.assert_allclose(kept.energy[:, 0], stored, rtol=1e-9, atol=1e-12)  # the same formula on the same samples
@@ -95,17 +95,17 @@ def test_work_and_loss_are_the_integrals_of_force_times_velocity(law, tension, k
 @pytest.mark.parametrize(("law", "method"), [("linear", "dop853"), ("linear", "rk4-split"), ("tsuji", "rk4-split"),
                                              ("kuwabara-kono", "rk4-split")])
 def test_damping_only_takes_energy(law, method):
-    """The energy lost never decreases from sample to sample, whatever the law."""
+    """The energy lost never decreases from one sample to the next, whatever the law."""
     engine = Engine(chain(law, "allowed", 0.0, 0.0), MethodSetting(method, refine=4, tolerance=1e-10), 64, account=True)
     lost = engine.record(64 * 6).energy[:, 2]
     assert lost[-1] > 0.0
-    # between samples the integrals carry the method's error, relative to all that has been lost
+    # the integrals have the method's error, relative to the total energy lost
     assert np.diff(lost).min() > -1e-6 * lost[-1]
 
 
 @pytest.mark.parametrize(("knobs", "method"), [({"D": 0.0, "kappa": 0.002, "F0": 2.0}, "dop853"), ({"dissipation": "none"}, "rk4-split")])
 def test_without_damping_nothing_is_lost_and_the_chain_keeps_what_the_driver_gave(knobs, method):
-    """Q = 0, and E − E(0) = W."""
+    """Without damping, Q = 0 and E − E(0) = W."""
     engine = Engine(chain("none", "allowed", 0.0, 0.0).evolve(**knobs),
                     MethodSetting(method, refine=8, tolerance=1e-12), 16, account=True)
     energy = engine.record(64).energy
@@ -115,7 +115,7 @@ def test_without_damping_nothing_is_lost_and_the_chain_keeps_what_the_driver_gav
 
 
 def test_a_moving_bead_brings_its_energy_along():
-    """A start velocity is stored energy before anything is driven."""
+    """The kinetic energy of an initial velocity is stored energy from the start."""
     thrown = replace(chain("linear", "allowed", 0.0, 0.0), start_velocity=((3, 0.01),))
     engine = Engine(thrown, MethodSetting("dop853", tolerance=1e-10), 8, account=True)
     energy = engine.record(8).energy * engine.scaled.scales.energy
@@ -125,7 +125,9 @@ def test_a_moving_bead_brings_its_energy_along():
 
 
 def test_a_record_of_little_energy_has_its_own_account() -> None:
-    """Struck, then almost at rest: the work and the loss of the periods before are not in the record's account."""
+    """For a struck chain that is almost at rest again, work and loss of earlier periods are not in the record's
+    account.
+    """
     struck = scene("sec2").evolve(N=2, drive="rest", strike=0.05, k=3e6, f=55.0)
     for periods in (1, 3):
         found = run(struck, periods=periods, record=2)
@@ -134,7 +136,7 @@ def test_a_record_of_little_energy_has_its_own_account() -> None:
 
 @pytest.mark.parametrize("amplitude", [1e-8, 1e-10])
 def test_an_account_without_the_work_does_not_close_under_a_preload(amplitude: float) -> None:
-    """The static energy, up to 2e4 times the work here, is not what the residual is relative to."""
+    """The residual is not relative to the static energy, which is up to 2e4 times the work here."""
     engine = Engine(scene("sec2").evolve(N=5, F0=10.0, f=2000.0, A0=amplitude), MethodSetting("dop853", tolerance=1e-12), 16,
                     account=True)
     energy = engine.record(16 * 3).energy
@@ -146,19 +148,19 @@ def test_an_account_without_the_work_does_not_close_under_a_preload(amplitude: f
 
 
 def test_the_residual_is_the_largest_of_the_record() -> None:
-    """An account that fails in between and closes again at the end does not close."""
+    """An account that fails in between counts as not closed, even if it closes again at the end."""
     energy = np.array([[0.0, 0.0, 0.0], [1.0, 1.5, 0.0], [1.0, 1.0, 0.0]])
     assert residual(energy, 0.0) == pytest.approx(0.5 / 1.5)
     assert residual(None, 0.0) is None
 
 
-#: A chain without any effect but the drive.
+#: A chain with no effect but the drive.
 BARE = scene("sec2").evolve(N=2, dissipation="none")
 
 
 @pytest.mark.parametrize("effect", [one for one in EFFECTS if one.possible(BARE)], ids=lambda effect: effect.name)
 def test_an_effect_dissipates_if_its_row_says_so(effect: Effect) -> None:
-    """The energy lost in a chain with this effect alone. A cut of tension needs a dashpot, which loses the energy."""
+    """The chain has this effect alone, except that a tension cut needs a dashpot, which dissipates the energy."""
     engine = Engine(BARE.evolve(**effect.usual), MethodSetting("rk4-split"), 16, account=True)
     _, work, lost = engine.record(16 * 2).energy.T
     assert (lost[-1] > 1e-3 * np.abs(work).max()) == effect.dissipates

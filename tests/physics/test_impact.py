@@ -1,4 +1,4 @@
-"""One bead against a wall does what Hertz, Tsuji and the linear dashpot say in closed form."""
+"""The impact of one bead on a wall agrees with the closed forms of Hertz, of Tsuji and for the linear dashpot."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ DURATION, PEAK = 3.2180655, 1.1432626
 
 
 def impact(law, speed: float, stiffness: float = 1.0):
-    """(contact duration, largest overlap at half the Hertz duration, speed after / speed before) at the wall."""
+    """Return contact duration, overlap at half the Hertz duration, and speed after over speed before, at the wall."""
     hertz = DURATION * stiffness**-0.4 * speed**-0.2
     chain = Bench(1, 2.0 * hertz, 4, law, ends=(0.0, stiffness))
     chain.throw([speed])
     kept = chain.record()
     after = -kept.velocity[-1, 0]
-    # with the wall behind it the bead flies freely: its distance tells when it left
+    # after the impact, the bead flies freely: its distance shows when it left the wall
     duration = chain.time[-1] + kept.displacement[-1, 0] / after
     return duration, kept.displacement[1, 0], after / speed
 
@@ -32,7 +32,7 @@ def impact(law, speed: float, stiffness: float = 1.0):
 @pytest.mark.parametrize("stiffness", [1.0, 2.0**0.5, 2.0 * 2.0**0.5])
 @pytest.mark.parametrize("speed", [0.01, 1.0, 10.0])
 def test_hertz_collision_has_its_duration_peak_force_and_no_loss(speed, stiffness):
-    """A loss-free impact lasts as long and pushes as hard as Hertz's theory says, for every wall factor."""
+    """A lossless impact has the duration and peak force of Hertz's theory, for every wall factor."""
     duration, overlap, restitution = impact(Tsuji(0.0), speed, stiffness)
     assert duration == pytest.approx(DURATION * stiffness**-0.4 * speed**-0.2, rel=1e-7)
     assert stiffness * overlap**1.5 == pytest.approx(PEAK * stiffness**0.4 * speed**1.2, rel=1e-7)
@@ -51,7 +51,7 @@ def test_two_unlike_beads_part_as_momentum_and_energy_say_after_the_time_of_thei
     after = kept.velocity[-1]
     assert after[0] == pytest.approx((first - second) / (first + second) * speed, abs=1e-10)
     assert after[1] == pytest.approx(2.0 * first / (first + second) * speed, abs=1e-10)
-    # both fly freely since they parted: their distance tells when that was
+    # both fly freely since they parted: their distance shows when that was
     parted = chain.time[-1] - (kept.displacement[-1, 1] - kept.displacement[-1, 0]) / (after[1] - after[0])
     assert parted == pytest.approx(hertz, rel=1e-7)
 
@@ -68,7 +68,7 @@ def test_tsuji_restitution_is_exact_and_independent_of_speed(speed, restitution)
 
 @pytest.mark.parametrize("wall", ["bead", "rigid"])
 def test_the_damping_coefficient_of_the_page_gives_the_restitution(wall):
-    """docs/model.md: D = α √(m_eff K) δ_r^{1/4} in SI, here at the wall, where m_eff is the bead's mass."""
+    """docs/model.md gives D = α √(m_eff K) δ_r^{1/4} in SI units, here at the wall, where m_eff is the bead's mass."""
     loss = -np.log(0.6)
     shown = scene("rig").evolve(A0=3e-6, dissipation="tsuji", wall=wall)  # A0 is not the reference overlap
     stiffness = shown.contact_stiffness()[-1]
@@ -82,10 +82,10 @@ def test_linear_dashpot_restitution_depends_on_one_number_to_first_order():
     """e = 1 − 1.78783 L + O(L²) with L = D/(m^{3/5} K^{2/5} v^{1/5}): the slope at L → 0."""
     small = np.array([1e-3, 2e-3])
     lost = np.array([1.0 - impact(LinearDashpot(x), 1.0)[2] for x in small])
-    slope = 2.0 * lost[0] / small[0] - lost[1] / small[1]  # Richardson takes the O(L) of the slope away
+    slope = 2.0 * lost[0] / small[0] - lost[1] / small[1]  # Richardson extrapolation removes the O(L) of the slope
     assert slope == pytest.approx(1.78783, rel=1e-5)  # the constant has six digits; O(L²) = 1e-6
     same = [impact(LinearDashpot(0.1 * v**0.2), v)[2] for v in (0.01, 1.0, 5.0)]
-    assert np.ptp(same) < 1e-9  # the same L at any speed; solver tolerance 1e-13
+    assert np.ptp(same) < 1e-9  # the same L at every speed; solver tolerance 1e-13
 
 
 @pytest.mark.parametrize("speed", [0.2, 1.0, 4.0])
@@ -97,6 +97,5 @@ def test_bead_between_two_contacts_swings_as_the_pure_three_halves_oscillator(sp
     chain.throw([speed])
     kept = chain.record()
     expected = amplitude * np.array([0.0, 1.0, 0.0, -1.0, 0.0])
-    # ω is given to seven digits: in one period the bead is 2π·1e-7 of the amplitude off at most, and the solver adds
-    # none
+    # ω has seven digits: in one period, the error is at most 2π·1e-7 of the amplitude, and the solver's is negligible
     np.testing.assert_allclose(kept.displacement[:, 0], expected, atol=1e-6 * amplitude)

@@ -1,4 +1,4 @@
-"""Pulses and small waves travel as the theory of granular chains says."""
+"""Pulses and small waves travel as in the theory of granular chains."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from granchain_core.scene.hertz import SOLITARY_BY_FORCE, SOLITARY_BY_VELOCITY
 
 
 def top(time: np.ndarray, values: np.ndarray) -> tuple[float, float]:
-    """Time and height of a smooth pulse: the parabola through the highest sample and its neighbours."""
+    """Return time and height of a smooth pulse, from the parabola through the highest sample and its neighbours."""
     i = int(values.argmax())
     before, best, after = values[i - 1 : i + 2]
     curvature = before - 2.0 * best + after
@@ -25,7 +25,7 @@ def top(time: np.ndarray, values: np.ndarray) -> tuple[float, float]:
 
 
 def test_solitary_wave_of_the_uncompressed_chain_has_its_speed():
-    """V = c F_max^{1/6} = c' v_max^{1/5} (K = m = 1, beads per time) behind an impact on bead 1."""
+    """After an impact on bead 1, V = c F_max^{1/6} = c' v_max^{1/5} (K = m = 1, in beads per unit time)."""
     beads, samples = 60, 4000
     chain = Bench(beads, 60.0, samples, ends=(0.0, 1.0), tolerance=1e-11)
     chain.throw(np.eye(beads)[0])
@@ -34,27 +34,27 @@ def test_solitary_wave_of_the_uncompressed_chain_has_its_speed():
     speed = 10.0 / (passes[40][0] - passes[30][0])
     force = 0.5 * (passes[30][1] + passes[40][1])
     velocity = top(chain.time, kept.velocity[:, 35])[1]
-    # The pulse left behind bead 30 is solitary to 1e-5; sampling at 0.015 and the parabola add about 1e-6.
+    # Beyond bead 30, the pulse is solitary to 1e-5; sampling at 0.015 and the parabola add about 1e-6.
     assert speed == pytest.approx(SOLITARY_BY_FORCE * force ** (1 / 6), rel=2e-5)
     assert speed == pytest.approx(SOLITARY_BY_VELOCITY * velocity**0.2, rel=2e-5)
 
 
 def test_momentum_changes_by_the_forces_on_the_ends_and_nothing_else():
-    """Σ m v changes by ∫ (F_0 − F_N) dt, to the accuracy of the quadrature."""
-    # tension cut and damping only redistribute momentum; with a preload all forces are smooth and Simpson's rule
+    """Σ m v changes by ∫ (F_0 − F_N) dt, up to the error of the quadrature."""
+    # a tension cut and damping only redistribute momentum; with a preload, all forces are smooth and Simpson's rule
     # converges
     result = run(scene("sec2").evolve(F0=5.0, accuracy=1e-9), periods=0, record=2, samples=400)
     momentum = (result.scene.masses() * result.velocity).sum(axis=1)
     push = result.input_force - result.output_force
     step = result.time[1] - result.time[0]
     impulse = step / 3 * (push[0] + 4 * push[1::2].sum() + 2 * push[2:-1:2].sum() + push[-1])
-    # Simpson's error h⁴/180·t·F'''' with h = 1/400 period and the chain's 8 kHz cut-off: a few 1e-3 of largest impulse
-    # over one swing of the fastest mode, far less over slow ones; measured 1e-7.
+    # Simpson's error is h⁴/180·t·F'''' with h = 1/400 period; with the chain's 8 kHz cut-off, it is a few 1e-3 of the
+    # largest impulse over one swing of the fastest mode, and far less over slow ones; measured 1e-7.
     assert impulse == pytest.approx(momentum[-1] - momentum[0], abs=1e-6 * np.abs(momentum).max())
 
 
 def linear_modes(chain) -> tuple[np.ndarray, np.ndarray]:
-    """Frequencies [Hz], ascending, and shapes of small waves about the precompressed rest, wall and driver fixed."""
+    """Return frequencies [Hz], ascending, and shapes of small waves about the precompressed rest, with fixed driver."""
     slope = 1.5 * chain.contact_stiffness() * np.sqrt(chain.static_overlap())
     matrix = np.diag(slope[:-1] + slope[1:]) - np.diag(slope[1:-1], 1) - np.diag(slope[1:-1], -1)
     root = 1.0 / np.sqrt(chain.masses())
@@ -63,7 +63,7 @@ def linear_modes(chain) -> tuple[np.ndarray, np.ndarray]:
 
 
 def swing(chain, mode: int, amplitude: float) -> float:
-    """Largest departure, over the amplitude, from the linear motion of one mode during three of its periods."""
+    """Return the largest deviation, over the amplitude, from the linear motion of one mode during three periods."""
     frequencies, shapes = linear_modes(chain)
     shape = shapes[:, mode] / np.abs(shapes[:, mode]).max()
     clock = chain.evolve(f=frequencies[mode] / 3.0)
@@ -79,7 +79,8 @@ def swing(chain, mode: int, amplitude: float) -> float:
 
 @pytest.mark.parametrize("mode", [0, 10])
 def test_small_waves_of_the_precompressed_chain_follow_the_linear_modes(mode):
-    """The departure from the linear mode is small and grows as the amplitude (the force's next term is δ²)."""
+    """The relative deviation from the linear mode is small and grows with the amplitude (the force's next term is δ²).
+    """
     chain = scene("sec2").evolve(F0=10.0)
     static = float(chain.static_overlap()[0])
     small, larger = (swing(chain, mode, x * static) for x in (1e-5, 1e-4))
@@ -88,7 +89,7 @@ def test_small_waves_of_the_precompressed_chain_follow_the_linear_modes(mode):
 
 
 def test_upper_end_of_the_linear_modes_is_the_cut_off_frequency():
-    """Many beads: the highest mode tends to f_c = (1/π)√(1.5 K^{2/3} F0^{1/3}/m) as 1 − O(1/N²)."""
+    """With many beads, the highest mode approaches f_c = (1/π)√(1.5 K^{2/3} F0^{1/3}/m) as 1 − O(1/N²)."""
     chain = scene("sec2").evolve(F0=10.0, N=200)
     cut_off = np.sqrt(1.5 * chain.K ** (2 / 3) * chain.F0 ** (1 / 3) / chain.bead(1).mass) / np.pi
     assert linear_modes(chain)[0][-1] == pytest.approx(cut_off, rel=(np.pi / 400) ** 2)
@@ -96,7 +97,7 @@ def test_upper_end_of_the_linear_modes_is_the_cut_off_frequency():
 
 @pytest.mark.parametrize("ratio", [0.8, 1.25])
 def test_weakly_driven_precompressed_chain_answers_as_the_linear_lattice_with_dashpots(ratio):
-    """Below and above the cut-off the settled motion is Im(U e^{iωt}) with U from a complex linear system."""
+    """Below and above the cut-off, the settled motion is Im(U e^{iωt}) with U from a complex linear system."""
     chain = scene("sec2").evolve(F0=10.0, N=8, A0=1e-10, D=50.0, accuracy=1e-6)
     cut_off = np.sqrt(1.5 * chain.K ** (2 / 3) * chain.F0 ** (1 / 3) / chain.bead(1).mass) / np.pi
     driven = chain.evolve(f=ratio * cut_off)
@@ -115,6 +116,6 @@ def test_scaling_of_amplitude_frequency_and_damping_leaves_the_scaled_orbit_alon
     s = 7.0
     a, b = (run(x, periods=0, record=5, samples=16) for x in (one, one.scaled(s)))
     # equal up to rounding of the parameters, amplified by the motion's sensitivity of about 4 (reference) and by the
-    # steps that rounding moves: far below the accuracy asked for
+    # steps that rounding moves: far below the requested accuracy
     np.testing.assert_allclose(b.displacement, s * a.displacement, atol=2e-9 * s * np.abs(a.displacement).max())
     np.testing.assert_allclose(b.force, s**1.5 * a.force, atol=2e-8 * s**1.5 * np.abs(a.force).max())

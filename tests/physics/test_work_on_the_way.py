@@ -14,9 +14,10 @@ SAMPLES = 4096
 
 
 def test_work_and_loss_on_the_way_are_the_integrals_up_to_there() -> None:
-    """W(t) = ∫ F_0 v_0 dt and Q(t) = ∫ Σ (F − F_el) δ̇ dt within a period, while G_0 v_0 comes and goes.
+    """W(t) = ∫ F_0 v_0 dt and Q(t) = ∫ Σ (F − F_el) δ̇ dt within a period, including the term G_0 v_0.
 
-    By the trapezoidal rule; the dashpot's force jumps some twenty times in a period, by half a spacing of it each.
+    The integrals use the trapezoidal rule. The dashpot's force jumps about twenty times in a period, and each jump
+    costs half a spacing.
     """
     shown = scene("sec2").evolve(N=5, f=900.0, kappa=0.002, F0=2.0)
     engine = Engine(shown, MethodSetting("dop853", tolerance=1e-9), SAMPLES, account=True)
@@ -32,4 +33,4 @@ def test_work_and_loss_on_the_way_are_the_integrals_up_to_there() -> None:
         summed = np.concatenate([[0.0], np.cumsum(0.5 * spacing * (power[1:] + power[:-1]))])
         near = 20 * 0.5 * spacing * np.abs(np.diff(power)).max()
         np.testing.assert_allclose(found - found[0], summed, atol=near)
-        assert np.abs(summed).max() > 20 * near  # the comparison says something
+        assert np.abs(summed).max() > 20 * near  # the comparison is meaningful

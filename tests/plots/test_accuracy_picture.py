@@ -1,4 +1,6 @@
-"""Error against time as a figure: points by method, what has none, what is asked and what is cheapest."""
+"""The figure of error against time: points by method, rows without a point, the requested accuracy and the cheapest
+row.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`granchain.figure`: a figure of every result, of its own size, and one sentence where there is none."""
+"""`granchain.figure` draws every result in a suitable size, and refuses everything else with one sentence."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from granchain_core.paper import compute
 CHAIN = scene("sec2").evolve(N=2, f=2000.0)
 TIME = np.linspace(0.0, 1e-3, 65)
 DATA = b"f [Hz],F [N],error [N]\n1800,3.3,0.1\n2000,2.3,0.1\n2200,1.9,0.1\n"
-#: A result of each kind, and words that an axis of its picture has.
+#: A result of each kind, and words in the label of one of its axes.
 RESULTS = {
     "run": (lambda: granchain.run(CHAIN, periods=10, record=2, samples=16), "output force (N)"),
     "settled": (lambda: granchain.settle(CHAIN), "drive u₀ (nm)"),
@@ -46,7 +46,7 @@ RESULTS = {
 
 
 def labels(drawn: LayoutDOM) -> list[str]:
-    """The titles of all axes."""
+    """Return the labels of all axes."""
     plots = [drawn] if isinstance(drawn, figure) else list(drawn.select({"type": figure}))
     return [axis.axis_label or "" for plot in plots for axis in (*plot.xaxis, *plot.yaxis)]
 
@@ -65,7 +65,7 @@ def test_a_motions_forces_have_their_jumps_and_its_map_its_energies() -> None:
     drawn = granchain.figure(run)
     sources = {one.name: one.data for one in drawn.select({"type": ColumnDataSource}) if one.name}
     jumps = run.jumps.of(0)[1]
-    # In newtons, because the forces are some; in single precision, as the page gets them.
+    # In newtons, because the forces are a few newtons; in single precision, as on the page.
     assert len(jumps) and set(jumps.astype(np.float32)) <= set(sources["input force"]["force"])
     assert len(sources["input force"]["force"]) == len(run.time) + 2 * len(jumps)
     image = next(one.data["image"][0] for one in drawn.select({"type": ColumnDataSource}) if "image" in one.data)
@@ -93,7 +93,7 @@ def test_a_measured_curve_is_drawn_over_a_computed_one_and_within_its_scale() ->
     measured = read_data(b"f [Hz],F [N],error [N]\n1900,5000,0.5\n")
     drawn = granchain.figure(found, measured=measured)
     source = drawn.select_one({"name": "measured", "type": ColumnDataSource})
-    assert source.data["frequency"] == [1900.0] and source.data["force"] == [5.0]  # kN, by the larger of the two
+    assert source.data["frequency"] == [1900.0] and source.data["force"] == [5.0]  # kN, by the larger of the two forces
     assert labels(drawn)[1] == "largest output force (kN)"
 
 

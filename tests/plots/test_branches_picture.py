@@ -1,4 +1,4 @@
-"""Branches as a figure: pieces of lines, special points, and a figure that grew piece by piece."""
+"""The figure of branches: pieces of lines, special points, and a figure that grows piece by piece."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def branch() -> Branch:
 
 
 def data(plot: Any, name: str) -> dict[str, list[Any]]:
-    """The columns of a source."""
+    """Return the columns of a source."""
     return {column: list(values) for column, values in plot.select_one({"name": name}).data.items()}
 
 
@@ -33,7 +33,7 @@ def test_every_kind_of_special_point_has_words_and_a_mark() -> None:
 
 
 def test_the_table_of_special_points_has_the_marks_that_are_drawn(branch: Branch) -> None:
-    """By the name in Unicode: a white shape is hollow. A mark without an inside is filled."""
+    """They are compared by their Unicode names: a white shape is hollow, and a mark without an interior is filled."""
     shapes = {"inverted_triangle": "DOWN-POINTING TRIANGLE", "hex": "HEXAGON", "circle": "CIRCLE", "square": "SQUARE"}
     plot = branches([branch], THEMES["light"])
     drawn = []
@@ -51,7 +51,7 @@ def test_orbits_around_special_points_are_drawn_in_their_places(branch: Branch) 
     assert len(drawn) == len(branch.points) + 2 * len(branch.special)
     lengths = [point.arclength for point in drawn]
     assert lengths == sorted(lengths)
-    # the dash changes inside the doubling's interval, not somewhere between two long steps
+    # the dash changes within the doubling's interval, not somewhere between two long steps
     change = next(i for i in range(1, len(drawn)) if drawn[i].stable != drawn[i - 1].stable)
     assert abs(drawn[change].knob - drawn[change - 1].knob) < 1e-5 * drawn[change].knob
 
@@ -77,7 +77,7 @@ def test_special_points_are_told_with_their_uncertainty(branch: Branch) -> None:
     assert data(plot, "period_doubling")["tooltip"] == [told["period_doubling"]]
     assert data(plot, "period_doubling")["criticality"][0].startswith("subcritical: ")
     shown = {item.label.value: item.visible for item in plot.legend[0].items}
-    assert shown["period doubling"] and not shown["fold"]  # there is none
+    assert shown["period doubling"] and not shown["fold"]  # there is no fold
 
 
 def test_what_grows_piece_by_piece_is_what_is_drawn_at_once(branch: Branch) -> None:
@@ -107,8 +107,8 @@ def test_the_curve_behind_a_branch_joins_neighbours_that_repeat_and_no_others(br
     added = rows.curve(points)
     assert added is not None and added["rows"]["curve"]["x"] == frequencies
     assert [piece[2] for piece in added["pieces"]] == [[250.0, 260.0], [2000.0, 2100.0]]
-    assert rows.curve(points) is None  # it is there
-    # one unit for both: an orbit of the branch lies where the curve has the same motion
+    assert rows.curve(points) is None  # it is drawn already
+    # both have the same unit: an orbit of the branch is where the curve has the same motion
     orbits = rows.add(0, branch, branch.points, branch.special)["rows"]["orbits"]
     row = min(range(len(orbits["x"])), key=lambda i: abs(orbits["x"][i] - 260.0))
     assert orbits["y"][row] == pytest.approx(added["rows"]["curve"]["y"][1], rel=0.03)  # within 2 Hz of it

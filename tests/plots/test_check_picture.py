@@ -1,4 +1,4 @@
-"""The picture of a hard case as a figure: axes, lines, what is left out and what is marked."""
+"""The figure of a hard case: axes, lines, gaps and marks."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ LIGHT = THEMES["light"]
 
 
 def lines(plot: object) -> dict[str, GlyphRenderer]:
-    """The lines by their labels."""
+    """Return the lines by their labels."""
     return {one.name: one for one in plot.renderers if one.name}  # type: ignore[attr-defined]
 
 

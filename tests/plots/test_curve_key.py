@@ -1,4 +1,4 @@
-"""What the lines and marks of a sweep mean stands in its picture; no two meanings look alike."""
+"""The figure of a sweep explains its lines and marks, and no two of them look alike."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ PERIODS = (1, 2, 1, 7)
 
 
 def swept(start: str) -> Curve:
-    """A curve of this start with motions of four periods."""
+    """Return a curve with this start and motions of several periods."""
     points = [CurvePoint(100.0 + i, 1.0, 1.0, 1.0, Regime("periodic", period, None, None, 9), ForceErrors(), rest(CHAIN))
               for i, period in enumerate(PERIODS)]
     return Curve(CHAIN, start, points)
 
 
 def labels(plot: object, name: str) -> list[str]:
-    """The entries of a legend."""
+    """Return the entries of a legend."""
     (legend,) = [one for one in plot.select({"type": Legend}) if one.name == name]  # type: ignore[attr-defined]
     return [item.label.value for item in legend.items]
 

@@ -1,4 +1,4 @@
-"""The line of a curve is broken between motions whose maxima are not comparable, wherever the curve is drawn."""
+"""The line of a curve is interrupted between motions whose maxima are not comparable, wherever the curve is drawn."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ REGIMES = {
     "periodic": Regime("periodic", 1, None, None, 9), "chaotic": Regime("chaotic", None, None, None, 9, (0.1, 0.01)),
     "quasi-periodic": Regime("quasi-periodic", None, None, None, 9, (0.0, 0.01)), "unsettled": Regime.unsettled(9)}
 NAMES = ["periodic", "periodic", "chaotic", "unsettled", "periodic", "periodic", "quasi-periodic", "chaotic"]
-#: Where the line goes on, by the places of the points.
+#: Pieces of the line, by the places of the points.
 PIECES = [[0, 1], [2, 3], [4, 5], [6, 7]]
 FORCES = [1.0, 1.0, math.nan, 1.0, 1.0, math.nan, 1.0, 1.0, math.nan, 1.0, 1.0]
 
 
 def points(names: list[str]) -> list[CurvePoint]:
-    """Points of one force with these regimes."""
+    """Return points with equal forces and these regimes."""
     return [CurvePoint(100.0 + 10.0 * i, 1.0, 1.0, 1.0, REGIMES[name], ForceErrors(), rest(scene("sec2")))
             for i, name in enumerate(names)]
 
@@ -39,7 +39,7 @@ def test_the_line_is_broken_where_maxima_are_not_comparable() -> None:
 
 
 def lines_of(figure: CurveFigure) -> list[ColumnDataSource]:
-    """The sources of the lines of a figure that hold anything."""
+    """Return the sources of a figure's lines that are not empty."""
     sources = [r.data_source for r in figure.figure.renderers if isinstance(r.glyph, Line)]
     return [source for source in sources if len(source.data["force"])]
 

@@ -1,4 +1,4 @@
-"""A figure as a file: whatever else Bokeh does in this process."""
+"""A figure can be written to a file whatever else Bokeh does in this process."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from app.plots.theme import THEMES
 
 
 def test_a_dashboard_whose_visitor_left_does_not_matter() -> None:
-    """Bokeh refuses to name the current document where the last one is gone; a file needs none but its own."""
+    """Bokeh raises an error if its current document no longer exists; a file needs only its own document."""
     gone = Document()
     with patch_curdoc(gone):
         del gone
@@ -23,7 +23,7 @@ def test_a_dashboard_whose_visitor_left_does_not_matter() -> None:
 
 
 def test_the_body_of_a_page_has_the_size_of_its_picture() -> None:
-    """Headless Chromium takes the picture of a window, whose frame takes some of it."""
+    """Headless Chromium takes a screenshot of a window, whose frame needs some of the space."""
     page = captioned_html(figure(), "A picture", "of {nothing}", THEMES["light"], body_size=(640, 480))
     assert "flex-direction: column; width: 640px; height: 480px; }" in page
     assert "width: 640px" not in captioned_html(figure(), "A picture", "of nothing", THEMES["light"])

@@ -18,12 +18,12 @@ DAMPING = [Free("D", 60.0, 200.0)]
 
 
 def plots(picture: LayoutDOM) -> dict[str, figure]:
-    """The figures by name."""
+    """Return the figures by name."""
     return {one.name: one for one in picture.select({"type": figure})}
 
 
 def source(plot: figure, name: str) -> dict[str, object]:
-    """The data of a source."""
+    """Return the data of a source."""
     (found,) = [one.data for one in plot.select({"type": ColumnDataSource}) if one.name == name]
     return found
 

@@ -1,4 +1,4 @@
-"""A figure's JSON, whatever document Bokeh takes for the current one."""
+"""A figure's JSON can be made whatever document Bokeh considers the current one."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from app.plots.json_item import figure_item
 
 @pytest.fixture
 def document_of_a_visitor_who_left() -> Iterator[None]:
-    """What an error in a visitor's document leaves behind: Bokeh's `patch_curdoc` does not take it back then."""
+    """Bokeh's state after an error in a visitor's document: `patch_curdoc` does not restore the previous one then."""
     gone = Document()
     _PATCHED_CURDOCS.append(weakref.ref(gone))
     del gone

@@ -1,4 +1,4 @@
-"""The plane of multipliers as a figure: which mark where, what is far out, the trail behind."""
+"""The figure of the plane of multipliers: marks, multipliers far outside, and the trail of earlier ones."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ from granchain_core.orbits import Orbit
 
 @cache
 def orbit() -> Orbit:
-    """The orbit of three beads."""
+    """Return an orbit of three beads."""
     return granchain_core.orbit(scene("sec2").evolve(N=3, f=2000.0))
 
 
 def with_multipliers(*found: complex, observer: tuple[complex, ...] | None = None) -> Any:
-    """That orbit with other multipliers."""
+    """Return that orbit with other multipliers."""
     return replace(orbit(), multipliers=np.array(found, dtype=complex),
                    observer_multipliers=None if observer is None else np.array(observer, dtype=complex))
 
 
 def data(state: dict[str, dict[str, Any]], name: str) -> dict[str, list[Any]]:
-    """The columns of a source."""
+    """Return the columns of a source."""
     return dict(state[name]["data"])
 
 
@@ -66,7 +66,7 @@ def test_a_multiplier_tells_its_frequency_and_its_decay() -> None:
 def test_a_trail_joins_what_moved_a_little_and_fades() -> None:
     before = [np.array([0.5, 0.01 + 0j]), np.array([0.6 + 0j])]
     state = plane_state(with_multipliers(-0.7, 0.65), before=before)
-    assert data(state, "past")["x"] == [0.5, 0.6]  # a multiplier at zero leaves none
+    assert data(state, "past")["x"] == [0.5, 0.6]  # a multiplier near zero leaves no trail
     assert data(state, "ways")["x1"] == [0.6, 0.65]
     first, second = data(state, "past")["alpha"]
     assert first < second < 1.0

@@ -1,4 +1,4 @@
-"""What has nothing to draw is refused in a sentence, and ranks are counted as the command line counts them."""
+"""Results with nothing to draw are refused with a sentence, and ranks are counted as on the command line."""
 
 from __future__ import annotations
 

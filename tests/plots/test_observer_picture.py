@@ -1,4 +1,4 @@
-"""The distance over time as a figure, and the straight line that a multiplier predicts."""
+"""The figure of an observer's distance over time, with the straight line that a multiplier predicts."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from app.plots.theme import THEMES
 
 
 @pytest.mark.parametrize(("distance", "factor", "end"), [
-    (1e-3, 0.1, (13.0, 1e-12)),  # nine decades at one a period
+    (1e-3, 0.1, (13.0, 1e-12)),  # nine decades, one per period
     (1e-3, 10.0, (7.0, 1.0)),
     (1e-3, 0.1**0.5, (22.0, 1e-12)),
 ])

@@ -1,4 +1,4 @@
-"""The paper's figures: what is drawn, in which units, and that regimes and measured points show."""
+"""The paper's figures: panels, units, regimes and measured points."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from granchain_core.paper.peaks_and_valleys import dips, peaks
 
 @cache
 def result(number: str) -> Result:
-    """The result of a figure without data; figure 9's four curves have every fifth point, which changes no panel."""
+    """Return the result of a figure without data; for speed, figure 9's four curves have only every fifth point."""
     with pytest.MonkeyPatch.context() as patch:
         if number == "9":
             patch.setattr(computations, "RIG_FREQUENCIES", computations.RIG_FREQUENCIES[::5])
@@ -28,17 +28,17 @@ def result(number: str) -> Result:
 
 
 def plots(drawn: LayoutDOM) -> list[Figure]:
-    """All panels of a figure."""
+    """Return all panels of a figure."""
     return [drawn] if isinstance(drawn, Plot) else list(drawn.select({"type": Figure}))
 
 
 def source(drawn: LayoutDOM, name: str) -> dict[str, Any]:
-    """The data of the source with this name."""
+    """Return the data of the source with this name."""
     (found,) = [one for one in drawn.select({"type": ColumnDataSource}) if one.name == name]
     return dict(found.data)
 
 
-#: Panels of each figure, and words that its axes have.
+#: Number of panels of each figure, and words in its axis labels.
 EXPECTED = {
     "1": (1, "mm"), "2": (1, "largest elastic output force (N)"), "3": (4, "drive u₀ (µm)"), "3a": (2, "time (ms)"),
     "3b": (2, "input force (N)"), "4": (1, "mm"), "5": (2, "velocity amplitude V0 (mm/s)"), "6": (4, "output force (N)"),
@@ -115,7 +115,7 @@ def test_measured_points_are_drawn_hollow_and_in_front() -> None:
     assert drawn.y_range.end > 1.2
     far = Measured(frequency, np.array([0.1, 9.0]), None, "")
     high = paper_figure(type(curve)(curve.curve, far), THEMES["light"])  # type: ignore[attr-defined,call-arg]
-    assert high.y_range.end > 9.0  # no measured point is outside
+    assert high.y_range.end > 9.0  # measured points must not be outside
     drawings = {type(one.glyph).__name__: one for one in drawn.renderers if one.data_source.name == "measured"}
     assert drawings["Segment"].glyph.line_color == THEMES["light"].ink
     dots = drawings["Scatter"]

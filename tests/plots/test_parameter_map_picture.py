@@ -1,4 +1,4 @@
-"""The map over two knobs as a figure: where cells lie, what they say, and how it fills."""
+"""The figure of a parameter map: places of cells, their texts, and how it fills."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ GRID = Grid(scene("sec2").evolve(N=2), Axis.of("f", [1900.0, 2000.0, 2100.0]), A
 
 
 def filled(*numbers: int, regime: str = "periodic", period: int = 2, force: float = 0.5) -> ParameterMap:
-    """A parameter map of which some cells are computed."""
+    """Return a parameter map in which some cells are computed."""
     found = nothing(GRID)
     for number in numbers:
         found.cells[number]["regime"], found.cells[number]["period"] = CELL_REGIMES.index(regime), period
@@ -29,7 +29,7 @@ def filled(*numbers: int, regime: str = "periodic", period: int = 2, force: floa
 
 
 def data(plot: Any, name: str) -> dict[str, list[Any]]:
-    """The columns of a source."""
+    """Return the columns of a source."""
     return dict(plot.select_one({"name": name}).data)
 
 
@@ -55,7 +55,7 @@ def test_bifurcation_curves_are_drawn_over_the_map_in_its_units() -> None:
 
 
 def test_the_marks_on_bifurcation_curves_say_of_which_kind_they_are() -> None:
-    """By the marks of the special points of a branch, with a key; a long curve has few of them."""
+    """They are the marks of a branch's special points, with a key; a long curve has few of them."""
     points = [BifurcationPoint(1920.0 + i, 1e-6, -1.0 + 0.0j, np.zeros(4)) for i in range(60)]
     curves = [BifurcationCurve(kind, 1, points) for kind in ("fold", "neimark_sacker", "fold")]
     plot = parameter_map(filled(0, 4), THEMES["light"], curves=curves)

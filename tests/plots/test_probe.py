@@ -1,4 +1,4 @@
-"""Pictures of one bead: what they show is the motion's own."""
+"""Figures of one bead show the data of its motion."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from granchain_core import Run, scene, settle
 
 @pytest.fixture(scope="module")
 def third() -> Run:
-    """The 1:3 resonance."""
+    """Steady state of `fig3b`, the 1:3 resonance."""
     return settle(scene("fig3b")).run
 
 
@@ -35,7 +35,7 @@ def test_a_motion_of_period_3_has_three_stroboscopic_points(third: Run) -> None:
 
 
 def test_contacts_are_closed_where_the_overlap_says_so(third: Run) -> None:
-    """Spells and open times cover the record: what is closed sums to the share of samples, to one sample a change."""
+    """The closed intervals of a contact add up to its share of closed samples, to within one sample per change."""
     spells = closed_spells(third)
     for contact in range(third.scene.N + 1):
         mine = [(a, b) for c, a, b in spells if c == contact]
@@ -44,7 +44,7 @@ def test_contacts_are_closed_where_the_overlap_says_so(third: Run) -> None:
         for a, b in mine:
             middle = np.interp(0.5 * (a + b), third.time, third.overlap[:, contact])
             assert middle > 0.0
-    assert len([1 for c, _, _ in spells if c == 0]) >= 2  # one strong push and weaker ones, with gaps between
+    assert len([1 for c, _, _ in spells if c == 0]) >= 2  # one strong push and weaker ones, with gaps between them
 
 
 def test_the_spectrum_of_a_period_3_motion_has_thirds_of_the_drive_frequency(third: Run) -> None:
@@ -54,7 +54,7 @@ def test_the_spectrum_of_a_period_3_motion_has_thirds_of_the_drive_frequency(thi
 
 
 def test_the_spectrum_of_a_sine_is_its_amplitude() -> None:
-    """A single driven bead far below contact resonance follows the drive; here the run's own array is replaced."""
+    """The displacement of one bead is replaced by a cosine at the drive frequency."""
     run = settle(scene("sec2").evolve(f=340.0)).run
     run.displacement[:, 2] = 3e-7 * np.cos(2 * np.pi * np.arange(len(run.time)) / run.samples)
     multiples, size = amplitudes(run, 2)

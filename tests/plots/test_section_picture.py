@@ -1,4 +1,4 @@
-"""The Poincaré section as a figure: transient and end, the way to an orbit, which part of the plane."""
+"""Figure of a Poincaré section: transient and final points, the path to an orbit, the visible part of the plane."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ OWN = np.array([[1.0, 1.0], [1.0, 2.0]])
 
 
 def shown(period: int = 2, unstable: bool = False, transient: int = 4) -> SectionPoints:
-    """Six points, four of them on the way."""
+    """Return a section of six points, four of them in the transient by default."""
     return SectionPoints(POINTS, OWN, transient, period, unstable, 3, ("nm", "mm/s"))
 
 

@@ -1,5 +1,4 @@
-"""Other drives than the harmonic one: the kernel against the harmonic run and closed forms, signals against formulas.
-"""
+"""Drives other than the harmonic one: kernel against harmonic runs and closed forms, signals against their formulas."""
 
 from __future__ import annotations
 
@@ -32,25 +31,27 @@ CHAIN = scene("sec2").evolve(N=3)
 
 
 def sine(amplitude: float, frequency: float, periods: float) -> Signal:
-    """The harmonic drive as a signal."""
+    """Return the harmonic drive as a signal."""
     omega = 2.0 * np.pi * frequency
     return Signal.of(lambda t: amplitude * omega * np.cos(omega * t), lambda t: amplitude * np.sin(omega * t),
                      periods / frequency, frequency, "sine")
 
 
 def test_a_sine_moves_the_chain_as_the_harmonic_drive_does() -> None:
-    """Displacements, forces, largest forces, and the work of the driver, by another slot and another loop."""
+    """A prescribed sine uses another drive slot and another loop, and gives the same displacements and largest forces.
+    """
     found = drive(CHAIN, sine(CHAIN.A0, CHAIN.f, 6))
     exact = run(CHAIN, periods=0, record=6, samples=400)
     assert found.status == "done" and found.energy_residual < 1e-5
-    # the signal's velocity is off by (2π/400)²/12 = 2e-5, its displacement by 4e-8; either motion by 1e-6
+    # the signal's velocity is off by (2π/400)²/12 = 2e-5, its displacement by 4e-8, and each of the motions by 1e-6
     np.testing.assert_allclose(found.displacement, exact.displacement, atol=5e-6 * np.abs(exact.displacement).max())
     assert found.max_output_force_elastic == pytest.approx(exact.max_output_force_elastic, rel=2e-5)
     assert found.max_input_force == pytest.approx(exact.max_input_force, rel=1e-4)  # the dashpot feels the velocity
 
 
 def test_errors_and_energy_are_those_of_finer_computations() -> None:
-    """A chirp through the first resonance: what is stated holds for a hundred times the accuracy."""
+    """For a chirp through the first resonance, stated errors cover the difference from a run 1,000 times as accurate.
+    """
     signal = Signal.chirp(CHAIN.A0, 800.0, 1600.0, 0.01)
     rough, fine = drive(CHAIN.evolve(accuracy=1e-5), signal), drive(CHAIN.evolve(accuracy=1e-8), signal)
     difference = np.abs(rough.displacement - fine.displacement).max() / np.abs(fine.displacement).max()
@@ -60,11 +61,11 @@ def test_errors_and_energy_are_those_of_finer_computations() -> None:
 
 
 def test_a_driver_at_constant_velocity_gives_a_free_bead_the_speed_of_a_collision() -> None:
-    """Without damping a heavy body at speed v throws a bead on at 2v (one bead, the wall too soft to matter)."""
+    """Without damping, a heavy body at speed v throws a bead forward at 2v (one bead, a wall too soft to matter)."""
     chain = scene("sec2").evolve(N=1, dissipation="none", wall=1e-6)
     time = np.linspace(0.0, 2e-3, 2001)
     found = drive(chain, Signal.from_velocity(time, np.full(2001, 1e-3)))
-    # the wall, a millionth as stiff, slows it by less than √(K_wall δ^{5/2}/m v²) with δ = 4 µm: 1e-4
+    # the wall, a millionth as stiff, slows the bead by less than √(K_wall δ^{5/2}/m v²) with δ = 4 µm: 1e-4
     assert found.velocity[300:600].max() == pytest.approx(2e-3, rel=1e-3)
 
 
@@ -75,10 +76,10 @@ def test_a_driver_at_constant_velocity_gives_a_free_bead_the_speed_of_a_collisio
     (Signal.tones(1.0, 100.0, 130.0, 0.05, 0.5),
      lambda t: (np.sin(200 * np.pi * t) + 0.5 * np.sin(260 * np.pi * t)) / 1.5)])
 def test_signals_follow_their_formulas(signal: Signal, formula) -> None:  # type: ignore[no-untyped-def]
-    """At the knots and, by the quadratics, between them."""
+    """Signals agree with their formulas at the knots and, through the quadratics, between them."""
     pieces, half = signal.quadratics(), 0.5 * np.diff(signal.time)
     between = pieces[:, 0] + half * (pieces[:, 1] + half * pieces[:, 2])
-    # what is left of a kink after three corrections at the knots: 1e-9; (2π/400)³ · 0.008 = 3e-8 between them
+    # three corrections leave 1e-9 of a kink at the knots; between them the error is (2π/400)³ · 0.008 = 3e-8
     np.testing.assert_allclose(signal.displacement, formula(signal.time), atol=1e-9)
     np.testing.assert_allclose(between, formula(signal.time[:-1] + half), atol=signal.displacement_error)
     assert signal.displacement_error < 4e-8
@@ -86,18 +87,18 @@ def test_signals_follow_their_formulas(signal: Signal, formula) -> None:  # type
 
 @pytest.mark.parametrize("accuracy", [1e-6, 1e-8, 1e-10])
 def test_the_largest_forces_of_a_sine_are_within_their_errors_of_the_harmonic_run(accuracy: float) -> None:
-    """The harmonic run has another driver and another method, whose own errors are below 1e-9."""
+    """The harmonic run uses another driver and another method, with errors below 1e-9."""
     found = drive(CHAIN.evolve(accuracy=accuracy), sine(CHAIN.A0, CHAIN.f, 3))
     exact = run(CHAIN.evolve(accuracy=1e-10), periods=0, record=3, samples=4)
     errors = found.force_errors
     for name, stated in (("max_input_force", errors.input), ("max_output_force", errors.output),
                          ("max_output_force_elastic", errors.elastic)):
         assert abs(getattr(found, name) / getattr(exact, name) - 1.0) <= stated + 1e-9
-    # the dashpot of contact 0 feels the velocity's error of 2e-5 and makes part of the force
+    # the dashpot of contact 0, which contributes part of the force, feels the velocity error of 2e-5
     assert 1e-7 < errors.input < 2e-5
 
 
-#: A signal for each law.
+#: One signal for each dissipation law.
 FORMULAS: dict[str, Callable[[], Signal]] = {
     "linear": lambda: Signal.chirp(CHAIN.A0, 300.0, 600.0, 0.02),
     "tsuji": lambda: Signal.tones(CHAIN.A0, 700.0, 1103.0, 0.007, 0.3),
@@ -106,7 +107,7 @@ FORMULAS: dict[str, Callable[[], Signal]] = {
 
 @functools.cache
 def with_fine_knots(law: str) -> Driven:
-    """The chain with this law under its signal at sixteen times the knots, computed once for all accuracies."""
+    """Return the chain with this law, driven by its signal with 16 times as many knots. Computed once per law."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("granchain_core.prescribed_drive.signal.KNOTS", 16 * KNOTS)
         return drive(CHAIN.evolve(dissipation=law, accuracy=1e-10), FORMULAS[law]())
@@ -115,19 +116,19 @@ def with_fine_knots(law: str) -> Driven:
 @pytest.mark.parametrize("accuracy", [1e-6, 1e-8, 1e-10])
 @pytest.mark.parametrize("law", FORMULAS)
 def test_errors_of_the_largest_input_force_hold_what_knots_leave_out_of_a_formula(law: str, accuracy: float) -> None:
-    """Against sixteen times the knots, whose velocity is off by 1/256 of the error stated here."""
+    """Stated errors cover the difference from 16 times as many knots, where the velocity error is 1/256 as large."""
     found, fine = drive(CHAIN.evolve(dissipation=law, accuracy=accuracy), FORMULAS[law]()), with_fine_knots(law)
     wrong = abs(found.max_input_force / fine.max_input_force - 1.0)
     stated = found.force_errors.input
     assert stated is not None and fine.force_errors.input is not None
     assert wrong <= stated + fine.force_errors.input
-    # the bound takes the largest velocity error and the largest damping at once: seen, 5 to 30 times the error
+    # the bound combines the largest velocity error with the largest damping: observed, 5 to 30 times the actual error
     assert stated <= 100.0 * max(wrong, accuracy)
     assert (found.status == "done") == (found.displacement_error <= accuracy)
 
 
 def test_a_burst_with_a_kink_at_its_end_leaves_the_driver_where_it_was() -> None:
-    """Its velocity has a kink between two knots; without corrections the driver stayed 5e-7 of its swing away."""
+    """Its velocity has a kink between two knots. Without corrections, the driver ended 5e-7 of its amplitude away."""
     signal = Signal.burst(1.0, 2000.0, 2.3, 0.004)
     assert abs(signal.displacement[-1]) < 1e-12  # rounding of a sum of 6400 terms
     assert signal.velocity_error < 2e-4 * np.abs(signal.velocity).max()
@@ -143,18 +144,18 @@ OMEGA = 2.0 * np.pi * SAMPLED.f
 
 
 def samples(kind: str, time: np.ndarray) -> np.ndarray:
-    """Velocity or displacement of the harmonic drive at these times."""
+    """Return the velocity or displacement of the harmonic drive at these times."""
     return SAMPLED.A0 * (OMEGA * np.cos(OMEGA * time) if kind == "velocity" else np.sin(OMEGA * time))
 
 
 def sampled(kind: str, time: np.ndarray, **how: object) -> Signal:
-    """The signal of these samples."""
+    """Return the signal made from samples at these times."""
     make = Signal.from_velocity if kind == "velocity" else Signal.from_displacement
     return make(time, samples(kind, time), **how)  # type: ignore[arg-type]
 
 
 def written(path: Path, kind: str, time: np.ndarray) -> str:
-    """A file with these samples; line 1 is the header."""
+    """Write a CSV file with these samples under a header line and return its path."""
     rows = "".join(f"{t:.12e},{x:.12e}\n" for t, x in zip(time, samples(kind, time), strict=True))
     path.write_text(f"time (s),{kind} ({'m/s' if kind == 'velocity' else 'm'})\n{rows}", "utf-8")
     return str(path)
@@ -162,16 +163,16 @@ def written(path: Path, kind: str, time: np.ndarray) -> str:
 
 @pytest.fixture(scope="module")
 def harmonic() -> Run:
-    """Seventeen periods of the harmonic drive, to 1e-8."""
+    """Seventeen periods under the harmonic drive, accurate to 1e-8."""
     return run(SAMPLED.evolve(accuracy=1e-8), periods=0, record=17, samples=400)
 
 
 @pytest.mark.parametrize("kind", ["velocity", "displacement"])
 @pytest.mark.parametrize("count", [4, 5, 10, 20, 100, 400])
 def test_what_samples_leave_out_is_stated(kind: str, count: int, harmonic: Run) -> None:
-    """Against the harmonic run; 4 samples of a velocity are such that every second of them gives the same lines."""
+    """Compare with the harmonic run. With 4 velocity samples per period, every second one gives the same lines."""
     found = drive(SAMPLED, sampled(kind, np.arange(17 * count + 1) / (count * SAMPLED.f)))
-    every = (8 if kind == "displacement" else 1) * count // math.gcd(400, count)  # instants that both have
+    every = (8 if kind == "displacement" else 1) * count // math.gcd(400, count)  # instants in both records
     moved, true = found.displacement[::every], harmonic.displacement[:: 400 // math.gcd(400, count)]
     assert np.abs(moved - true).max() <= found.displacement_error * np.abs(true).max()
     errors = found.force_errors
@@ -186,7 +187,7 @@ def test_what_samples_leave_out_is_stated(kind: str, count: int, harmonic: Run) 
 
 @pytest.mark.parametrize("kind", ["velocity", "displacement"])
 def test_a_motion_that_is_meant_as_it_is_has_no_error_by_samples(kind: str) -> None:
-    """Neither coarse nor uneven times matter then; a formula has no samples either."""
+    """Coarse or uneven times then make no difference. A formula has no samples either."""
     time = np.r_[0.0:0.01:1e-4, 0.02:0.03:1e-4]
     exact = sampled(kind, time, exact=True)
     assert exact.coarser == ()
@@ -238,12 +239,12 @@ def test_noise_has_its_band_and_its_strength() -> None:
     power = np.abs(np.fft.rfft(signal.displacement * np.hanning(len(signal.time)))) ** 2
     frequency = np.fft.rfftfreq(len(signal.time), signal.time[1])
     assert power[(frequency > 195) & (frequency < 405)].sum() > 0.999 * power.sum()
-    # mean of 200 squares of sines over 200 periods: a tenth
+    # a mean of 200 squared sines over 200 periods: to about a tenth
     assert signal.displacement[len(signal.time) // 50:].std() == pytest.approx(np.sqrt(0.5), rel=0.1)
 
 
 def test_a_measured_velocity_or_displacement_drives_the_chain(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Both files give the motion of the formula they were written from; the result is kept with units."""
+    """Both files give the motion of the formula they were written from. The result is saved with units."""
     omega, time = 2.0 * np.pi * 900.0, np.linspace(0.0, 0.004, 801)
     rows = {"velocity": (CHAIN.A0 * omega * np.cos(omega * time), "m/s"), "displacement": (CHAIN.A0 * np.sin(omega * time), "m")}
     exact = drive(CHAIN, sine(CHAIN.A0, 900.0, 3.6)).max_output_force_elastic
@@ -253,7 +254,7 @@ def test_a_measured_velocity_or_displacement_drives_the_chain(tmp_path: Path, ca
         out = tmp_path / f"{name}.h5"
         assert main(["run", "sec2", "--set", "N=3", "--drive", str(path), "--json", "--out", str(out)]) == 0
         printed = json.loads(capsys.readouterr().out)
-        # 222 samples a period: the trapezoid of the velocity is (2π/222)²/12 = 7e-5 too small
+        # at 222 samples per period, the trapezoidal rule for the velocity is (2π/222)²/12 = 7e-5 too small
         assert printed["max_output_force_elastic"] == pytest.approx(exact, rel=5e-4) and name in printed["drive"]
         with h5py.File(out) as file:
             assert file["driven/drive_displacement"].attrs["units"] == "m" and len(file["driven/time"]) >= 801
@@ -274,7 +275,7 @@ def test_what_cannot_be_is_refused_with_a_sentence(words: list[str], sentence: s
 
 
 def test_finer_knots_and_a_shift_leave_the_motion_as_it_is() -> None:
-    """The given knots are among the new ones, so that the coarser signals, by which errors are stated, still fit."""
+    """The given knots are among the new ones, so the coarser signals used for error estimates still fit."""
     time = np.linspace(0.0, 0.004, 41)
     given = sampled("velocity", time)
     finer, moved = given.finer(3e-5), given.shifted(2e-7)
@@ -295,7 +296,10 @@ def test_times_of_a_velocity_ascend() -> None:
 
 
 def recorded(path: Path, offset: float = 0.0, title: str = "velocity (mm/s),input force (mN),output force (N)") -> Driven:
-    """A file with the velocity and both forces of a computed motion, its output force with an offset [N]."""
+    """Write the velocity and both forces of a computed motion to a file, the output force with an offset [N].
+
+    Returns the motion.
+    """
     time = np.linspace(0.0, 3.6 / 900.0, 801)
     found = drive(CHAIN, Signal.from_velocity(time, 2.0 * np.pi * 900.0 * CHAIN.A0 * np.cos(2.0 * np.pi * 900.0 * time)))
     rows = zip(time, found.signal.velocity * 1e3, found.input_force * 1e3, found.output_force + offset, strict=True)
@@ -304,7 +308,7 @@ def recorded(path: Path, offset: float = 0.0, title: str = "velocity (mm/s),inpu
 
 
 def test_forces_in_a_file_of_a_drive_are_compared(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """The computed forces themselves, in other units: no difference but the offset of one sensor, which stays."""
+    """The file has the computed forces in other units. The only difference is one sensor's offset, which is kept."""
     path, out, picture = tmp_path / "rig.csv", tmp_path / "rig.h5", tmp_path / "rig.html"
     recorded(path, offset=-0.25)
     words = ["run", "sec2", "--set", "N=3", "--drive", str(path)]
@@ -347,7 +351,7 @@ def test_one_measured_force_is_drawn_beside_the_computed_one_and_within_its_axis
 
 
 def test_a_raised_flag_ends_a_long_chain_within_milliseconds_of_work() -> None:
-    """The flag is read by the work done, steps times bodies, and not by the number of steps."""
+    """How often the flag is read depends on the work done, steps times bodies, not on the number of steps."""
     stop = Stop()
     chain = MovedChain(scene("sec2").evolve(N=3000), sine(1e-7, 300.0, 2.0), stop)
     most = 2**19 / chain.scaled.bodies + 1.0
@@ -359,7 +363,7 @@ def test_a_raised_flag_ends_a_long_chain_within_milliseconds_of_work() -> None:
 
 
 def test_a_record_too_long_for_the_low_pass_is_said(capsys: pytest.CaptureFixture[str]) -> None:
-    """Of 5,000 beads a record holds 10,000 instants: 0.1 s of a 1 kHz sensor needs 12,800."""
+    """A record of 5,000 beads has at most 10,000 instants, and 0.1 s of a 1 kHz sensor needs 12,800."""
     signal, sensors = sine(1e-7, 100.0, 10.0), Sensors(bandwidth=1000.0)
     short = _fine_enough(signal, scene("sec2").evolve(N=11), sensors)
     assert np.diff(short.time).max() <= 1.0 / 128_000.0 * (1.0 + 1e-9) and capsys.readouterr().err == ""

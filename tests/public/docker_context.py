@@ -1,4 +1,4 @@
-"""The files of the repository from which the Docker image is built, in a folder of their own."""
+"""Copy the repository files from which the Docker image is built into a separate folder."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 def let_through(path: Path) -> bool:
-    """Whether .dockerignore sends a file of the repository to the builder: the last pattern that fits decides."""
+    """Return whether .dockerignore lets a repository file through to the builder: the last matching pattern decides."""
     sent = True
     for line in (ROOT / ".dockerignore").read_text(encoding="utf-8").splitlines():
         pattern = line.lstrip("!")
@@ -21,7 +21,10 @@ def let_through(path: Path) -> bool:
 
 
 def _fits(name: str, pattern: str) -> bool:
-    """Whether a pattern names a file or a folder above it; `**/` stands for any folders, no star for a slash."""
+    """Return whether a pattern matches a file or one of its parent folders.
+
+    `**/` matches any folders. No star matches a slash.
+    """
     places = [name, *(parent.as_posix() for parent in Path(name).parents)][:-1]
     if pattern.startswith("**/"):
         return any(fnmatch(place.rpartition("/")[2], pattern[3:]) for place in places)
@@ -29,7 +32,10 @@ def _fits(name: str, pattern: str) -> bool:
 
 
 def copy_context(target: Path) -> None:
-    """Do what the Dockerfile's lines COPY do. Raises `FileNotFoundError` for what the builder would not get."""
+    """Do what the COPY lines of the Dockerfile do.
+
+    Raises `FileNotFoundError` for a source that the builder would not receive.
+    """
     lines = re.findall(r"^COPY (?!--from)(.+) (\S+)$", (ROOT / "Dockerfile").read_text(encoding="utf-8"), re.MULTILINE)
     for sources, place in lines:
         for source in map(ROOT.joinpath, sources.split()):
@@ -37,7 +43,7 @@ def copy_context(target: Path) -> None:
                      if path.is_file() and let_through(path)]
             if not files:
                 raise FileNotFoundError(source)
-            # a folder's content goes into the folder `place`, a file too if that ends with a slash
+            # the content of a folder goes into the folder `place`; so does a file if `place` ends with a slash
             for path in files:
                 own = path.relative_to(source) if path != source else path.name if place.endswith("/") else ""
                 copy = target / place / own

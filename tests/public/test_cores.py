@@ -1,4 +1,4 @@
-"""How many threads and turns there are: as many as the processors that this process may use."""
+"""The number of threads and turns equals the number of processors that this process may use."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ pytestmark = pytest.mark.quick
     ("900000 100000\n", 4), ("1000 100000\n", 1), ("200000 0\n", 4), ("nonsense\n", 4), (None, 4)])
 def test_a_quota_limits_the_processors(content: str | None, allowed: int, tmp_path: Path,
                                        monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of four processors, what a container's file allows; a file that is missing or cannot be read allows all."""
+    """A container's quota file limits the four processors. A missing or unreadable file allows all of them."""
     monkeypatch.setattr(os, "sched_getaffinity", lambda process: {0, 1, 2, 5}, raising=False)
     monkeypatch.setattr(cores, "_QUOTA", tmp_path / "cpu.max")
     if content is not None:

@@ -1,4 +1,4 @@
-"""The dashboard beside a notebook: it answers under its address, may stand in a notebook's frame, and ends."""
+"""The dashboard of a notebook: it answers at its address, may be shown in a notebook's frame, and can be closed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Every row of the tables of former names works, and nothing else in the code is a former name."""
+"""Every row in the tables of former names works, and the code has no other former names."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ from granchain_core.kernels import batch_size
 from granchain_core.orbits import BranchPoint, Response, SpecialPoint
 
 ROOT = Path(__file__).resolve().parents[2]
-#: Modules whose names are not those of the package.
+#: Modules with public names that differ from those of the package.
 MODULES = {name: importlib.import_module(f"granchain_core.{name}") for name in ("orbits", "integrate", "parameter_maps")}
 CLASSES: dict[str, Any] = {one.__name__: one for one in (
     *(getattr(granchain_core, name) for name in ("Branch", "Fit", "LyapunovSpectrum", "Orbit", "Regime", "Pulse")), BranchPoint, Response, SpecialPoint)}
 
 
 def short(name: str) -> str:
-    """A name without its class, table or command."""
+    """Return a name without its class, table or command."""
     return name.rpartition(".")[2]
 
 
@@ -90,7 +90,7 @@ def test_a_former_key_of_a_result_stands_beside_the_present_one(row: core.Former
 
 def test_fit_takes_its_former_parameter(monkeypatch: pytest.MonkeyPatch) -> None:
     class Ended(Exception):
-        """The search was called."""
+        """Raised when the search is called."""
 
     def search(problem: object, initial_points: int, good: object) -> None:
         raise Ended(initial_points)
@@ -130,7 +130,7 @@ def test_the_former_extras_are_those_of_the_package() -> None:
 
 
 def test_the_tables_alone_make_names_work() -> None:
-    """No other module says that something is a former or an older name of something."""
+    """No other module describes anything as a former or older name, except for the columns in pulse.py."""
     says = re.compile(r"\b(?:[Oo]lder|[Ff]ormer) names? of ")
     files = [path for package in ("granchain", "granchain_core", "app") for path in (ROOT / package).rglob("*.py")]
     assert [path.name for path in files if path.name != "former_names.py" and says.search(path.read_text(encoding="utf-8"))] == ["pulse.py"]

@@ -1,4 +1,4 @@
-"""What the public functions do with values that they cannot use: one sentence, or the value as Python's own number."""
+"""Public functions convert NumPy values to plain Python numbers and refuse unusable values with one sentence."""
 
 from __future__ import annotations
 
@@ -118,7 +118,7 @@ def test_the_file_of_another_result_is_said_to_be_one(tmp_path: Path) -> None:
         load(save(orbit(CHAIN), tmp_path / "orbit.h5"))
 
 
-# --- scenes and beads, however they are made ---------------------------------------------------------------
+# --- scenes and beads, however they are created ---------------------------------------------------------------
 
 
 @pytest.mark.parametrize("changes", [

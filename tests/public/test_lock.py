@@ -1,4 +1,4 @@
-"""The lock files fit pyproject.toml and name the hash of everything, and the image installs nothing without one."""
+"""The lock files fit pyproject.toml and give a hash for every package, and the image installs nothing without one."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ LOCKS = {"requirements.lock": WANTED, "requirements-build.lock": PROJECT["build-
 
 
 def lines_of(lock: str) -> list[str]:
-    """A line for each package."""
+    """Return the lines of a lock file, one per package."""
     text = (ROOT / lock).read_text(encoding="utf-8").replace("\\\n", " ")
     return [line for line in text.splitlines() if not line.startswith("#")]
 
 
 def numbers(version: str) -> tuple[int, ...]:
-    """The numbers of a version."""
+    """Return the numbers in a version."""
     return tuple(map(int, re.findall(r"\d+", version)))
 
 
@@ -50,6 +50,6 @@ def test_the_image_installs_nothing_without_a_hash() -> None:
 
 
 def test_bokeh_has_no_known_weakness_of_its_websocket() -> None:
-    """CVE-2026-21883: before 3.8.2 an origin that only began as an allowed one was let in."""
+    """CVE-2026-21883: before 3.8.2, Bokeh accepted any origin that merely started like an allowed one."""
     (bokeh,) = [wanted for wanted in WANTED if wanted.startswith("bokeh")]
     assert numbers(re.search(r">=([\d.]+)", bokeh)[1]) >= (3, 8, 2)  # type: ignore[index]

@@ -1,4 +1,4 @@
-"""The public names: what each docstring says is there, and every example in it runs and gives what it shows."""
+"""Docstrings of public names cover every parameter and field, and their examples run with the output shown."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ import granchain_core
 from granchain_core.former_names import present
 
 NAMES = [name for name in granchain_core.__all__ if name != "__version__" and present(name) == name]
-#: Those of pictures and the dashboard, which the core does not have.
+#: Names for figures and the dashboard, which the core does not have.
 OWN = ["Dashboard", "dashboard", "figure"]
 NAMES += OWN
 FUNCTIONS = [name for name in NAMES if not isinstance(getattr(granchain, name), type)]
@@ -33,7 +33,7 @@ def test_the_examples_of_a_public_name_run(name: str) -> None:
 
 
 def section(name: str, title: str) -> str:
-    """The text under a heading of a docstring; empty where there is none."""
+    """Return the text under a docstring heading, or an empty string if there is no such heading."""
     text = inspect.cleandoc(getattr(granchain, name).__doc__)
     found = re.search(rf"^{title}\n-+\n(.*?)(?=^\w+\n-+$|\Z)", text, re.MULTILINE | re.DOTALL)
     return found[1] if found else ""
@@ -65,13 +65,13 @@ def test_both_packages_have_the_same_names_but_for_pictures_and_dashboard() -> N
 
 
 def alone(program: str) -> str:
-    """What a program prints in a process of its own."""
+    """Run a program in its own process and return what it prints."""
     return subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True, timeout=120).stdout
 
 
 def test_importing_loads_no_compiler_and_no_file_library() -> None:
-    """Importing them takes most of a second, and a page or `granchain scenes` needs neither at once. Pictures load no
-    dashboard.
+    """Importing these takes most of a second, and neither a page nor `granchain scenes` needs them immediately. Figures
+    do not load Panel.
     """
     modules = "('numba', 'scipy', 'h5py', 'panel', 'bokeh')"
     assert alone(f"import sys, granchain; print([m for m in {modules} if m in sys.modules])") == "[]\n"
@@ -81,5 +81,5 @@ def test_importing_loads_no_compiler_and_no_file_library() -> None:
 def test_no_package_has_the_name_of_a_public_function() -> None:
     packages = {module.name for module in pkgutil.iter_modules(granchain_core.__path__) if module.ispkg}
     functions = {name for name in granchain_core.__all__ if inspect.isfunction(getattr(granchain_core, name))}
-    # `scene` is bound when the package is imported, and stays: its package is never imported after it.
+    # The function `scene` is bound when granchain_core is imported and stays bound: its package is not imported later.
     assert packages & functions == {"scene"}

@@ -1,5 +1,5 @@
-"""The wheel installs only names that are ours, can be built from what the Docker image gets, and works without the
-tree.
+"""The wheel installs only our own package names, can be built from the files that the Docker builder receives, and
+works without the source tree.
 """
 
 from __future__ import annotations
@@ -16,7 +16,8 @@ from docker_context import ROOT, copy_context, let_through
 
 from granchain_core import __version__
 
-#: What the hook in hatch_build.py is asked, without a network to fetch hatchling.
+#: A program that calls the hook in hatch_build.py with stand-ins for hatchling, because there is no network to fetch
+#: it.
 PLACES = """
 import sys, types
 for name in ("hatchling", "hatchling.builders", "hatchling.builders.hooks", "hatchling.builders.hooks.plugin",
@@ -36,7 +37,8 @@ for here, there in standard["force_include"].items():
 
 @pytest.fixture(scope="module")
 def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with what a wheel has, where pip would put it, made from the files that the Docker image gets."""
+    """Folder with the files of a wheel where pip would put them, made from the files that the Docker builder receives.
+    """
     source, folder = tmp_path_factory.mktemp("context"), tmp_path_factory.mktemp("wheel")
     copy_context(source)
     said = subprocess.run([sys.executable, "-c", PLACES], cwd=source, capture_output=True, text=True, check=True).stdout
@@ -48,12 +50,12 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
         if (source / here).is_dir():
             shutil.copytree(source / here, target, ignore=shutil.ignore_patterns("*.pyc.*"))
         else:
-            shutil.copy(source / here, target)  # hatchling ends as well where a file is missing
+            shutil.copy(source / here, target)  # hatchling also fails if a file is missing
     return folder
 
 
 def test_the_citation_and_the_list_of_changes_name_the_version() -> None:
-    """The wheel's is read from granchain_core/version.py."""
+    """The wheel's version is read from granchain_core/version.py."""
     told = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     assert told["project"]["dynamic"] == ["version"] and (ROOT / told["tool"]["hatch"]["version"]["path"]).is_file()
     assert f"\nversion: {__version__}\n" in (ROOT / "CITATION.cff").read_text(encoding="utf-8")
@@ -61,7 +63,7 @@ def test_the_citation_and_the_list_of_changes_name_the_version() -> None:
 
 
 def test_the_docker_image_gets_nothing_else() -> None:
-    """Neither what has no part in it, nor what Python leaves behind."""
+    """Unrelated files and Python's leftovers are not sent to the builder."""
     sent = {name: let_through(ROOT / name) for name in (
         "app/server.py", "docs/glossary.md", "docs/model.md", "tests/conftest.py", ".git/config", "app/x.pyc",
         "granchain_core/kernels/__pycache__/x.pyc", "secret")}
@@ -84,7 +86,8 @@ def test_the_wheel_has_only_names_that_are_ours_and_runs(wheel: Path) -> None:
 
 
 def test_every_module_of_the_wheel_is_found_under_its_name_there(wheel: Path) -> None:
-    """With the files it reads when it is imported; and imports inside functions do not name the tree's package."""
+    """The files read at import are there, and no import, even inside a function, uses the source tree's package name.
+    """
     named = [path for path in (wheel / "granchain_app").rglob("*.py")
              if re.search(r"^\s*(from|import) app\b", path.read_text(encoding="utf-8"), re.MULTILINE)]
     assert named == []

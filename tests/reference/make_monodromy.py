@@ -1,22 +1,22 @@
-"""Generator of monodromy.npz: derivatives of the n-period stroboscopic map of the driven granular chain.
+"""Generate monodromy.npz: derivatives of the n-period stroboscopic map of the driven granular chain.
 
-It shares no code with the product. The map takes the scaled state (u, v) of the beads at drive phase 0 to that n
-periods later, by the Taylor series of ref_taylor.py in 80-bit long double with contact events located. Column j of
-its derivative is a central difference along entry j of the start, taken with steps h and h/2 and extrapolated,
+It shares no code with granchain. The map takes the beads' scaled state (u, v) at drive phase 0 to the state n periods
+later, by the Taylor series of ref_taylor.py in 80-bit long double with located contact events. Column j of its
+derivative is a central difference along entry j of the start, computed with steps h and h/2 and extrapolated,
 
     C(h) = (P(x + h e_j) - P(x - h e_j)) / 2h,    (4 C(h/2) - C(h)) / 3,
 
-which knows nothing of variational equations or saltation. Evidence per case: `columns`, the largest difference
-between the result and C(h/2), relative to each column's largest entry, an upper bound by far; and `rounding`, the
-difference of the first column to a repetition with another order, tolerance and event grid.
+which needs neither variational equations nor saltation. Evidence per case: `columns` is the largest difference between
+the result and C(h/2), relative to each column's largest entry, which is far above the error; `rounding` is the
+difference of the first column from a repetition with another order, tolerance and event grid.
 
-A start is either random with a stored seed or the state that `settle` periods from rest lead to.
+A start is either random with a stored seed, or the state after `settle` periods from rest.
 
-Usage, from any directory: python make_monodromy.py [--only CASE ...] [--out monodromy.npz]; cases already in the file
-and not asked for stay.
+Usage, from any directory: python make_monodromy.py [--only CASE ...] [--out monodromy.npz]. With --only, the other
+cases in the file are kept.
 
 Keys of the file, per case: CASE/start and CASE/end (2N,), u then v; CASE/derivative (2N, 2N); CASE/record, a JSON text
-with the scene in SI, the start's origin and the evidence.
+with the scene in SI units, the origin of the start, and the evidence.
 """
 
 import argparse
@@ -39,7 +39,7 @@ STEP = LD(1e-5)
 
 @dataclass(frozen=True)
 class Case:
-    """A scene whose `periods` are those of the map, and its start: settled from rest, or random with a seed."""
+    """A scene, whose `periods` are those of the map, and its start: settled from rest, or random with a seed."""
 
     scene: Scene
     settle: int = 0
@@ -47,7 +47,7 @@ class Case:
 
 
 def stored_cases() -> list[Case]:
-    """Every case of monodromy.npz."""
+    """Return all cases of monodromy.npz."""
     small = replace(SEC2, periods=1, beads=4)
     varied = [
         replace(small, name="founded", kappa=0.001),
@@ -63,7 +63,7 @@ def stored_cases() -> list[Case]:
 
 
 def flow(model: Model, start: Array, periods: int, settings: ref_taylor.Settings) -> Array:
-    """The beads' state (u, v) `periods` periods after `start` at phase 0."""
+    """Return the beads' state (u, v) `periods` periods after `start` at phase 0."""
     n = model.beads
     x, v = np.zeros(n + 2, dtype=LD), np.zeros(n + 2, dtype=LD)
     x[1:-1], v[1:-1] = start[:n], start[n:]
@@ -78,7 +78,7 @@ def flow(model: Model, start: Array, periods: int, settings: ref_taylor.Settings
 
 
 def start_of(case: Case, model: Model) -> Array:
-    """The start as doubles."""
+    """Return the start in double precision."""
     if case.settle:
         x, v, _ = ref_taylor.integrate(model, case.settle, STORED)
         return np.concatenate([x[-1, 1:-1], v[-1, 1:-1]]).astype(float)
@@ -86,7 +86,7 @@ def start_of(case: Case, model: Model) -> Array:
 
 
 def column(model: Model, start: Array, periods: int, j: int, settings: ref_taylor.Settings) -> tuple[Array, Array]:
-    """Column j of the derivative, and C(h/2)."""
+    """Return column j of the derivative, and C(h/2)."""
     e = np.zeros(start.size, dtype=LD)
     e[j] = 1
 
@@ -99,12 +99,12 @@ def column(model: Model, start: Array, periods: int, j: int, settings: ref_taylo
 
 
 def gap(a: Array, b: Array) -> float:
-    """Largest difference over the columns, relative to each column's largest entry."""
+    """Return the largest difference in any column, relative to the column's largest entry."""
     return float(np.max(np.max(np.abs(a - b), axis=0) / np.max(np.abs(a), axis=0)))
 
 
 def solve_case(case: Case) -> dict[str, Array]:
-    """All arrays of one case, without the case's name in the keys."""
+    """Compute all arrays of one case; keys are without the name of the case."""
     began, scene = time.perf_counter(), case.scene
     model = scale(scene)
     start = start_of(case, model)

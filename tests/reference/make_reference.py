@@ -1,40 +1,39 @@
-"""Generator of reference.npz, a high-accuracy solution of the driven granular chain.
+"""Generate reference.npz, a high-accuracy solution of the driven granular chain.
 
-It shares no code with the product.  How it is made:
+It shares no code with granchain.  How it is made:
 
 * Formulation: the (u, v) equations m u_i'' = F_{i-1} - F_i - k u_i with the gated dashpot force itself,
   F_c = K_c d^{3/2} + D_c g(d) d' while the overlap d is positive; g = 1 (linear), (d/d_ref)^{1/4}
   (tsuji), (d/d_ref)^{1/2} (kuwabara-kono); with tension "cut" F_c = max(0, F_c).  K = E sqrt(2R) / (3
-  (1 - nu^2)), times the wall factor at the wall.  The driver is A0 sin(2 pi f t); all beads start at
-  rest at zero.  With a preload F0 each contact holds the static overlap (F0/K_c)^{2/3} and
-  displacements count from the compressed equilibrium (the foundation acts on them).
+  (1 - nu^2)), times the wall factor at the wall.  The driver is at A0 sin(2 pi f t); all beads start at
+  rest at zero.  With a preload F0, each contact has the static overlap (F0/K_c)^{2/3}, and
+  displacements are from the compressed equilibrium (the foundation acts on them).
 * Precision: 80-bit long double (64-bit mantissa) in scaled units; the phase restarts from the sample
   number.
 * Method A (stored): Taylor series of order 30 with step control at 1e-19, see ref_taylor.py.
 * Method B (evidence): Gragg-Bulirsch-Stoer extrapolation of order 18 with step control at 1e-17, see
   ref_gragg.py.
-* Contact onset, release and (for "cut") the loss and return of pressure are located as events to the
-  working precision, and both methods restart there.  After an onset the motion is a function of s = (t
-  - t0)^{1/p}, p = 2 (p = 4 for tsuji), in which the d^{3/2} is smooth; before a release the steps
+* Contact onset, release and (for "cut") the loss and return of pressure are located as events to
+  working precision, and both methods restart there.  After an onset, the motion is a function of s = (t
+  - t0)^{1/p}, p = 2 (p = 4 for tsuji), in which d^{3/2} is smooth; before a release, the steps
   shrink until its singular part is below the tolerance.
-* Evidence per case: the largest difference, over beads and up to each sample, from method A with another
-  order, tolerance, first-touch threshold and event grid, and from method B; relative to the largest
-  displacement.
+* Evidence per case: the largest difference over all beads up to each sample, relative to the largest
+  displacement, from method A with another order, tolerance, first-touch threshold and event grid, and
+  from method B.
 
 Usage, from any directory:
 
     python make_reference.py all [--out reference.npz] [--only NAME ...]
     python make_reference.py one --base sec2 --frequency 700 --kappa 0.001 --periods 10 --out my.npz
 
-Keys of the file, per case: CASE/time (n,) s; CASE/displacement and CASE/velocity (n, beads) m and m/s;
-CASE/input_total, input_elastic, output_total, output_elastic (n,) N; CASE/agreement_tolerance and
-CASE/agreement_method (n,) running maxima of the relative displacement differences; CASE/sensitivity (n,)
-running maximum of the relative displacement change per relative change of the bead mass (rounding of the
-parameters and of the solver is amplified by about this much); CASE/record, a JSON text with the scene in
-SI, the figures of the evidence and samples_trusted, the number of leading samples at which both
-agreements are below 1e-11.  n = 8 * periods + 1, both ends included.  Forces at a sample use the strict
-gate H(d), so without preload the input force of sample 0 is 0 although its limit for t -> 0+ is D A0 2 pi
-f.
+Keys of the file, per case: CASE/time (n,) [s]; CASE/displacement and CASE/velocity (n, beads) [m], [m/s];
+CASE/input_total, input_elastic, output_total, output_elastic (n,) [N]; CASE/agreement_tolerance and
+CASE/agreement_method (n,) running maxima of the relative displacement differences; CASE/sensitivity (n,) running
+maximum of the relative displacement change per relative change of the bead mass (rounding errors of the parameters and
+of the solver are amplified by about this factor); CASE/record, a JSON text with the scene in SI units, the evidence,
+and samples_trusted, the number of leading samples at which both agreements are below 1e-11.  n = 8 * periods + 1, both
+ends included.  Forces at a sample use the strict gate H(d).  Without a preload, the input force of sample 0 is
+therefore 0, although its limit for t -> 0+ is D A0 2 pi f.
 """
 
 import argparse
@@ -62,13 +61,13 @@ Solve = Callable[[], tuple[Array, Array, ref_taylor.Counters]]
 
 
 def running_difference(a: Array, b: Array) -> Array:
-    """Largest difference up to each sample, relative to the largest value of a."""
+    """Return the largest difference up to each sample, relative to the largest value of a."""
     gap = np.max(np.abs((a - b).reshape(a.shape[0], -1)), axis=1)
     return np.maximum.accumulate(gap) / np.max(np.abs(a))
 
 
 def timed(solve: Solve) -> tuple[Array, Array, dict[str, float]]:
-    """A solution with its cost."""
+    """Return a solution and its cost."""
     start = time.perf_counter()
     x, v, count = solve()
     wall = round(time.perf_counter() - start, 2)
@@ -76,14 +75,14 @@ def timed(solve: Solve) -> tuple[Array, Array, dict[str, float]]:
 
 
 def evidence(model: Model, best: dict[str, Array], x: Array, v: Array) -> tuple[Array, dict[str, float]]:
-    """Running displacement difference and the largest relative difference of every quantity."""
+    """Return the running displacement difference, and the largest relative difference of every quantity."""
     other = observe(model, x, v)
     figures = {name: float(running_difference(best[name], other[name])[-1]) for name in best}
     return running_difference(best["displacement"], other["displacement"]), figures
 
 
 def sensitivity(scene: Scene, best: Array) -> Array:
-    """Running relative change of the displacement per relative change of the bead mass."""
+    """Return the running relative change of the displacement per relative change of the bead mass."""
     nudged = replace(scene, mass=scene.mass * (1 + NUDGE))
     model = scale(nudged)
     x, v, _ = ref_taylor.integrate(model, scene.periods, STORED)
@@ -92,7 +91,7 @@ def sensitivity(scene: Scene, best: Array) -> Array:
 
 
 def solve_case(scene: Scene) -> dict[str, Array]:
-    """All arrays of one case, without the case's name in the keys."""
+    """Compute all arrays of one case; keys are without the name of the case."""
     model = scale(scene)
     x, v, cost = timed(lambda: ref_taylor.integrate(model, scene.periods, STORED))
     x2, v2, cost2 = timed(lambda: ref_taylor.integrate(model, scene.periods, VARIED))
@@ -118,7 +117,7 @@ def solve_case(scene: Scene) -> dict[str, Array]:
 
 
 def report(scene: Scene, arrays: dict[str, Array]) -> str:
-    """One line of evidence."""
+    """Return a line with the evidence."""
     record = json.loads(str(arrays["record"]))
     events = "/".join(str(record[key]["events"]) for key in ("stored", "tolerance", "method"))
     return (
@@ -140,7 +139,7 @@ def write(scenes: list[Scene], out: Path) -> None:
 
 
 def parser() -> argparse.ArgumentParser:
-    """The command line: every field of a scene is an option of `one`."""
+    """Return the parser, in which every field of a scene is an option of `one`."""
     top = argparse.ArgumentParser(description="high-accuracy reference of the driven granular chain")
     sub = top.add_subparsers(dest="command", required=True)
     every = sub.add_parser("all", help="the stored cases")

@@ -1,4 +1,4 @@
-"""The stored cases: the two parameter sets in SI and what is varied on them."""
+"""The stored cases: two parameter sets in SI units, and their variations."""
 
 from dataclasses import replace
 
@@ -18,7 +18,7 @@ BASES = {"sec2": SEC2, "rig": RIG}
 
 
 def stored_cases() -> list[Scene]:
-    """Every case of reference.npz."""
+    """Return all cases of reference.npz."""
     out = []
     for f in (340.0, 500.0, 1130.0):
         out.append(replace(SEC2, name=f"sec2-{f:.0f}", frequency=f))

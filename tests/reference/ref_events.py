@@ -1,4 +1,4 @@
-"""The state of the contacts and the search for the first contact event within a step."""
+"""The states of the contacts, and the search for the first contact event within a step."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ Dense = Callable[[Array], tuple[Array, Array]]
 
 @dataclass(frozen=True)
 class Event:
-    """Contact `contact` becomes `state` at the point `where` of the step."""
+    """Contact `contact` changes to `state` at the point `where` of the step."""
 
     where: LD
     contact: int
@@ -22,11 +22,11 @@ class Event:
 
 @dataclass
 class Contacts:
-    """What every contact does; `touch` is its onset threshold, `fresh` the contact just closed or -1.
+    """The state of every contact; `touch` is its onset threshold, `fresh` the contact that has just closed or -1.
 
-    From rest without preload every contact but the first starts at d = 0 and closes tangentially.  Its force
-    is switched on when d first reaches a threshold far below the accuracy: the impulse left out, D times
-    the threshold, is too.
+    From rest without preload, every contact but the first starts at d = 0 and closes tangentially.  Its force is
+    switched on when d first reaches a threshold far below the accuracy. The omitted impulse, D times the threshold, is
+    also far below it.
     """
 
     state: Array
@@ -36,7 +36,7 @@ class Contacts:
 
     @classmethod
     def at_rest(cls, model: Model, touch: float) -> "Contacts":
-        """The contacts of the chain at rest at t = 0."""
+        """Return the contacts of the chain at rest at t = 0."""
         size = model.beads + 1
         if model.static[0] > 0:
             return cls(np.full(size, PRESSED), np.zeros(size, dtype=LD))
@@ -45,7 +45,7 @@ class Contacts:
         return cls(state, threshold, fresh=0)
 
     def apply(self, event: Event | None) -> None:
-        """Change the state as an event (or a step without one) asks."""
+        """Change the state after an event, or after a step without one."""
         self.fresh = -1
         if event is None:
             self.still = 0
@@ -62,14 +62,15 @@ class Contacts:
 
 @dataclass
 class Flow:
-    """The dense solution of one step and the sub-points at which it is looked at."""
+    """The dense solution of one step, and the sub-points at which it is examined."""
 
     model: Model
     dense: Dense
     points: Array
 
     def signals(self, s: Array, contacts: Contacts) -> tuple[Array, Array, Array]:
-        """Per point and contact: leaving signal, its rate, and the signal of a cut contact to press again."""
+        """Return, per point and contact, the signal to leave its state, its rate, and that of a cut contact to press.
+        """
         x, v = self.dense(s)
         d, rate = overlaps(self.model, x), v[:, :-1] - v[:, 1:]
         is_open = contacts.state == OPEN
@@ -86,14 +87,14 @@ class Flow:
 
 
 def target(state: int, model: Model) -> int:
-    """State a contact goes to when its leaving signal turns positive."""
+    """Return the state to which a contact changes when its leaving signal becomes positive."""
     if state == OPEN:
         return PRESSED
     return CUT if state == PRESSED and model.cut else OPEN
 
 
 def root(g: Callable[[LD], LD], a: LD, b: LD) -> LD:
-    """Root of g in [a, b], g(a) <= 0 < g(b), by the Illinois method, to the working precision."""
+    """Return the root of g in [a, b], where g(a) <= 0 < g(b), by the Illinois method to working precision."""
     fa, fb = g(a), g(b)
     if fa >= 0:
         return a
@@ -116,7 +117,7 @@ def root(g: Callable[[LD], LD], a: LD, b: LD) -> LD:
 
 
 def first_event(flow: Flow, contacts: Contacts) -> Event | None:
-    """The first event of the step, or None."""
+    """Return the first event of the step, or None."""
     leave, slope, press = flow.signals(flow.points, contacts)
     hidden = hidden_peaks(flow, contacts, leave, slope)
     hits = (leave > 0) | (press > 0)
@@ -129,7 +130,7 @@ def first_event(flow: Flow, contacts: Contacts) -> Event | None:
 
 
 def locate(flow: Flow, contacts: Contacts, c: int, i: int, peak: LD | None) -> Event:
-    """Root of contact c's signal between sub-points i - 1 and i (or the inner peak)."""
+    """Return the event at the root of contact c's signal between sub-points i - 1 and i (or the inner peak)."""
     a = flow.points[i - 1] if i else LD(0)
     b = flow.points[i] if peak is None else peak
     leave, _, press = flow.signals(np.array([b]), contacts)
@@ -143,12 +144,12 @@ def locate(flow: Flow, contacts: Contacts, c: int, i: int, peak: LD | None) -> E
 
 
 def rise(flow: Flow, contacts: Contacts, c: int, s: LD) -> LD:
-    """Minus the rate of contact c's leaving signal: negative while it rises."""
+    """Return minus the rate of contact c's leaving signal: negative while it rises."""
     return -flow.signals(np.array([s]), contacts)[1][0, c]
 
 
 def hidden_peaks(flow: Flow, contacts: Contacts, leave: Array, slope: Array) -> list[tuple[int, int, LD]]:
-    """Touches (or partings) that begin and end between two sub-points: (sub-point, contact, place)."""
+    """Return touches (or separations) that begin and end between two sub-points, as (sub-point, contact, place)."""
     points = np.concatenate([[LD(0)], flow.points])
     first = flow.signals(points[:1], contacts)
     leave, slope = np.concatenate([first[0], leave]), np.concatenate([first[1], slope])

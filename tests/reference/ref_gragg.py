@@ -1,10 +1,9 @@
-"""Method B: extrapolated modified midpoint rule (Gragg, Bulirsch, Stoer) on the (u, v) equations in long
-double.
+"""Method B: extrapolated modified midpoint rule (Gragg, Bulirsch, Stoer) on the (u, v) equations in long double.
 
-It shares the scaled parameters and the bookkeeping of the contact states with method A, but neither the
-force evaluation, the integrator nor the dense solution: a step is repeated with other lengths until it
-ends on the event.  After an onset the independent variable is s with t = t0 + s^p, so that d^{3/2} is
-smooth; before a release the step shrinks under the error control.
+It shares the scaled parameters and the bookkeeping of contact states with method A, but not the force evaluation, the
+integrator or the dense solution: a step is repeated with different lengths until it ends on the event.  After an onset,
+the independent variable is s with t = t0 + s^p, so that d^{3/2} is smooth.  Before a release, the step shrinks under
+error control.
 """
 
 from dataclasses import dataclass
@@ -39,7 +38,7 @@ class Piece:
         self.lam = model.lam * self.pressed
 
     def bodies(self, y: Array, s: Array) -> tuple[Array, Array]:
-        """Displacement and velocity of driver, beads and wall for states y (rows) at s (column)."""
+        """Return displacement and velocity of driver, beads and wall for states y (rows) at s (column)."""
         n = self.model.beads
         x, v = (np.zeros((y.shape[0], n + 2), dtype=LD) for _ in range(2))
         x[:, 1:-1], v[:, 1:-1] = y[:, :n], y[:, n:]
@@ -47,14 +46,14 @@ class Piece:
         return x, v
 
     def slope(self, y: Array, s: Array) -> Array:
-        """dy/ds."""
+        """Return dy/ds."""
         x, v = self.bodies(y, s)
         force = self.force(x[:, :-1] - x[:, 1:] + self.model.static, v[:, :-1] - v[:, 1:])
         a = force[:, :-1] - force[:, 1:] - self.model.kappa * x[:, 1:-1]
         return np.concatenate([v[:, 1:-1], a], axis=1) * (self.p * s ** (self.p - 1))
 
     def force(self, d: Array, rate: Array) -> Array:
-        """Force of every contact from overlap and overlap rate."""
+        """Return the force of every contact from its overlap and overlap rate."""
         depth = np.sqrt(np.where(d > 0, d, LD(0)))
         elastic = self.strength * depth * depth * depth
         if self.model.exponent == 0:
@@ -68,12 +67,12 @@ class Extrapolation:
     """One extrapolated step with all midpoint sequences side by side."""
 
     def __init__(self, columns: int) -> None:
-        """Sequences of 2J, ..., 4, 2 substeps."""
+        """Prepare sequences of 2J, ..., 4, 2 substeps."""
         self.counts = 2 * np.arange(columns, 0, -1)
         self.parts = self.counts[:, None].astype(LD)
 
     def step(self, piece: Piece, y: Array, s: LD, h: LD) -> tuple[Array, LD, Array]:
-        """State at s + h, its error estimate, and the coarse states along the finest sequence."""
+        """Return the state at s + h, its error estimate, and the coarse states along the finest sequence."""
         width = h / self.parts
         old = np.repeat(y[None, :], self.counts.size, axis=0)
         start = np.full((1, 1), s)
@@ -93,7 +92,7 @@ class Extrapolation:
 
     @staticmethod
     def extrapolate(rows: Array, counts: Array) -> tuple[Array, LD]:
-        """Aitken-Neville in the squared substep; the error is the change by the last column."""
+        """Extrapolate by Aitken-Neville in the squared substep; the error is the change in the last column."""
         table = rows
         for k in range(1, counts.size):
             ratio = (counts[k:] / counts[:-k]) ** 2 - 1
@@ -106,14 +105,14 @@ class Walker:
     """Carries a state through pieces and events."""
 
     def __init__(self, model: Model, settings: GraggSettings) -> None:
-        """At rest at t = 0."""
+        """Start at rest at t = 0."""
         self.model, self.settings = model, settings
         self.rule = Extrapolation(settings.columns)
         self.contacts, self.count = Contacts.at_rest(model, settings.touch), Counters()
         self.y, self.h = np.zeros(2 * model.beads, dtype=LD), LD(1e-3)
 
     def interval(self, start: LD) -> None:
-        """Advance one sampling interval that begins at the drive phase `start`."""
+        """Advance by one sampling interval, which begins at the drive phase `start`."""
         done = LD(0)
         while done < self.model.interval:
             piece = Piece(self.model, self.contacts, start + self.model.beta * done)
@@ -141,7 +140,7 @@ class Walker:
         return room
 
     def factor(self, error: LD, most: LD) -> LD:
-        """Change of the step that meets the tolerance; errors near round-off say nothing of the step."""
+        """Return the factor that adapts the step to the tolerance; errors near round-off do not limit the step."""
         if not np.isfinite(error):
             return LD(0.1)
         if error < ROUNDING:
@@ -150,7 +149,7 @@ class Walker:
         return LD(min(most, max(LD(0.1), LD(0.8) * (LD(self.settings.tol) / error) ** power)))
 
     def event(self, piece: Piece, s: LD, h: LD, y: Array, path: Array) -> Event | None:
-        """First event in an accepted step: a coarse look, then exact sub-steps if it may hold one."""
+        """Return the first event in an accepted step: a coarse check, then exact sub-steps if there may be one."""
         coarse = np.concatenate([self.y[None, :], path[:-1], y[None, :]])
         places = h * np.arange(coarse.shape[0], dtype=LD) / (coarse.shape[0] - 1)
         look = Flow(self.model, lambda _: piece.bodies(coarse, s + places[:, None]), places)
@@ -162,13 +161,13 @@ class Walker:
         return first_event(Flow(self.model, lambda w: self.dense(piece, s, w), grid * h), self.contacts)
 
     def dense(self, piece: Piece, s: LD, offsets: Array) -> tuple[Array, Array]:
-        """Exact states at some offsets, each by a step of its own."""
+        """Return exact states at some offsets, each from a separate step."""
         rows = np.array([self.y if w == 0 else self.rule.step(piece, self.y, s, w)[0] for w in offsets])
         return piece.bodies(rows, s + offsets[:, None])
 
 
 def integrate(model: Model, periods: int, settings: GraggSettings) -> tuple[Array, Array, Counters]:
-    """Displacement and velocity of all bodies at every sample, both ends included."""
+    """Return displacement and velocity of all bodies at every sample, both ends included."""
     walker = Walker(model, settings)
     states = [walker.y]
     for n in range(periods * SAMPLES):

@@ -1,7 +1,7 @@
-"""The scenes of the reference and their scaled form in extended precision.
+"""The scenes of the reference, and their scaled form in extended precision.
 
-Scaled units: length A0, time 1/phi with phi^2 = K sqrt(A0) / m, force K A0^{3/2}.  In them every bead has
-mass one and contact c obeys
+Scaled units: length A0, time 1/phi with phi^2 = K sqrt(A0) / m, force K A0^{3/2}.  In them, every bead has mass one,
+and contact c obeys
 
     F_c = s_c d^{3/2} + lambda (d / d_ref)^a d',   d = x_c - x_{c+1} + d_static,c > 0,   F_c = 0 otherwise,
     x_i'' = F_{i-1} - F_i - kappa x_i,               x_0 = sin(beta tau),   x_{N+1} = 0.
@@ -22,7 +22,7 @@ Array = npt.NDArray[Any]
 PI = 4 * np.arctan(LD(1))
 SAMPLES = 8
 EXPONENT = {"none": 0.0, "linear": 0.0, "tsuji": 0.25, "kuwabara-kono": 0.5}
-#: power p of the substitution t = t0 + s^p that makes the motion after an onset analytic in s
+#: Power p of the substitution t = t0 + s^p, which makes the motion after an onset analytic in s.
 ROOT = {"none": 2, "linear": 2, "tsuji": 4, "kuwabara-kono": 2}
 
 
@@ -48,7 +48,7 @@ class Scene:
     delta_ref: float = 5e-7
 
     def stiffness(self) -> LD:
-        """K = E sqrt(2R) / (3 (1 - nu^2)) of a bead-bead contact [N/m^1.5]."""
+        """Return K = E sqrt(2R) / (3 (1 - nu^2)) of a contact between beads [N/m^1.5]."""
         nu = LD(self.poisson)
         return LD(self.young) * np.sqrt(2 * LD(self.radius)) / (3 * (1 - nu * nu))
 
@@ -72,12 +72,12 @@ class Model:
     force: LD
 
     def damped(self) -> bool:
-        """Whether any contact dissipates."""
+        """Return whether any contact dissipates energy."""
         return bool(self.lam != 0)
 
 
 def scale(scene: Scene) -> Model:
-    """The scaled model of a scene."""
+    """Return the scaled model of a scene."""
     stiff, a0, mass = scene.stiffness(), LD(scene.amplitude), LD(scene.mass)
     phi = np.sqrt(stiff * np.sqrt(a0) / mass)
     unit = stiff * a0 * np.sqrt(a0)
@@ -96,12 +96,12 @@ def scale(scene: Scene) -> Model:
 
 
 def overlaps(model: Model, x: Array) -> Array:
-    """Overlap of every contact; the last axis of x holds driver, beads and wall."""
+    """Return the overlap of every contact; the last axis of x is driver, beads and wall."""
     return x[..., :-1] - x[..., 1:] + model.static
 
 
 def contact_forces(model: Model, x: Array, v: Array) -> tuple[Array, Array]:
-    """Elastic and damping force of every contact, gated by the strict H(d) (no tension cut applied)."""
+    """Return elastic and damping forces of every contact, gated by the strict H(d), without a tension cut."""
     d = np.maximum(overlaps(model, x), 0)
     rate = v[..., :-1] - v[..., 1:]
     root = np.sqrt(d)
@@ -116,12 +116,12 @@ def contact_forces(model: Model, x: Array, v: Array) -> tuple[Array, Array]:
 
 
 def driver(model: Model, phase: Any) -> tuple[Any, Any]:
-    """Scaled displacement and velocity of the driver at a phase (number or array) [rad]."""
+    """Return the driver's scaled displacement and velocity at a phase [rad] (number or array)."""
     return np.sin(phase), model.beta * np.cos(phase)
 
 
 def observe(model: Model, x: Array, v: Array) -> dict[str, Array]:
-    """SI displacement, velocity, input and output force of a sampled state, shape (samples, bodies)."""
+    """Return displacement, velocity, input and output forces in SI units for sampled states (samples, bodies)."""
     elastic, damping = contact_forces(model, x, v)
     total = elastic + damping
     if model.cut:

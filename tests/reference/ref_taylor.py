@@ -1,11 +1,11 @@
-"""Method A: Taylor series of the (u, v) equations in long double, contact events as roots of the series.
+"""Method A: Taylor series of the (u, v) equations in long double, with contact events as roots of the series.
 
-Between events the set of pressed contacts is fixed and the motion is analytic, so displacement and
-velocity are expanded to a high order (the 3/2 power by the recurrence for a power of a series) and the
-step is chosen from the last coefficients.  At an onset d = 0 the force holds d^{3/2}, so the motion is
-not analytic in t but it is in s = (t - t0)^{1/p} with p = 2 (p = 4 for the Tsuji law): the first step
-after an onset is a series in s, with the overlap written d = s^p g(s).  Before a release the steps shrink
-geometrically with the radius of convergence until the singular part is below the tolerance.
+Between events, the set of pressed contacts is fixed and the motion is analytic.  Displacement and velocity are expanded
+to a high order (the 3/2 power by the recurrence for a power of a series), and the step is chosen from the last
+coefficients.  At an onset d = 0, the force contains d^{3/2}.  The motion is then analytic not in t but in s, where t =
+t0 + s^p with p = 2 (p = 4 for the Tsuji law).  The first step after an onset is therefore a series in s, with the
+overlap written as d = s^p g(s).  Before a release, the steps shrink geometrically with the radius of convergence until
+the singular part is below the tolerance.
 """
 
 from dataclasses import dataclass
@@ -18,7 +18,8 @@ from ref_scene import LD, PI, SAMPLES, Array, Model, driver
 
 @dataclass(frozen=True)
 class Settings:
-    """What may be varied to see the error: order, tolerance, first-touch threshold, sub-points of a step."""
+    """Settings that can be varied to estimate the error: order, tolerance, first-touch threshold, sub-points of a step.
+    """
 
     order: int = 30
     tol: float = 1e-19
@@ -35,7 +36,7 @@ class Counters:
 
 
 def power_weights(alpha: LD, order: int) -> Array:
-    """W[k, j] = (alpha j - (k - j)) / k of y_k = sum_j W[k, j] g_j y_{k-j} / g_0 for y = g^alpha."""
+    """Return W[k, j] = (alpha j - (k - j)) / k of y_k = sum_j W[k, j] g_j y_{k-j} / g_0 for y = g^alpha."""
     k = np.arange(order + 1, dtype=LD)[:, None]
     j = np.arange(order + 1, dtype=LD)[None, :]
     out = (alpha * j - (k - j)) / np.maximum(k, 1)
@@ -43,16 +44,16 @@ def power_weights(alpha: LD, order: int) -> Array:
 
 
 class Series:
-    """Expands the motion of a model at a state."""
+    """Expands the motion of a model about a state."""
 
     def __init__(self, model: Model, order: int) -> None:
-        """Tables that depend on the order only."""
+        """Compute the tables that depend only on the order."""
         self.model, self.order = model, order
         self.elastic = power_weights(LD(3) / 2, order)
         self.damping = power_weights(model.exponent, order)
 
     def driver_rows(self, phase: LD, p: int, rows: int) -> tuple[Array, Array]:
-        """Coefficients in s of the driver's displacement and velocity, t = s^p."""
+        """Return the coefficients in s of the driver's displacement and velocity, where t = s^p."""
         x, v = np.zeros(rows, dtype=LD), np.zeros(rows, dtype=LD)
         sine, cosine, factor = np.sin(phase), np.cos(phase), LD(1)
         cycle = (sine, cosine, -sine, -cosine)
@@ -63,7 +64,7 @@ class Series:
         return x, v
 
     def expand(self, x0: Array, v0: Array, phase: LD, pressed: Array, fresh: int) -> tuple[Array, Array, int]:
-        """Coefficients of x and v, rows by order, and p; `fresh` is the contact just closing or -1."""
+        """Return the coefficients of x and v, one row per order, and p; `fresh` is the contact just closing or -1."""
         model, order = self.model, self.order
         p = model.root if fresh >= 0 else 1
         rows = order + 1 + p
@@ -83,7 +84,7 @@ class ForceSeries:
     """The contact forces of a series, one order at a time."""
 
     def __init__(self, series: Series, x0: Array, v0: Array, pressed: Array, fresh: int, p: int) -> None:
-        """Room for the scaled overlap g = d / (g_0 s^shift), its powers and the velocity differences."""
+        """Allocate the scaled overlap g = d / (g_0 s^shift), its powers and the velocity differences."""
         self.series, self.model, self.p = series, series.model, p
         self.cols = np.flatnonzero(pressed)
         self.new = np.flatnonzero(self.cols == fresh)
@@ -97,7 +98,7 @@ class ForceSeries:
         self.da_lead = self.model.lam * lead**self.model.exponent
 
     def row(self, k: int, x: Array, v: Array) -> Array:
-        """Coefficient k of every contact force."""
+        """Return coefficient k of every contact force."""
         out = np.zeros(self.model.strength.size, dtype=LD)
         if self.cols.size == 0:
             return out
@@ -127,7 +128,7 @@ class ForceSeries:
         return out
 
     def damping_row(self, k: int) -> Array:
-        """Coefficient k of (d / lead)^a times the overlap rate."""
+        """Return coefficient k of (d / lead)^a times the overlap rate."""
         if self.model.exponent == 0:
             return self.rate[k]
         shift = int(self.p * self.model.exponent) if self.new.size else 0
@@ -136,7 +137,7 @@ class ForceSeries:
 
 
 def step_size(v: Array, p: int, tol: float) -> LD:
-    """Step in s at which the last 2p velocity coefficients fall below the tolerance."""
+    """Return the step in s at which the last 2p velocity coefficients fall below the tolerance."""
     size = np.max(np.abs(v[-2 * p :, 1:-1]), axis=1)
     order = np.arange(v.shape[0] - 2 * p, v.shape[0], dtype=LD)
     good = size > 0
@@ -146,18 +147,18 @@ def step_size(v: Array, p: int, tol: float) -> LD:
 
 
 def evaluate(coefficients: Array, s: Array) -> Array:
-    """Value of the series at the points s."""
+    """Return the value of the series at the points s."""
     powers = s[:, None] ** np.arange(coefficients.shape[0])
     return powers @ coefficients
 
 
 def evaluate_both(cx: Array, cv: Array, s: Array) -> tuple[Array, Array]:
-    """Displacement and velocity at the points s."""
+    """Return displacement and velocity at the points s."""
     return evaluate(cx, s), evaluate(cv, s)
 
 
 def integrate(model: Model, periods: int, settings: Settings) -> tuple[Array, Array, Counters]:
-    """Displacement and velocity of all bodies at every sample, both ends included."""
+    """Return displacement and velocity of all bodies at every sample, both ends included."""
     series, count = Series(model, settings.order), Counters()
     contacts = Contacts.at_rest(model, settings.touch)
     x, v = np.zeros(model.beads + 2, dtype=LD), np.zeros(model.beads + 2, dtype=LD)
@@ -173,7 +174,7 @@ def integrate(model: Model, periods: int, settings: Settings) -> tuple[Array, Ar
 
 def advance(series: Series, contacts: Contacts, x: Array, v: Array, start: LD, settings: Settings,
             count: Counters) -> tuple[Array, Array]:  # fmt: skip
-    """Carry the state over one sampling interval, stopping at every event."""
+    """Advance the state by one sampling interval, stopping at every event."""
     model, done = series.model, LD(0)
     grid = np.arange(1, settings.points + 1, dtype=LD) / settings.points
     while done < model.interval:

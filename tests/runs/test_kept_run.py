@@ -1,4 +1,4 @@
-"""A run that is cut anywhere and goes on from its checkpoints is, to the last bit, the one that was never cut."""
+"""A run that is interrupted anywhere and continues from its checkpoints is bit-identical to an uninterrupted run."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def assert_same(one: Run, other: Run) -> None:
 @pytest.mark.parametrize("cut", [1, 30, 50, 77, 100])
 def test_a_run_cut_anywhere_is_the_same_run(method: str | None, cut: int, tmp_path: Path,
                                             monkeypatch: pytest.MonkeyPatch) -> None:
-    """Checkpoints come 50 times in each computation; after the one with the number `cut` the process might be killed.
+    """Each computation writes 50 checkpoints. The run is stopped after checkpoint number `cut`, as if it were killed.
     """
     whole, stop, added = computed(None, method), Stop(), [0]
     add = RunCheckpoints.add
@@ -79,4 +79,4 @@ def test_another_run_is_refused(tmp_path: Path) -> None:
         kept_in(tmp_path / "a.h5")
     with pytest.raises(BadInput, match="holds another run, sec2 with 100 \\+ 3 periods of 8 samples"):
         RunCheckpoints(CHOSEN, PERIODS, RECORD + 1, SAMPLES, None, tmp_path / "a.h5").open(True)
-    assert np.isfinite(computed(kept_in(tmp_path / "a.h5", resume=True)).max_output_force)  # an empty one begins anew
+    assert np.isfinite(computed(kept_in(tmp_path / "a.h5", resume=True)).max_output_force)  # without checkpoints, it starts again

@@ -1,4 +1,4 @@
-"""The chain that goes on while its knobs are moved: what a stretch of it says, and how it is ended."""
+"""The live chain, which continues while its knobs are moved: the forces of one stretch, and how a stop ends it."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from granchain_core.execution.stop import Stop
 
 @pytest.mark.parametrize("beads", [3, 40])
 def test_largest_forces_are_those_of_the_stretch(beads: int) -> None:
-    """The last bead is thrown at the wall: the first period has a blow of newtons, later ones only what the driver
-    sends.
+    """The last bead is thrown at the wall. The first period has an impact of newtons, later ones only the force that
+    the driver transmits.
     """
     hit = State(np.zeros(beads), np.append(np.zeros(beads - 1), 1.0))
     live = LiveChain(scene("sec2").evolve(N=beads), samples=256, start=hit)
@@ -23,14 +23,14 @@ def test_largest_forces_are_those_of_the_stretch(beads: int) -> None:
     for _ in range(3):
         later = live.advance(256)
     assert first.max_output_force > 10.0 * later.output_force.max()
-    # a smooth top lies between the rows, by (spacing/2)²/2 of its curvature above them
+    # a smooth maximum lies between rows, at most (spacing/2)²/2 times its curvature above them
     assert later.max_output_force == pytest.approx(later.output_force.max(), rel=0.02)
     assert later.max_output_force >= later.output_force.max()
     assert later.max_input_force == pytest.approx(later.input_force.max(), rel=0.02)
 
 
 def test_a_stop_ends_a_stretch() -> None:
-    """Hours of work, given up."""
+    """A stop ends a stretch that would otherwise take hours."""
     stop, ended = Stop(), list[bool]()
     live = LiveChain(scene("sec2").evolve(f=0.1), samples=2, stop=stop)
 

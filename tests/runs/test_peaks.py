@@ -1,4 +1,4 @@
-"""The largest forces that a run reports are those of its motion, and do not depend on how it is sampled."""
+"""The largest forces that a run reports are those of its motion and do not depend on the sampling."""
 
 from __future__ import annotations
 
@@ -22,9 +22,10 @@ NAMES = ("max_input_force", "max_output_force", "max_output_force_elastic")
 
 @functools.cache
 def true(name: str) -> list[float]:
-    """Largest samples of 16384 a period over four periods: a smooth top is then known to (π/16384·10)²/2 = 2e-6.
+    """Return the largest forces over four periods, from 16384 samples per period and from the jumps.
 
-    Tops of jumps fall between the samples. They are those of dop853, which ends a step just behind them.
+    A smooth maximum is then known to (π/16384·10)²/2 = 2e-6. Maxima at jumps fall between the samples and come from
+    dop853, which ends a step just after each jump.
     """
     result = run(SCENES[name].evolve(accuracy=1e-8), periods=0, record=4, samples=1 << 14, method="dop853")
     maxima = [result.jumps.of(c)[1].max(initial=0.0) for c in (0, result.scene.N)]
@@ -36,7 +37,7 @@ def true(name: str) -> list[float]:
 @pytest.mark.parametrize("samples", [1, 16, 96])
 @pytest.mark.parametrize("method", ["dop853", "rk4-split"])
 def test_largest_forces_are_found_between_the_samples(name, samples, method):
-    """Input, output and its elastic part, to what is stated or to 2e-6, the truth's own error."""
+    """Input, output and elastic output force are within the stated error plus 2e-6, the error of the reference."""
     chain = SCENES[name].evolve(accuracy=1e-6 if method == "dop853" else 1e-4)
     result = run(chain, periods=0, record=4, samples=samples, method=method)
     found = [getattr(result, n) for n in NAMES]
@@ -46,7 +47,7 @@ def test_largest_forces_are_found_between_the_samples(name, samples, method):
 
 
 def test_nothing_recorded_exceeds_the_reported_maximum():
-    """The samples kept are among the values looked at."""
+    """The search for the maximum includes the recorded samples."""
     result = run(scene("sec2"), periods=3, record=3, samples=96)
     assert result.input_force.max() <= result.max_input_force
     assert result.output_force.max() <= result.max_output_force
@@ -54,7 +55,7 @@ def test_nothing_recorded_exceeds_the_reported_maximum():
 
 
 def test_largest_forces_are_those_of_the_recorded_periods() -> None:
-    """A chain that is hit hard at first: the one period that is discarded has larger forces than those asked for."""
+    """A chain is hit hard at the start, so the one discarded period has larger forces than the recorded ones."""
     hit = State(np.zeros(3), np.array([1.0, 0.0, 0.0]))
     chain = scene("sec2").evolve(N=3, accuracy=1e-3)
     whole = run(chain, periods=0, record=1, samples=256, start=hit)
@@ -64,7 +65,7 @@ def test_largest_forces_are_those_of_the_recorded_periods() -> None:
 
 
 def test_the_largest_elastic_force_is_the_walls() -> None:
-    """A rigid wall's contact is stiffer than one between beads; its samples come near the largest value, from below."""
+    """The contact with a rigid wall is stiffer than one between beads. Its samples approach the maximum from below."""
     found = run(scene("sec2").evolve(N=3, wall="rigid", accuracy=1e-4), periods=2, record=3, samples=256)
     assert found.output_force_elastic.max() <= found.max_output_force_elastic * (1.0 + 1e-12)
     assert found.output_force_elastic.max() == pytest.approx(found.max_output_force_elastic, rel=1e-3)

@@ -1,5 +1,6 @@
-"""What is stated of the finest of several computations: never less than all of them together show, and compiling is no
-part of what a computation takes."""
+"""The error stated for the finest of several computations is never less than all of them together show. Compiling does
+not count as computing time.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +25,7 @@ STEPS = 10_000
 
 
 def shown(differences: list[float], refines: tuple[float, ...] = REFINES) -> Computations:
-    """Computations of the fixed-step method with these differences, one after another."""
+    """Return fixed-step computations, each of which differs from the previous one by the next of these differences."""
     found = Computations(False)
     found.begin(MethodSetting("rk4-split", refines[0]))
     for refine, difference in zip(refines[1:], differences, strict=False):
@@ -34,19 +35,20 @@ def shown(differences: list[float], refines: tuple[float, ...] = REFINES) -> Com
 
 
 def test_two_computations_that_agree_by_chance_do_not_decide() -> None:
-    """Order 3.9 leaves a fifteenth of an error when the step is halved: a difference 1e-9 times the last is chance."""
+    """With order 3.9, halving the step leaves a fifteenth of the error, so a factor of 1e-9 is chance."""
     assert shown([1e-5, 1e-14]).stated[0] >= 1.5 * 1e-5 / 16.0
 
 
 def test_where_the_order_is_seen_the_last_difference_decides() -> None:
-    """Differences that fall by 16 are a fourth-order method's: little more than the last one is stated then."""
+    """Differences that fall by 16 show a fourth-order method. The stated error is then little more than the last one.
+    """
     last = 1e-3 / 16.0
     assert 1.5 * last <= shown([1e-3, last]).stated[0] <= 1.1 * 1.5 * last
 
 
 @pytest.mark.parametrize("method", METHODS)
 def test_the_difference_before_counts_with_every_method_where_tension_is_cut(method: str) -> None:
-    """With the order observed there, or 1 where none is stated; with error control the ratio of the tolerances."""
+    """The previous difference is divided by the tolerance ratio with error control, and otherwise by 2 (order 1)."""
     coarse = MethodSetting(method, 1.0, 1e-6)
     fine = coarse.finer()
     found = Computations(cuts_tension=True)
@@ -63,8 +65,8 @@ def test_no_less_is_stated_than_is_typical_of_the_steps() -> None:
 
 
 def test_rounding_grows_as_errors_grow() -> None:
-    """A motion that magnifies the errors of its steps a millionfold does so with their roundings, some 1e-16 each:
-    1e-10 at least is stated however well two computations agree, and finer ones are of no use.
+    """A motion that magnifies the errors of its steps a millionfold also magnifies their rounding errors, about 1e-16
+    each. However well two computations agree, the stated error is at least 1e-10, and finer ones do not help.
     """
     growth = 1e6
     found = shown([growth * typical_error(MethodSetting("rk4-split", r)) for r in REFINES[:-1]])
@@ -75,7 +77,7 @@ def test_rounding_grows_as_errors_grow() -> None:
 
 
 def test_a_gentle_motion_is_not_charged_with_rounding() -> None:
-    """Errors that do not grow leave the rounding of 1e4 steps below 1e-12."""
+    """If errors do not grow, the rounding error of 1e4 steps is below 1e-12."""
     assert shown([typical_error(MethodSetting("rk4-split", r)) for r in REFINES[:-1]]).rounding < 1e-12
 
 
@@ -85,8 +87,8 @@ def test_an_error_of_a_tenth_is_none_worth_the_name_unless_it_was_asked_for() ->
     assert found.final(done=True)[0] == pytest.approx(0.15)
 
 
-#: Scenes of `python -m tests.numerics.stated_errors --seed 101` whose stated error was below the true one: two
-#: computations in which the same contact event happened to lie alike in its step.
+#: Scenes from `python -m tests.numerics.stated_errors --seed 101` whose stated error was below the true one: in two
+#: computations, the same contact event happened to fall at about the same point of a step.
 CHANCE = [
     ({"f": 145.0107398227187, "A0": 5.420547110388205e-06, "D": 187.64768194099608, "N": 1, "F0": 0.0718184022107687,
       "accuracy": 9.005855842342343e-08}, ()),
@@ -103,7 +105,7 @@ def test_scenes_in_which_two_computations_agreed_by_chance_are_bounded(knobs, th
 
 
 class Clock:
-    """A clock that goes when it is told to."""
+    """A clock that is set by hand."""
 
     def __init__(self) -> None:
         self.now = 0.0
@@ -113,7 +115,7 @@ class Clock:
 
 
 def test_compiling_is_no_part_of_what_a_computation_takes() -> None:
-    """Kernels that call others start the compiler within the compiler: that time counts once."""
+    """Kernels that call other kernels start the compiler within the compiler. That time counts once."""
     clock = Clock()
     compiler = CompilerClock(clock)
     began = event.Event("numba:compiler_lock", event.EventStatus.START)
@@ -137,8 +139,8 @@ def test_numba_tells_when_it_compiles() -> None:
 
 
 def test_kernels_that_are_compiled_on_the_way_do_not_exhaust_the_budget(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Section 2's run needs three computations (tests/hard_cases/test_outcomes.py); each takes a hundredth of the
-    budget, after compiling for longer than all of it.
+    """The run of section 2 needs three computations (tests/hard_cases/test_outcomes.py). Each takes a hundredth of the
+    budget, after compiling for longer than the whole budget.
     """
     budget, clock = 1.0, Clock()
     computes, compiler, computed = to_accuracy._attempt, CompilerClock(clock), []
@@ -156,10 +158,10 @@ def test_kernels_that_are_compiled_on_the_way_do_not_exhaust_the_budget(monkeypa
     monkeypatch.setattr(to_accuracy, "Stopwatch", lambda: Stopwatch(clock, compiler))
     found = run(scene("sec2"), periods=20, record=1, samples=8, budget=budget)
     assert found.status == "done" and len(computed) >= 3
-    assert found.cost.wall_s == pytest.approx(0.01 * budget * len(computed))  # as printed: nothing of the compiler
+    assert found.cost.wall_s == pytest.approx(0.01 * budget * len(computed))  # as printed: without the compile time
 
 
 def test_typical_errors_fall_as_the_differences_are_expected_to() -> None:
-    """One order for both terms of a stated error: that which is observed."""
+    """Both terms of a stated error use the same order, the observed one."""
     coarse, fine = MethodSetting("rk4-split", 1.0), MethodSetting("rk4-split", 8.0)
     assert typical_error(coarse) / typical_error(fine) == pytest.approx(Computations(False)._falls(coarse, fine), rel=1e-12)

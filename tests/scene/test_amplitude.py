@@ -1,4 +1,4 @@
-"""A0 over the frequency: formulas, tables, what is refused, and that it drives a curve and stays with it."""
+"""A0 as a function of frequency: formulas, tables, refused input, and use in curves, maps and branches."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def test_a_damaged_description_is_refused(data: Any, sentence: str) -> None:
 
 
 def test_every_point_has_its_own_amplitude() -> None:
-    """The same as one curve for each amplitude; k stays."""
+    """Each point is the same as in a curve of its own with that amplitude. k does not change."""
     drive = Amplitude.table([1800.0, 2000.0], [4e-7, 6e-7])
     curve = resonance_curve(CHAIN, [1800.0, 1900.0, 2000.0], amplitude=drive)
     assert list(curve.drive_amplitude) == pytest.approx([4e-7, 5e-7, 6e-7])
@@ -107,7 +107,8 @@ DRIVE = Amplitude.table([1900.0, 2000.0, 2100.0], [4e-7, 5e-7, 5.5e-7], "a shake
 
 
 def test_a_map_drives_each_frequency_with_its_amplitude(tmp_path: Path) -> None:
-    """Each cell is the cell of a map at that amplitude; the file brings the drive back and the digest knows it."""
+    """Each cell equals that of a map at its amplitude. The file restores the amplitude, and the digest depends on it.
+    """
     axes = ("f", [1900.0, 2000.0]), ("D", [80.0, 100.0])
     found = parameter_map(CHAIN, *axes, amplitude=DRIVE)
     for f in (1900.0, 2000.0):
@@ -120,7 +121,7 @@ def test_a_map_drives_each_frequency_with_its_amplitude(tmp_path: Path) -> None:
 
 
 def test_a_branch_follows_its_amplitude_and_keeps_it(tmp_path: Path) -> None:
-    """Its ends are the orbits at these frequencies and amplitudes."""
+    """The ends of the branch are the orbits at these frequencies and amplitudes."""
     found = branch(CHAIN, "f", 2000.0, 2100.0, amplitude=DRIVE)
     for point in (found.points[0], found.points[-1]):
         alone = settle(CHAIN.evolve(f=point.knob, A0=DRIVE.at(point.knob))).run.max_output_force_elastic

@@ -1,4 +1,4 @@
-"""A chain that is driven from its last bead is the chain turned round."""
+"""A chain that is driven from its last bead is the reversed chain."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ KNOBS = {"N": 6, "dimer": 0.5, "taper": 0.8, "striker": 2.0, "site": 3, "impurit
 
 
 def short(chain: str, **knobs: object) -> Run:
-    """Two recorded periods from rest."""
+    """Return two recorded periods from rest."""
     return run(scene(chain).evolve(**knobs), periods=0, record=2, samples=16)
 
 
@@ -46,8 +46,9 @@ def test_what_is_thrown_counts_from_the_driver_and_what_is_heavy_from_the_first_
 
 @pytest.mark.parametrize("thrown", range(1, 7))
 def test_a_chain_without_a_drive_moves_the_same_seen_from_either_end(thrown: int) -> None:
-    """A wall like a bead makes both ends alike: bead i thrown towards the wall is, seen from the other end, bead
-    N + 1 − i thrown towards the driver."""
+    """A wall like a bead makes both ends alike. Seen from the other end, bead i thrown towards the wall is bead N + 1 −
+    i thrown towards the driver.
+    """
     quiet = scene("impact").evolve(**KNOBS, wall="bead", strike=0.0, f=1e4)
     ours = replace(quiet, start_velocity=((thrown, 0.02),))
     other = replace(quiet.evolve(end="last"), start_velocity=((7 - thrown, -0.02),))
@@ -59,7 +60,7 @@ def test_a_chain_without_a_drive_moves_the_same_seen_from_either_end(thrown: int
 
 
 def test_a_strike_hits_the_bead_beside_the_driver() -> None:
-    """Bead 1 of the results: with `end = "last"` the chain's last bead, at equal masses the same motion."""
+    """That is bead 1 of the results. With `end = "last"` it is the chain's last bead, and equal masses move equally."""
     one, turned = (run(scene("impact").evolve(N=5, end=end, **knobs), periods=0, record=1, samples=32)
                    for end, knobs in (("last", {"striker": 3.0}), ("first", {"site": 5, "impurity": 3.0})))
     assert np.array_equal(one.displacement, turned.displacement)

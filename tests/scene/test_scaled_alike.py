@@ -1,4 +1,4 @@
-"""Scaled chains that share their arrays: a scene that differs only by its frequency is not scaled anew."""
+"""Scaled chains that share their arrays: a scene that differs only in its frequency is not scaled again."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from granchain_core.integrate.scaling import ScaledChain, scale_chain, scale_lik
 
 
 def same(one: ScaledChain, other: ScaledChain) -> bool:
-    """Whether both have the same scales and slots, to the last bit."""
+    """Return whether both have the same scales and slots, to the last bit."""
     alike = (one.scene, one.scales, one.beta, one.steps_per_period()) == (
         other.scene, other.scales, other.beta, other.steps_per_period())
     return alike and one.slot_types == other.slot_types and all(

@@ -1,4 +1,4 @@
-"""`Scene.scaled`: the same motion at another amplitude, with everything that a scene may have."""
+"""`Scene.scaled` gives the same motion at another amplitude, with every feature that a scene may have."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ pytestmark = pytest.mark.quick
 
 @pytest.mark.parametrize("law", LAWS)
 def test_preload_foundation_and_thrown_beads_scale_too(law: str) -> None:
-    """Left out, each would change the motion by far more than the tolerance."""
+    """If any of them were not scaled, the motion would change by far more than the tolerance."""
     s = 3.0
     one = replace(scene("sec2").evolve(N=4, f=700.0, F0=0.05, kappa=0.01, dissipation=law, accuracy=1e-7),
                   start_velocity=((3, 2e-3),))
     a, b = (run(x, periods=0, record=2, samples=8, method="dop853") for x in (one, one.scaled(s)))
-    # both within 1e-7 of the truth, times the motions' sensitivity of order one to ten
+    # both are within 1e-7 of the exact motion, times a sensitivity of one to ten
     np.testing.assert_allclose(b.displacement, s * a.displacement, atol=2e-6 * s * np.abs(a.displacement).max())
     np.testing.assert_allclose(b.output_force, s**1.5 * a.output_force, atol=2e-5 * s**1.5 * a.output_force.max())
 

@@ -1,4 +1,4 @@
-"""docs/scene-file.md: its examples are scenes that run, and every mistake has one clear sentence."""
+"""docs/scene-file.md: its examples are scenes that run, and every mistake gets one clear sentence."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ EXAMPLES = dict(re.findall(r"New file, `([\w-]+\.toml)`:\n\n```toml\n(.*?)```", 
 
 @pytest.fixture
 def files(tmp_path: Path) -> Path:
-    """A folder with the page's examples."""
+    """Folder with the page's examples."""
     for name, text in EXAMPLES.items():
         (tmp_path / name).write_text(text, encoding="utf-8")
     return tmp_path
 
 
 def test_the_dimer_has_the_beads_of_the_page(files: Path) -> None:
-    """Two kinds of beads in turn; contacts from both, K = 4/3 E* √R*."""
+    """Two kinds of beads alternate, and each contact combines both: K = 4/3 E* √R*."""
     chain = scene(files / "dimer-chain.toml")
     assert (chain.name, chain.title, chain.N) == ("dimer-chain", "Steel and PTFE, alternating", 10)
     assert chain.masses() == pytest.approx([28.84e-3, 7.71e-3] * 5)

@@ -1,5 +1,6 @@
-"""Scenes are values: hashable, immutable, the same after every round trip; and what they mean does not depend on how
-they were made."""
+"""Scenes are values: hashable, immutable, and the same after every round trip. Their meaning does not depend on how
+they were created.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +29,7 @@ SCENES = st.builds(lambda name, knobs: scene(name).evolve(**knobs), st.sampled_f
 
 @given(SCENES)
 def test_a_scene_survives_json(one):
-    """Through text and back it is equal, hashes the same and has the same digest."""
+    """Converted to text and back, a scene is equal, with the same hash and the same digest."""
     back = Scene.from_json(json.loads(json.dumps(one.to_json())))
     assert back == one
     assert hash(back) == hash(one)
@@ -45,7 +46,7 @@ def test_a_scene_with_impurities_and_thrown_beads_survives_json_too(one):
 
 @given(SCENES)
 def test_setting_the_knobs_it_has_changes_nothing(one):
-    """evolve with the scene's own knobs, as numbers or as the text a user would type, is the identity."""
+    """`evolve` with the scene's own knobs, as numbers or as the text a user would type, is the identity."""
     own = {name: value for name, value in one.knobs.items() if name != "kappa"}
     assert one.evolve(**own) == one
     assert one.evolve(**{name: value if isinstance(value, str) else repr(value) for name, value in own.items()}) == one
@@ -62,14 +63,14 @@ def test_knobs_can_be_changed_one_by_one_or_together(one, knobs):
 
 @given(SCENES, SCENES)
 def test_the_digest_tells_physics_apart_and_nothing_else(one, other):
-    """Different knobs, different digest; another name or title, the same."""
+    """Different knobs give a different digest. Another name or title gives the same digest."""
     assert replace(one, name="x", title="y", ranges=(), preset=()).digest == one.digest
     if {**one.knobs, "b": one.pattern} != {**other.knobs, "b": other.pattern}:
         assert one.digest != other.digest
 
 
 def test_a_scene_cannot_be_changed_in_place():
-    """Frozen."""
+    """Scenes are frozen."""
     with pytest.raises(FrozenInstanceError):
         scene("sec2").f = 3.0  # type: ignore[misc]
 
@@ -77,7 +78,7 @@ def test_a_scene_cannot_be_changed_in_place():
 @given(st.sampled_from(list(QUANTITIES)), st.one_of(st.text(max_size=12), st.floats(), st.integers(), st.none(),
                                                     st.booleans(), st.binary(max_size=4), st.just([1]), st.just({})))
 def test_any_value_of_a_knob_is_taken_or_refused_with_a_sentence(name, value):
-    """Nothing but BadInput leaves `check`, and what is taken lies in its range."""
+    """`check` raises nothing but BadInput, and an accepted value lies in its range."""
     quantity = QUANTITIES[name]
     try:
         taken = quantity.check(value)
@@ -88,7 +89,7 @@ def test_any_value_of_a_knob_is_taken_or_refused_with_a_sentence(name, value):
 
 
 def test_kappa_uses_the_resulting_scenes_own_amplitude():
-    """k = κ·K·√A0 with the A0 set in the same breath; a later A0 leaves k alone and moves κ (docs/model.md,
+    """k = κ·K·√A0 uses the A0 that is set in the same call. A later A0 leaves k unchanged and changes κ (docs/model.md,
     Foundation).
     """
     rig = scene("rig")
@@ -100,7 +101,7 @@ def test_kappa_uses_the_resulting_scenes_own_amplitude():
 
 
 def test_the_papers_numbers_of_both_sets():
-    """K, φ, λ, force unit of docs/model.md, The system, to the digits given there."""
+    """K, φ, λ and the force unit agree with docs/model.md, The system, to the digits given there."""
     sec2, rig = scene("sec2"), scene("rig")
     rate = np.sqrt(sec2.K * np.sqrt(sec2.A0) / sec2.bead(1).mass)
     found = [sec2.K, rate, sec2.D / (sec2.bead(1).mass * rate), sec2.K * sec2.A0**1.5, rig.K]
@@ -113,12 +114,12 @@ def test_the_papers_numbers_of_both_sets():
 @given(f=st.floats(300.0, 3000.0), damping=st.floats(20.0, 300.0), kappa=st.sampled_from([0.0, 0.002]),
        beads=st.integers(1, 8))
 def test_forces_never_pull_where_the_cut_forbids_it_and_energy_is_never_created(f, damping, kappa, beads):
-    """tension = cut: no contact force below zero; work − stored is never negative at the end of a run from rest."""
+    """With tension cut, no contact force is below zero. With tension allowed, the energy balance closes to 1e-4."""
     chain = scene("sec2").evolve(f=f, D=damping, kappa=kappa, N=beads, tension="cut", accuracy=1e-5)
     result = run(chain, periods=0, record=3, samples=32, method="dop853")
     assert result.force.min() >= -1e-15 * result.force.max()  # rounding of F − F
     plain = run(chain.evolve(tension="allowed"), periods=0, record=3, samples=32, method="dop853")
-    assert plain.energy_residual < 1e-4  # ten times the accuracy asked for
+    assert plain.energy_residual < 1e-4  # ten times the requested accuracy
     assert beads < 4 or plain.force.min() < 0.0  # the paper's law does pull, so the cut is not idle
 
 
@@ -127,14 +128,15 @@ def test_forces_never_pull_where_the_cut_forbids_it_and_energy_is_never_created(
 def test_scaling_holds_for_any_amplitude(f, s, kappa):
     one = scene("sec2").evolve(f=f, kappa=kappa, N=4, accuracy=1e-7)
     a, b = (run(x, periods=0, record=3, samples=8, method="dop853") for x in (one, one.scaled(s)))
-    # both within 1e-7 of the truth, times the motions' sensitivity of order one to ten
+    # both are within 1e-7 of the exact motion, times a sensitivity of one to ten
     np.testing.assert_allclose(b.displacement, s * a.displacement, atol=2e-6 * s * np.abs(a.displacement).max())
 
 
 def test_a_precompressed_chain_is_the_same_seen_from_either_end():
-    """Thrown from the middle of a mirror-symmetric chain with a driver at rest, the beads move antisymmetrically.
+    """Throwing the middle bead of a mirror-symmetric chain to the right or to the left gives mirror images.
 
-    Wall factor 1 makes the wall a bead like the driver; a preload keeps both ends in contact from the start.
+    The driver is practically at rest. Wall factor 1 makes the wall a bead like the driver, and a preload keeps both
+    ends in contact from the start.
     """
     quiet = scene("sec2").evolve(N=7, F0=5.0, A0=1e-12, f=2000.0, accuracy=1e-8)
     # the drive of 1e-12 m is 1e-6 of this motion and breaks the symmetry by that much
@@ -146,7 +148,8 @@ def test_a_precompressed_chain_is_the_same_seen_from_either_end():
 
 
 def test_beads_that_are_thrown_and_do_not_exist_are_refused():
-    """A start velocity for bead 9 of a chain that was cut to 5 gets a sentence, like an impurity there."""
+    """A start velocity for bead 9 of a chain that is shortened to 5 beads gets a sentence, as an impurity there does.
+    """
     thrown = replace(scene("sec2"), start_velocity=((9, 0.1),))
     with pytest.raises(BadInput, match="leaves no bead 9"):
         thrown.evolve(N=5)
@@ -155,7 +158,7 @@ def test_beads_that_are_thrown_and_do_not_exist_are_refused():
 @pytest.mark.parametrize("name", [name for name, quantity in QUANTITIES.items()
                                   if name in {field.name for field in fields(Scene)} and quantity.numeric])
 def test_every_knob_that_is_a_number_is_checked_where_a_scene_is_made_in_python(name: str) -> None:
-    """The check follows from the table of quantities, so a new knob cannot be forgotten."""
+    """The checks follow from the table of quantities, so a new knob cannot be forgotten."""
     below = [] if math.isinf(QUANTITIES[name].low) else [-5.0]
     for wrong in (math.nan, math.inf, "x", None, *below):
         with pytest.raises(BadInput):

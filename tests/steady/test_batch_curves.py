@@ -1,4 +1,4 @@
-"""Curves by batches: extrapolation does not change the attractor that is reached from rest; drafts claim less."""
+"""Curves from batches: extrapolation does not change the attractor reached from rest, and drafts claim less."""
 
 from __future__ import annotations
 
@@ -13,18 +13,20 @@ from granchain_core.steady.curve.resonance_curve import draft_curve, resonance_c
 from granchain_core.steady.settling.advance import run_until_settled
 from granchain_core.steady.steady_state import SteadyState
 
-#: Between 1580 and 1640 Hz two attractors stand side by side; below 1000 Hz and on the peaks approaches are slow.
+#: Between 1580 and 1640 Hz, two attractors coexist; below 1000 Hz and on the peaks, approaches are slow.
 FREQUENCIES = [400.0, 590.0, 620.0, 1240.0, 1576.0, 1590.0, 1600.0, 1610.0, 1620.0, 1640.0, 1900.0]
 
 
 def results(frequencies: list[float]) -> dict[float, SteadyState]:
-    """What batches find at these frequencies of section 2."""
+    """Return the results of batches at these frequencies of section 2's chain."""
     scenes = (scene("sec2").evolve(f=f) for f in frequencies)
     return {found.scene.f: found for found in batch_module.batch_results(scenes, Stop())}
 
 
 def test_what_is_extrapolated_is_what_the_chain_was_going_to() -> None:
-    """Batches, which follow slow approaches, and the fixed-step method, which runs on until it is there, from rest."""
+    """From rest, batches, which extrapolate slow approaches, agree with the fixed-step method, which runs until
+    settled.
+    """
     by_batch, periodic = results(FREQUENCIES), 0
     for f in FREQUENCIES:
         settling = run_until_settled(scene("sec2").evolve(f=f), None, None)
@@ -41,10 +43,10 @@ def test_what_is_extrapolated_is_what_the_chain_was_going_to() -> None:
 
 
 def test_a_computed_multiplier_is_kept_and_is_what_the_errors_rest_on(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Section 2 at 400 Hz: |μ| = 0.914 per orbit, which is found by extrapolation.
+    """Section 2's chain at 400 Hz has |μ| = 0.914 per orbit, and the orbit is found by extrapolation.
 
-    How slowly it seems to decay before that depends on the width of vectors; here any decay needs multipliers.
-    One-sided differences are good to 1e-4 of the map, whose |μ| the coarse steps move by as much.
+    The decay observed before that depends on the width of vectors, so here every decay requires multipliers. One-sided
+    differences are accurate to 1e-4 for the map; coarse steps change |μ| by as much.
     """
     monkeypatch.setattr("granchain_core.steady.batch.job._SLOW_CONTRACTION", 0.5)
     found = results([400.0])[400.0]
@@ -56,7 +58,7 @@ def test_a_computed_multiplier_is_kept_and_is_what_the_errors_rest_on(monkeypatc
 
 
 def test_what_batches_call_quasi_periodic_was_measured_twice(monkeypatch: pytest.MonkeyPatch) -> None:
-    """At 1640 Hz from rest: 200 periods with a zero exponent are not enough, as for a chain by itself."""
+    """At 1640 Hz from rest, 200 periods with a zero exponent are not enough, as for a chain alone."""
     real, measured = batch_module.put_with_neighbour, []
     monkeypatch.setattr(batch_module, "put_with_neighbour", lambda *words: measured.append(True) or real(*words))
     found = results([1640.0])[1640.0]
@@ -64,7 +66,7 @@ def test_what_batches_call_quasi_periodic_was_measured_twice(monkeypatch: pytest
 
 
 def test_up_and_down_sweeps_differ_at_1600_hz() -> None:
-    """The attractor at 1600 Hz depends on the start, so the test above can fail."""
+    """The attractor at 1600 Hz depends on the start, so the first test of this file can fail."""
     frequencies = np.array([1560.0, 1580.0, 1600.0, 1620.0, 1640.0, 1660.0])
     up = resonance_curve(scene("sec2"), frequencies, start="up").points[2]
     down = resonance_curve(scene("sec2"), frequencies, start="down").points[2]
@@ -72,7 +74,8 @@ def test_up_and_down_sweeps_differ_at_1600_hz() -> None:
 
 
 def test_an_unstable_orbit_is_not_drawn_as_periodic() -> None:
-    """The rig between 134 and 160 Hz: what batches call periodic is stable, what the fixed-step method shows to be so.
+    """For the rig between 134 and 160 Hz, the fixed-step method shows that motions that batches call periodic are
+    stable.
     """
     found = [point for point in resonance_curve(scene("rig"), np.linspace(134.0, 160.0, 14)).points
              if point.regime.name == "periodic"]
@@ -85,7 +88,7 @@ def test_an_unstable_orbit_is_not_drawn_as_periodic() -> None:
 
 
 def test_a_draft_claims_no_errors_and_agrees_where_it_is_periodic() -> None:
-    """A draft is drawn while a knob moves: coarse steps, a few hundred periods, unsettled where that was too short."""
+    """A draft is drawn while a knob moves: it has coarse steps and a few hundred periods, and may remain unsettled."""
     frequencies = np.linspace(200.0, 2000.0, 19)
     whole = {point.frequency: point for point in resonance_curve(scene("sec2"), frequencies).points}
     drafted = draft_curve(scene("sec2"), frequencies, Stop())
@@ -105,14 +108,15 @@ def test_scenes_that_batches_cannot_run_have_no_draft() -> None:
 
 
 def test_constants_of_the_disturbance_leave_room() -> None:
-    """A disturbance is far above what counts as settled and far below what changes the sequence of contacts."""
+    """A disturbance is far larger than the settled distance, and far too small to change the sequence of contacts."""
     assert 10.0 * checks.SETTLED_DISTANCE < checks._DISTURBANCE < 1e-2
 
 
 @pytest.mark.parametrize(("frequency", "amplitude"), [(1439.3220338983051, 5e-6), (684.4, 1.728e-6)])
 def test_a_closing_that_is_almost_a_touch_makes_no_force(frequency: float, amplitude: float) -> None:
-    """Two chaotic motions with such closings. D times the closing speed is small beside the elastic force. Newton's
-    method for the instant of closing once left the step, which made 66 kN of 153 N."""
+    """Two chaotic motions have such closings, at which D times the closing speed is small compared with the elastic
+    force. Newton's method for the instant of closing once left the step, which turned 153 N into 66 kN.
+    """
     (point,) = resonance_curve(scene("sec2").evolve(D=20.0, A0=amplitude), [frequency]).points
     assert point.max_output_force < 1.1 * point.max_output_force_elastic
 
@@ -122,9 +126,10 @@ def test_a_closing_that_is_almost_a_touch_makes_no_force(frequency: float, ampli
     (3400.09, {"N": 8, "A0": 3.959e-7, "D": 455.96}),
 ])
 def test_a_peak_right_after_a_closing_is_not_missed(f: float, knobs: dict[str, float]) -> None:
-    """With Tsuji's law the input force rises as t^{1/4} and is largest within a step of the closing.
+    """With Tsuji's law, the input force rises as t^{1/4} and is largest within a step of the closing.
 
-    Coarse and fine runs missed its top by the same 1.1 %, and their difference stated 0.1 %.
+    Coarse and fine runs once missed its maximum by the same 1.1 %, and the error stated from their difference was 0.1
+    %.
     """
     chain = scene("sec2").evolve(dissipation="tsuji", **knobs)
     (point,) = resonance_curve(chain, [f]).points
@@ -135,9 +140,10 @@ def test_a_peak_right_after_a_closing_is_not_missed(f: float, knobs: dict[str, f
 
 
 def test_what_a_fine_run_leaves_is_not_called_periodic() -> None:
-    """The orbit that coarse steps find has a largest |μ| of 4.6. The fine run left it, at a relative distance of 0.07.
+    """The orbit that coarse steps find has a largest |μ| of 4.6, and the fine run left it by a relative distance of
+    0.07.
 
-    Another orbit near by, at a grazing, may be found, as with vectors of four scenes.
+    Another orbit nearby, at a grazing, may be found, as happens with vectors of four scenes.
     """
     chain = scene("sec2").evolve(N=1, A0=7.255830239935612e-08, D=11.668237126124067, kappa=0.00027091924674425957)
     (point,) = resonance_curve(chain, [228.4540]).points
@@ -145,7 +151,7 @@ def test_what_a_fine_run_leaves_is_not_called_periodic() -> None:
 
 
 def test_an_orbit_that_has_doubled_with_coarse_steps_only_has_its_own_period() -> None:
-    """Coarse steps give 12 periods; with finer ones, as when the chain is settled alone, the orbit has 6."""
+    """With coarse steps, the orbit has 12 periods; with finer ones, as when the chain is settled alone, it has 6."""
     chain = scene("sec2").evolve(N=2, A0=1.7320447096596457e-06, D=5.0833019379296145, dissipation="kuwabara-kono")
     (point,) = resonance_curve(chain, [998.398]).points
     alone = settle(chain.evolve(f=998.398)).regime

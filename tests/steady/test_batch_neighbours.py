@@ -1,4 +1,4 @@
-"""What a batch finds of a scene does not depend on the scenes beside it, nor on their order: to the last bit."""
+"""The result of a scene in a batch does not depend on the other scenes or on their order, to the last bit."""
 
 from __future__ import annotations
 
@@ -19,21 +19,21 @@ from granchain_core.kernels.batch_size import BATCH_SIZE
 from granchain_core.steady.batch.jobs_in_batch import batch_results
 from granchain_core.steady.steady_state import SteadyState
 
-#: Rows of a map: with one frequency all members end their periods at once, and several are due for a check together.
-#: Among them are periodic, quasi-periodic and chaotic motions.
+#: Rows of a map: at one frequency, all members end their periods together, and several are due for a check at once.
+#: Their motions are periodic, quasi-periodic and chaotic.
 SCENES = [scene("sec2").evolve(f=f, A0=a) for f in (130.0, 340.0, 700.0, 1130.0) for a in (3e-7, 4e-7, 5e-7, 8e-7)]
 
-#: Lanes of members that have their neighbours in the next lanes: as many pairs as a batch can hold.
+#: Lanes of members whose neighbours are in the next lanes: as many pairs as fit into a batch.
 MEMBERS_OF_PAIRS = range(0, BATCH_SIZE - 1, 2)
 
 
 def results(scenes: list[Scene]) -> dict[tuple[float, float], SteadyState]:
-    """What one batch finds, by the scenes' knobs."""
+    """Return the results of one batch, by the scenes' knobs."""
     return {(found.scene.f, found.scene.A0): found for found in batch_results(iter(scenes), Stop())}
 
 
 def fingerprint(found: SteadyState) -> tuple[object, ...]:
-    """All of a result, bit by bit."""
+    """Return everything in a result, in a form that compares bit by bit."""
     errors = [None if one is None else float(one).hex() for one in
               (found.force_errors.input, found.force_errors.output, found.force_errors.elastic)]
     return (found.regime.name, found.regime.period, found.regime.periods_run, found.regime.lyapunov, found.undecided,
@@ -41,7 +41,7 @@ def fingerprint(found: SteadyState) -> tuple[object, ...]:
 
 
 def arrays_of(group: tuple) -> Iterator[np.ndarray]:
-    """All arrays of a named tuple and of those in it."""
+    """Yield all arrays of a named tuple and of the tuples in it."""
     for one in group:
         if isinstance(one, tuple):
             yield from arrays_of(one)
@@ -62,7 +62,7 @@ def test_a_scene_alone_and_among_others_is_the_same() -> None:
 
 
 def test_a_curve_does_not_depend_on_how_many_threads_compute_it() -> None:
-    """Bit by bit; some of its points are quasi-periodic."""
+    """Curves agree bit by bit; some of their points are quasi-periodic."""
     one, three = (resonance_curve(scene("sec2"), np.linspace(1100.0, 2000.0, 25), workers=count) for count in (1, 3))
     for name in ("frequency", "max_input_force", "max_output_force", "max_output_force_elastic"):
         assert one.column(name).tobytes() == three.column(name).tobytes(), name
@@ -89,7 +89,7 @@ def test_members_that_are_due_together_are_all_returned_before_one_goes_on() -> 
 
 
 def test_an_empty_lane_that_is_not_finite_is_never_returned() -> None:
-    """It holds no scene: the others go on beside it, as beside any other, and it may take a scene later."""
+    """The other lanes continue unaffected, and the empty lane can take a scene later."""
     chain = scene("sec2").evolve(f=1130.0)
     scaled, batch = scale_chain(chain), Batch(chain, Stop())
     rest = np.zeros(2 * scaled.bodies)
@@ -123,7 +123,7 @@ def test_a_pair_that_is_not_finite_leaves_the_others_theirs(wrong: int, lost: st
     assert finite == {member: member != wrong or lost == "neighbour" for member in MEMBERS_OF_PAIRS}
     for member in MEMBERS_OF_PAIRS:
         assert member == wrong or (np.isfinite(growth[member]).all() and len(growth[member]) == 4)
-    assert np.isnan(growth[wrong]).all() and len(growth[wrong]) == 1  # it is given back at once
+    assert np.isnan(growth[wrong]).all() and len(growth[wrong]) == 1  # it is returned immediately
 
 
 def test_a_pair_runs_for_as_many_periods_as_there_are_places_for() -> None:
@@ -158,9 +158,10 @@ def test_the_lanes_of_a_pair_are_free_for_any_scene_afterwards() -> None:
 @pytest.mark.parametrize("preload", [0.0, 0.5])
 def test_nothing_that_was_in_the_arrays_before_a_scene_is_read(preload: float, sentinel: float,
                                                              monkeypatch: pytest.MonkeyPatch) -> None:
-    """With all arrays filled before the first scene, coarse and fine runs, disturbances and pairs are the same bits.
+    """If all arrays are filled before the first scene, coarse and fine runs, disturbances and pairs are the same bit by
+    bit.
 
-    Only what no scene writes stays as it was built.
+    Only entries that no scene writes keep their initial values.
     """
     scenes = [one.evolve(F0=preload) for one in SCENES[: BATCH_SIZE + 3]]
 
@@ -168,10 +169,10 @@ def test_nothing_that_was_in_the_arrays_before_a_scene_is_read(preload: float, s
         state = _empty_state(beads)
         for array in arrays_of(state):
             array[...] = sentinel if array.dtype.kind == "f" else 12345
-        for stage in state.motion.stages:  # driver and wall, which no step writes there
+        for stage in state.motion.stages:  # driver and wall, which no step writes
             stage[[0, beads + 1, beads + 2, -1]] = 0.0
         if not preload:
-            state.motion.static_overlap[:] = 0.0  # chains without preload have none, and never write it
+            state.motion.static_overlap[:] = 0.0  # chains without preload never write it
         return state
 
     as_built = results(scenes)

@@ -1,4 +1,4 @@
-"""Which orbit that Newton's method finds confirms a claim of a period, and what is said of the others."""
+"""An orbit found by Newton's method confirms a claimed period only if it is stable and near the motion."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from granchain_core.steady.settling.regime_decisions import Decisions, regime_wi
 
 pytestmark = pytest.mark.quick
 
-#: A slow decay: a claim that multipliers have to confirm.
+#: A claim with a slow decay, which multipliers have to confirm.
 CLAIM = Regime("periodic", 3, 0.97, 1e-7, 400)
 
 
 def decided(monkeypatch: pytest.MonkeyPatch, **found: Any) -> tuple[Regime, Regime, np.ndarray | None]:
-    """The regimes of a settled and of a recorded motion, and the new state of the settled one."""
+    """Return the regimes of a settled and of a recorded motion, and the new state of the settled one."""
     orbit = SimpleNamespace(**{"period": 3, "modulus": 0.4, "stable": True, "unstable": False, "approached": lambda: False,
                                "distance_of_motion": 1e-6, "point": SimpleNamespace(x=np.ones(22))} | found)
     monkeypatch.setattr(regime_decisions, "orbit_of", lambda *words: orbit)

@@ -1,4 +1,4 @@
-"""The order in which the points of a curve are drawn by threads."""
+"""The order in which threads take the points of a curve."""
 
 from __future__ import annotations
 
@@ -13,7 +13,10 @@ def points(frequencies: list[float]) -> list[dict[str, float]]:
 
 
 def drawn_of_33(periods: dict[float, int | None], others: int) -> list[float]:
-    """Frequencies in the order drawn, of 100 to 420 Hz; each is finished at once after so many periods, None: never."""
+    """Return the frequencies from 100 to 420 Hz in the order taken.
+
+    Each finishes as soon as it is taken, after its number of periods, or never if that is None.
+    """
     frequencies = [100.0 + 10.0 * i for i in range(33)]
     order, drawn = LongestFirst(points([frequencies[i] for i in coarse_first(33)])), []
     for knobs in order:
@@ -25,7 +28,7 @@ def drawn_of_33(periods: dict[float, int | None], others: int) -> list[float]:
 
 @given(st.lists(st.sampled_from([10.0, 20.0, 30.0, 40.0]) | st.floats(1.0, 1e4), max_size=70), st.data())
 def test_every_point_is_drawn_once(frequencies: list[float], data: st.DataObject) -> None:
-    """Also a frequency that is there twice, whatever has been finished before the last points begin."""
+    """This includes duplicate frequencies, whatever has finished before the last points begin."""
     order = LongestFirst(points(frequencies))
     drawn = []
     for knobs in order:
@@ -36,7 +39,9 @@ def test_every_point_is_drawn_once(frequencies: list[float], data: st.DataObject
 
 
 def test_the_lowest_come_first_and_the_last_where_neighbours_took_long() -> None:
-    """Of 33 points the two lowest; last those between others, and first of these the ones beside the slow point."""
+    """The two lowest of 33 points come first. Points between others come last, beginning with those next to the slow
+    one.
+    """
     drawn = drawn_of_33({260.0: 2000}, others=20)
     assert drawn[:3] == [100.0, 110.0, 420.0]
     assert set(drawn[18:20]) == {250.0, 270.0}
@@ -48,7 +53,7 @@ def test_a_point_under_way_counts_as_the_longest() -> None:
 
 
 def test_the_ends_and_the_middle_come_first() -> None:
-    """For any number of points, in whatever order the frequencies are given."""
+    """This is true for any number of points and any order of the given frequencies."""
     for count in (2, 3, 33, 298):
         assert coarse_first(count)[:2] == [0, count - 1] and sorted(coarse_first(count)) == list(range(count))
     frequencies = [500.0, 100.0, 400.0, 200.0, 300.0]

@@ -1,4 +1,5 @@
-"""Resonance curves of section 2: what they show, where they state errors, and curves that fail or are cancelled."""
+"""Resonance curves of section 2: their peaks and valleys, their stated errors, and curves that fail or are cancelled.
+"""
 
 from __future__ import annotations
 
@@ -28,18 +29,19 @@ def curve() -> Curve:
     return resonance_curve(scene("sec2"), np.linspace(30.0, 3000.0, 298))
 
 
-#: The paragraph of docs that gives the command of this curve, and says what it shows.
+#: The paragraph of the docs that gives the command for this curve, and describes it.
 _PARAGRAPH, = (" ".join(paragraph.split()) for page in (Path(__file__).parents[2] / "docs").glob("*.md")
                for paragraph in page.read_text(encoding="utf-8").split("\n\n")
                if "`granchain curve sec2 --from 30 --to 3000 --points 298`" in paragraph)
-#: Each “f, f and f Hz with F, F and F N”: frequency [Hz] and elastic output force [N] of a peak or a valley.
+#: Frequency [Hz] and elastic output force [N] of peaks and valleys, from phrases “f, f and f Hz with F, F and F N”.
 EXTREMA = [pair for frequencies, forces in re.findall(r"([\d., and]+) Hz with ([\d., and]+) N\b", _PARAGRAPH)
            for pair in zip(_numbers(frequencies), _numbers(forces), strict=True)]
 
 
 @pytest.mark.parametrize(("frequency", "force"), EXTREMA)
 def test_the_documented_peaks_and_valleys_are_where_they_belong(curve: Curve, frequency: float, force: float) -> None:
-    """On this grid of frequencies, to the digits that the page gives; the largest or least force within 60 Hz."""
+    """On this grid of frequencies, each is the largest or smallest force within 60 Hz, and agrees to the page's digits.
+    """
     f, elastic = curve.column("frequency"), curve.column("max_output_force_elastic")
     near = elastic[np.abs(f - frequency) <= 60.0]
     there, = elastic[np.abs(f - frequency) < 1e-6]
@@ -48,20 +50,20 @@ def test_the_documented_peaks_and_valleys_are_where_they_belong(curve: Curve, fr
 
 
 def test_five_peaks_and_three_valleys_are_documented() -> None:
-    """Those of 1:1 to 1:5, and those between them."""
+    """They are the peaks 1:1 to 1:5 and the valleys between them."""
     assert len(EXTREMA) == 8
 
 
 def test_the_documented_stop_band_lets_little_force_through(curve: Curve) -> None:
-    """“less than F N from f Hz on”, to the digits that the page gives."""
+    """The phrase is “less than F N from f Hz on”, and is true to the page's digits."""
     (limit, first), = re.findall(r"less than ([\d.]+) N from ([\d.]+) Hz on", _PARAGRAPH)
     f, elastic = curve.column("frequency"), curve.column("max_output_force_elastic")
     assert 0.9 * float(limit) < elastic[f > float(first) - 1e-6].max() < float(limit)
-    assert elastic[f > float(first) - 11.0].max() > float(limit)  # one point of the grid earlier it is not so yet
+    assert elastic[f > float(first) - 11.0].max() > float(limit)  # not yet true one grid point earlier
 
 
 def test_every_point_of_the_curve_has_its_regime_and_an_error_where_one_can_be_claimed(curve: Curve) -> None:
-    """Periodic points carry a small error estimate, others none; nothing failed."""
+    """Periodic points have a small stated error, others none; nothing failed."""
     assert len(curve.points) == 298
     assert not any(p.failure for p in curve.points)
     for p in curve.points:
@@ -72,15 +74,15 @@ def test_every_point_of_the_curve_has_its_regime_and_an_error_where_one_can_be_c
 
 
 def test_up_and_down_sweeps_differ_where_there_is_hysteresis() -> None:
-    """The state is carried along: between 1250 and 1700 Hz the two directions sit on different branches somewhere."""
+    """Since the state is carried along, the two directions are on different branches somewhere from 1250 to 1700 Hz."""
     frequencies = np.arange(1250.0, 1701.0, 25.0)
     up, down = (resonance_curve(scene("sec2"), frequencies, start) for start in ("up", "down"))
     a, b = up.column("max_output_force_elastic"), down.column("max_output_force_elastic")
-    assert np.abs(a - b).max() > 0.05  # newtons; forces are known to 1e-5, so this is another branch
+    assert np.abs(a - b).max() > 0.05  # [N]; forces are known to 1e-5, so this is another branch
 
 
 def test_a_chain_that_fails_alone_has_run_what_its_batch_ran(monkeypatch: pytest.MonkeyPatch) -> None:
-    """620 periods in a batch and a failure after them are not 0 periods."""
+    """620 periods in a batch followed by a failure are reported as 620 periods, not 0."""
     from granchain_core.steady.settling import single_chain as module
 
     def fails(*_):
@@ -94,7 +96,7 @@ def test_a_chain_that_fails_alone_has_run_what_its_batch_ran(monkeypatch: pytest
 
 
 def test_a_failing_frequency_does_not_lose_the_curve(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Its point carries the sentence and NaN; the others are there, in every start."""
+    """Its point has the sentence and NaN, and the other points exist, with every start."""
     from granchain_core.steady.settling import single_chain as module
 
     true = module.settle_to_forces
@@ -105,7 +107,7 @@ def test_a_failing_frequency_does_not_lose_the_curve(monkeypatch: pytest.MonkeyP
         return true(one, *words)
 
     monkeypatch.setattr(module, "settle_to_forces", fails_at_600)
-    # with a tension cut points are computed one by one from rest too
+    # with a tension cut, points are computed one by one from rest too
     for start, chain in (("up", scene("sec2")), ("rest", scene("sec2").evolve(tension="cut"))):
         found = resonance_curve(chain.evolve(N=3), [500.0, 600.0, 700.0], start)
         assert [p.failure for p in found.points] == ["", "made to fail", ""]
@@ -117,7 +119,7 @@ def test_a_failing_frequency_does_not_lose_the_curve(monkeypatch: pytest.MonkeyP
 @pytest.mark.parametrize("start", ["rest", "up", "down"])
 @pytest.mark.parametrize("count", [2, 20])
 def test_a_curve_of_the_stiffest_foundation_is_computed_or_says_why_not(start: str, count: int) -> None:
-    """k = 1e10 N/m is valid: every point has a force or a sentence, whatever its neighbours do."""
+    """k = 1e10 N/m is valid, and every point has a force or a sentence, whatever its neighbours do."""
     found = resonance_curve(scene("sec2").evolve(k=1e10, N=2), np.linspace(2000.0, 2500.0, count), start)
     assert len(found.points) == count
     assert all(p.failure or np.isfinite(p.max_output_force) for p in found.points)
@@ -126,7 +128,7 @@ def test_a_curve_of_the_stiffest_foundation_is_computed_or_says_why_not(start: s
 
 @pytest.mark.parametrize("start", ["rest", "up", "down"])
 def test_a_cancelled_curve_keeps_what_it_has(start: str) -> None:
-    """Stopped after the third point: those points and soon an end."""
+    """If it is stopped after the third point, it keeps these points and soon ends."""
     seen: list[float] = []
     stop = Stop()
 
@@ -141,7 +143,7 @@ def test_a_cancelled_curve_keeps_what_it_has(start: str) -> None:
 
 
 def test_a_start_that_overflows_is_named_by_its_bead() -> None:
-    """The batch only says that a motion stopped being finite; settled alone, the failure has bead and time."""
+    """A batch only reports that a motion is no longer finite; settled alone, the chain's failure has bead and time."""
     chain = scene("sec2").evolve(N=2, f=2000.0)
     pressed = State(np.array([0.0, 1.0]), np.zeros(2))
     (found,) = settle_starts([Start(chain, pressed, 7)], Stop())

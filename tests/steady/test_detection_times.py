@@ -1,4 +1,4 @@
-"""When a motion is looked at for a period depends on the motion alone, not on how fast a machine computes it."""
+"""The times at which a motion is examined for a period depend only on the motion, not on the speed of the machine."""
 
 from __future__ import annotations
 
@@ -11,7 +11,9 @@ from granchain_core.steady.settling.advance import SettlingRun, run_until_settle
 
 @pytest.mark.parametrize("f", [340.0, 620.0, 1130.0])
 def test_a_motion_that_is_run_in_small_pieces_settles_when_one_run_at_once_does(f: float) -> None:
-    """Settled at once, followed to its orbit by a decision, and of period 3; a piece has two periods at most."""
+    """The motions settle at once, are followed to their orbit by a decision, or have period 3; a piece has at most two
+    periods.
+    """
     chain = scene("sec2").evolve(f=f)
     at_once = run_until_settled(chain, None, None)
     pieces = SettlingRun(chain, None, None)

@@ -1,4 +1,4 @@
-"""What several measurements of one motion's Lyapunov exponent decide together."""
+"""Decisions from several measurements of one motion's Lyapunov exponent."""
 
 from __future__ import annotations
 
@@ -22,27 +22,28 @@ from granchain_core.steady.regime_criteria import (
 )
 from granchain_core.steady.settling.regime_decisions import _MOST_PARTS
 
-#: A closed curve: strobes of a bead whose phase turns by the golden mean.
+#: A closed curve: strobes of a bead whose phase advances by the golden mean.
 PHASE = 2.0 * np.pi * 0.6180339887 * np.arange(SLOW_RECORD + LONGEST_PERIOD)
 CURVE = np.stack([np.cos(PHASE), np.sin(PHASE)], axis=1)[:, :, np.newaxis]
 
 
-#: The offset of a neighbouring trajectory, which is kept and not looked at.
+#: The offset of a neighbouring trajectory, which is stored but not used here.
 OFFSET = np.zeros(6)
 
 
 def growth(mean: float, scatter: float = 1e-3) -> np.ndarray:
-    """Growth in the periods of one measurement, independent from period to period."""
+    """Return the growth in the periods of one measurement, independent from period to period."""
     return mean + scatter * np.random.default_rng(4).standard_normal(MEASURED_PERIODS)
 
 
 def swing(size: float, period: float, measurement: int = 0) -> np.ndarray:
-    """Growth in the periods of a measurement on a closed curve, where a distance swings and keeps its mean."""
+    """Return the growth in the periods of a measurement on a closed curve, where a distance oscillates about its mean.
+    """
     return size * np.sin(2.0 * np.pi * (np.arange(MEASURED_PERIODS) + measurement * MEASURED_PERIODS) / period)
 
 
 def decided(*means: float) -> list[str | None]:
-    """The name that each of several measurements decides."""
+    """Return the name that each of several measurements decides."""
     measurements = ExponentMeasurements()
     found = [measurements.add(growth(mean), OFFSET, CURVE, 400 + 200 * i) for i, mean in enumerate(means)]
     return [regime.name if regime else None for regime in found]
@@ -66,7 +67,7 @@ def test_a_growth_that_no_departure_sustains_decides_alone() -> None:
 
 
 def test_a_measurement_with_a_large_error_is_continued() -> None:
-    """0.02 per period is e⁴ over 200 periods, which a closed curve may show; over 400 it is e⁸."""
+    """0.02 per period is e⁴ over 200 periods, which a closed curve may show, but e⁸ over 400."""
     measurements = ExponentMeasurements()
     assert measurements.add(growth(0.02), OFFSET, CURVE, 400) is None and measurements.latest is None
     assert len(measurements.unfinished) == MEASURED_PERIODS - TURNING_PERIODS and measurements.complete == 0
@@ -79,7 +80,7 @@ def test_a_measurement_with_a_large_error_is_continued() -> None:
 
 
 def test_a_swing_shorter_than_a_block_leaves_no_error() -> None:
-    """A swing by e^{±1.2} in 9.3 periods: plain means of ten blocks of 20 periods have an error of 0.006."""
+    """For an oscillation by e^{±1.2} in 9.3 periods, plain means of ten blocks of 20 periods have an error of 0.006."""
     counted = swing(0.4, 9.3)[TURNING_PERIODS:]
     plain = counted.reshape(10, 20).mean(axis=1)
     assert plain.std(ddof=1) / np.sqrt(10) > 0.006
@@ -88,7 +89,7 @@ def test_a_swing_shorter_than_a_block_leaves_no_error() -> None:
 
 
 def test_longer_blocks_measure_a_slower_swing() -> None:
-    """A swing in 45 periods: the 36 of a block do not reach over it, the 76 of a block twice as long do."""
+    """An oscillation in 45 periods is longer than a block of 36, but shorter than one of 76."""
     measurements = ExponentMeasurements()
     assert measurements.add(swing(0.1, 45.0), OFFSET, CURVE, 400) is None and measurements.latest is None
     found = measurements.add(swing(0.1, 45.0, 1), OFFSET, CURVE, 600)
@@ -98,7 +99,7 @@ def test_longer_blocks_measure_a_slower_swing() -> None:
 
 @pytest.mark.parametrize("periods", [200, 420])
 def test_the_standard_error_is_that_of_the_mean(periods: int) -> None:
-    """Of 4000 series of independent growth: overlapping blocks correlate, and the error says so, to 3 %.
+    """For 4000 series of independent growth, the error accounts for the correlation of overlapping blocks, to 3 %.
 
     The scatter of 4000 squares is 2 %.
     """
@@ -110,8 +111,9 @@ def test_the_standard_error_is_that_of_the_mean(periods: int) -> None:
 
 @pytest.mark.parametrize(("mean", "name", "parts"), [(0.008, "chaotic", 4), (-0.008, "unsettled", 4), (0.003, "quasi-periodic", 1)])
 def test_a_neutral_mean_above_its_error_is_measured_until_it_exceeds_the_bias_of_a_torus(mean: float, name: str, parts: int) -> None:
-    """Over 200 periods 0.008 ± 0.0001 is e^1.6, and a torus may show e⁶; over 6/0.008 = 750 it is more. For 0.003 that
-    would take 2000 periods, longer than the longest measurement."""
+    """Over 200 periods, 0.008 ± 0.0001 is e^1.6, and a torus may show e⁶; over 6/0.008 = 750 periods, it is more. For
+    0.003, this would take 2000 periods, longer than the longest measurement.
+    """
     measurements = ExponentMeasurements()
     while measurements.latest is None:
         measurements.add(growth(mean), OFFSET, CURVE, 400 + len(measurements.unfinished))
@@ -122,7 +124,7 @@ def test_a_neutral_mean_is_compared_for_as_long_as_a_chain_alone_measures() -> N
     assert _LONGEST_COMPARISON == _MOST_PARTS * MEASURED_PERIODS
 
 
-#: Largest swing of the logarithm of a distance that was seen on a torus (`_BOUNDED_GROWTH`).
+#: Largest swing of the logarithm of a distance that was observed on a torus (`_BOUNDED_GROWTH`).
 SEEN_SWING = 4.0
 @pytest.mark.parametrize("periods", [200, 420])
 @pytest.mark.parametrize(("length", "left"), [
@@ -130,9 +132,10 @@ SEEN_SWING = 4.0
     (4.0, 0.772),
 ])
 def test_the_bias_of_a_bounded_swing_by_its_period(periods: int, length: float, left: float) -> None:
-    """The mean's bias at the worst phase, over the swing/P of a plain mean; the swing's period in blocks. Zeros of the
-    window are at 1, 1/2, 1/4 block. Swings that are short against half a block are averaged out, and longer ones are
-    not, so the limit of a neutral mean needs the whole swing over P."""
+    """`left` is the mean's bias at the worst phase relative to the swing/P of a plain mean, for a swing whose period is
+    `length` blocks. The window has zeros at 1, 1/2 and 1/4 block. Swings much shorter than half a block are averaged
+    out, and longer ones are not, so the limit of a neutral mean needs the whole swing over P.
+    """
     block = 2 * (periods // (EXPONENT_BLOCKS + 1))
     time = np.arange(periods + 1)
     bias = 0.0

@@ -1,4 +1,5 @@
-"""Lyapunov exponents by a neighbour against an independent way: products of the stroboscopic map's derivatives with QR.
+"""Lyapunov exponents from a neighbouring trajectory agree with an independent method: products of the stroboscopic
+map's derivatives with QR decomposition.
 """
 
 from __future__ import annotations
@@ -17,12 +18,12 @@ from granchain_core.steady.lyapunov import MeasuredGrowth, block_means, growth_a
 from granchain_core.steady.regime_criteria import mean_and_error
 from granchain_core.steady.settling.advance import run_until_settled
 
-CHAOTIC = scene("rig").evolve(kappa=0.0, f=100.0, N=3)  # chaotic, as all of `rig` without flexures (docs/lecture.md)
+CHAOTIC = scene("rig").evolve(kappa=0.0, f=100.0, N=3)  # chaotic, like all motions of `rig` without flexures (docs/lecture.md)
 QUASI = scene("sec2").evolve(f=1640.0)
 
 
 def in_pairs(scenes: list[tuple[ScaledChain, np.ndarray]], batch: Batch, periods: int = 220) -> list[MeasuredGrowth | None]:
-    """What scenes show, each in two lanes of a batch; None where the growth is not finite."""
+    """Measure the growth of scenes, each in two lanes of a batch; None if it is not finite."""
     found: list[MeasuredGrowth | None] = [None] * len(scenes)
     for lane in range(BATCH_SIZE):
         batch.empty(lane)
@@ -38,7 +39,7 @@ def in_pairs(scenes: list[tuple[ScaledChain, np.ndarray]], batch: Batch, periods
 
 
 def by_tangents(shown: Scene, state: State, blocks: int, block: int, count: int = 2) -> tuple[np.ndarray, np.ndarray]:
-    """The `count` largest exponents per period and their standard errors, by dop853's motion and its tangents."""
+    """Return the `count` largest exponents per period and their standard errors, from dop853's motion and tangents."""
     stroboscopic_map = StroboscopicMap(shown, 1)
     x = stroboscopic_map.inner(stroboscopic_map.engine.scaled.from_si(state))
     frame, _ = np.linalg.qr(np.random.default_rng(3).standard_normal((len(x), count)))
@@ -53,7 +54,7 @@ def by_tangents(shown: Scene, state: State, blocks: int, block: int, count: int 
 
 
 def by_neighbour(shown: Scene, state: State) -> list[tuple[float, float]]:
-    """Mean and standard error by the one-scene neighbour and by the one in a batch."""
+    """Return mean and standard error from the neighbour of a single chain and from one in a batch."""
     engine = Engine(shown, MethodSetting("rk4-split"), 1)
     engine.start(state)
     scaled = scale_chain(shown)
@@ -76,7 +77,7 @@ def test_a_quasi_periodic_chain_has_one_zero_exponent_and_the_rest_below() -> No
     settling = run_until_settled(QUASI, None, None)
     assert settling.regime.name == "quasi-periodic"
     exact, error = by_tangents(QUASI, settling.engine.state, 10, 30)
-    # on a closed curve tangents turn into it within the first block; what is left of that dies as 1/periods
+    # on a closed curve, tangents align with it within the first block; the rest decays as 1/periods
     assert abs(exact[0]) <= 3.0 * error[0] + 0.01 and exact[1] < -3.0 * error[1]
     for mean, spread in by_neighbour(QUASI, settling.engine.state):
         assert abs(mean - exact[0]) <= 3.0 * np.hypot(spread, error[0]) and abs(mean) < 0.01
@@ -84,7 +85,7 @@ def test_a_quasi_periodic_chain_has_one_zero_exponent_and_the_rest_below() -> No
 
 @pytest.mark.parametrize("lost", [np.nan, 1e300])
 def test_exponents_of_a_scene_do_not_depend_on_those_beside_it(lost: float) -> None:
-    """To the last bit: nor on one that was lost, beside it or in its lanes before."""
+    """They agree to the last bit, even if another scene was lost, next to it or earlier in its lanes."""
     scaled = scale_chain(QUASI)
     y = scaled.from_si(run_until_settled(QUASI, None, None).engine.state)
     slower = scale_chain(QUASI.evolve(f=QUASI.f / 9.0))

@@ -1,4 +1,4 @@
-"""What counts as almost periodic, and is therefore compared with an orbit beside it."""
+"""The criterion for almost periodic motions, which are compared with a nearby orbit."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ pytestmark = pytest.mark.quick
 
 
 def nearly_repeating(change: float) -> np.ndarray:
-    """A rotation that repeats after 3 periods up to this relative change."""
+    """Return a rotation that repeats after 3 periods up to this relative change."""
     turns = np.exp(1j * (2.0 * np.pi / 3.0 + change / 3.0) * np.arange(421))
     return np.stack([np.stack([turns.real, turns.imag], 1), np.stack([turns.imag, -turns.real], 1)], 1)
 
@@ -23,7 +23,7 @@ def test_almost_periodic_is_what_changes_by_less_than_a_thousandth(change: float
 
 
 def test_a_slow_passage_on_a_closed_curve_is_not_almost_periodic() -> None:
-    """780 Hz of section 2: for some twenty periods the motion hardly moves, and then goes on around the curve."""
+    """Section 2's chain at 780 Hz hardly moves along its curve for about twenty periods, and then moves on."""
     steps = np.where(np.arange(421) < 400, 0.05, 1e-5)
     angle = np.cumsum(steps)
     slow = np.stack([np.stack([np.cos(angle), np.sin(angle)], 1), np.stack([np.sin(angle), -np.cos(angle)], 1)], 1)
@@ -31,7 +31,7 @@ def test_a_slow_passage_on_a_closed_curve_is_not_almost_periodic() -> None:
 
 
 def test_a_rotation_or_a_short_record_is_not_almost_periodic() -> None:
-    """The golden angle comes back within 2π/(√5·13) after 13 periods; 32 changes over 16 periods need 48 states."""
+    """The golden angle returns to within 2π/(√5·13) after 13 periods; 32 changes over 16 periods need 48 states."""
     turns = np.exp(2j * np.pi * 0.6180339887498949 * np.arange(421))
     rotation = np.stack([np.stack([turns.real, turns.imag], 1), np.stack([turns.imag, -turns.real], 1)], 1)
     assert not is_almost_periodic(rotation) and not is_almost_periodic(nearly_repeating(0.0)[:47])

@@ -1,4 +1,4 @@
-"""Errors of an orbit: those of the stroboscopic map, times what the contraction of the orbit makes of them."""
+"""Errors of an orbit are those of the stroboscopic map, times a factor from the orbit's contraction."""
 
 from __future__ import annotations
 
@@ -20,20 +20,19 @@ pytestmark = pytest.mark.quick
 
 
 def called_as(function: Any, answer: object) -> Any:
-    """What answers in place of a function, and can be called only as that can be."""
+    """Return a replacement for a function that returns `answer` and has the same signature."""
     return create_autospec(function, return_value=answer)
 
 
 def test_a_chance_agreement_counts_as_the_typical_error_of_the_map() -> None:
-    """From one state also the change moves the orbit further; two orbits differ by as much as they are apart."""
+    """From one state, the contraction also amplifies the change; for two orbits, their distance is the difference."""
     change = np.array([0.0, 1e-6, 1e-3])
     assert errors_of_map(change, 1e-5, 0.9) == pytest.approx([1e-4, 1e-4, 2e-2], rel=1e-12)
     assert errors_of_two_orbits(change, 1e-5, 0.9) == pytest.approx([1e-4, 1e-4, 2e-3], rel=1e-12)
 
 
 def test_an_error_of_the_map_moves_its_fixed_point_by_more(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where a tenth of a distance is left after an orbit the settled error is e/(1 − 1/10), where nine tenths are, 10
-    e.
+    """If a tenth of a distance remains after an orbit, the settled error is e/(1 − 1/10); with nine tenths, it is 10 e.
     """
     settling = run_until_settled(scene("sec2"), None, None)
     engine = Engine(settling.scene, MethodSetting("rk4-split"), 16)
@@ -47,7 +46,7 @@ def test_an_error_of_the_map_moves_its_fixed_point_by_more(monkeypatch: pytest.M
 
 
 def test_the_forces_of_a_curve_move_as_far(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The same factor 1/(1 − |μ|) for a point of a curve that was settled by itself."""
+    """The factor 1/(1 − |μ|) is the same for a point of a curve that was settled alone."""
     settling = run_until_settled(scene("sec2"), None, None)
     monkeypatch.setattr(single_chain, "run_until_settled", called_as(single_chain.run_until_settled, settling))
     refined_orbit = single_chain.refined_orbit
@@ -62,7 +61,7 @@ def test_the_forces_of_a_curve_move_as_far(monkeypatch: pytest.MonkeyPatch) -> N
 
 
 def test_the_contraction_of_a_bound_is_capped() -> None:
-    """The multiplier, at most 1 − 1e-6; without one the decay, at most 0.9999; 0.5 where none was seen."""
+    """It is the multiplier, at most 1 − 1e-6; without one, the decay, at most 0.9999; without either, 0.5."""
     def contraction(decay: float | None, multiplier: float | None) -> float:
         return Regime("periodic", 1, decay, None, 1, multiplier=multiplier).assumed_contraction
 

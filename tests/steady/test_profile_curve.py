@@ -1,4 +1,4 @@
-"""The program that says where the time of a curve goes looks into the thread that computes it."""
+"""The program that profiles the computation of a curve examines the thread that computes it."""
 
 from __future__ import annotations
 

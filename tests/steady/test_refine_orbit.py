@@ -1,4 +1,4 @@
-"""An orbit that is refined until its distance, and not its change, is small."""
+"""An orbit is refined until its distance, not just its change, is small."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ pytestmark = pytest.mark.quick
 
 
 def test_relaxing_ends_where_the_distance_is_small_and_not_the_change(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A change c at a decay of 0.99 leaves 99 c, and that is what is returned and held against the accuracy."""
+    """With a decay of 0.99, a change c leaves a distance of 99 c, which is returned and compared with the accuracy."""
     settling, seen = run_until_settled(scene("sec2"), None, None), []
     real = refine_orbit.changes
     settling.regime = replace(settling.regime, multiplier=0.99)

@@ -1,4 +1,4 @@
-"""A claim of a period is confirmed by the orbit itself."""
+"""A claimed period is confirmed by the orbit itself."""
 
 from __future__ import annotations
 
@@ -16,8 +16,9 @@ pytestmark = pytest.mark.quick
 
 
 def test_a_motion_that_settles_alternating_has_the_period_of_its_orbit() -> None:
-    """The rig at 60 Hz and 11 µm comes to its orbit with μ = −0.92: after 125 periods the bound holds for two periods,
-    not yet for one. A claim of two periods is traced back to the orbit, which has one."""
+    """The rig at 60 Hz and 11 µm approaches its orbit with μ = −0.92: after 125 periods, the bound is met for two
+    periods, but not yet for one. A claim of period 2 is traced back to the orbit, which has period 1.
+    """
     shown = scene("fig12-60")
     engine = Engine(shown, MethodSetting("rk4-split"), 1)
     engine.start_scaled(np.zeros(2 * shown.N))

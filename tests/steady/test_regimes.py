@@ -1,4 +1,4 @@
-"""The regimes that are known: periods 1, 2, 3, 4 of section 2, and a rig that is irregular where it should be."""
+"""Known regimes: periods 1, 2, 3 and 4 of section 2, and a rig that is irregular where it should be."""
 
 from __future__ import annotations
 
@@ -14,50 +14,51 @@ from granchain_core.steady.poincare import iter_section
 
 @pytest.mark.parametrize(("f", "period"), [(340.0, 1), (615.0, 2), (1130.0, 3), (1576.0, 4)])
 def test_section_2_from_rest_has_its_periods(f: float, period: int) -> None:
-    """One push in 1, 2, 3, 4 periods on the peaks (docs/lecture.md); the picture of the orbit closes on itself and says
-    how exactly.
+    """On the peaks, there is one push in 1, 2, 3 or 4 periods (docs/lecture.md). The recorded orbit closes on itself,
+    within its stated error.
     """
     found = settle(scene("sec2").evolve(f=f))
     assert (found.regime.name, found.regime.period) == ("periodic", period)
     kept = found.run
     assert len(kept.time) == period * kept.samples + 1
     largest = np.abs(kept.displacement).max()
-    # the orbit is followed to the error claimed, so its two ends differ by no more than twice that
+    # the orbit has the stated error, so its two ends differ by at most twice that
     assert np.abs(kept.displacement[-1] - kept.displacement[0]).max() < 2 * kept.displacement_error * largest
     assert kept.displacement_error < 1e-5
 
 
 @pytest.mark.parametrize("f", [340.0, 1130.0])
 def test_settled_orbit_is_where_a_long_plain_run_ends(f: float) -> None:
-    """Extrapolation and relaxation lead to the attractor the chain goes to by itself."""
+    """Extrapolation and relaxation lead to the attractor that the chain reaches by itself."""
     chain = scene("sec2").evolve(f=f, accuracy=1e-7)
     found = settle(chain)
     n = found.regime.period
     plain = run(chain, periods=600 * n, record=n, samples=96)
     largest = np.abs(plain.displacement).max()
-    # phase of an n-periodic orbit: one of its n shifts
+    # an n-periodic orbit may be shifted by 0 to n − 1 periods
     distance = min(np.abs(np.roll(found.run.displacement[:-1], 96 * q, axis=0) - plain.displacement[:-1]).max()
                    for q in range(n))
-    assert distance < 1e-5 * largest  # a hundred times the accuracy: both carry it, amplified by 1/(1 − |μ|)
+    assert distance < 1e-5 * largest  # a hundred times the accuracy: both have that error, amplified by 1/(1 − |μ|)
 
 
 def test_the_founded_rig_at_140_hz_is_chaotic() -> None:
-    """κ = 0.001, f = 140 Hz: a positive exponent, and its evidence."""
+    """With κ = 0.001 and f = 140 Hz, the exponent is positive, and the regime contains the evidence."""
     found = settle(scene("rig").evolve(f=140.0))
     assert found.regime.name == "chaotic"
     exponent, error = found.regime.lyapunov
     assert exponent > 3 * error
-    assert found.run.displacement_error is None, "no error may be claimed for a chaotic picture"
+    assert found.run.displacement_error is None, "no error may be stated for a chaotic motion"
 
 
 @pytest.mark.parametrize("f", [45.0, 80.0, 120.0])
 def test_the_rig_without_its_foundation_is_not_periodic(f: float) -> None:
-    """κ = 0: irregular everywhere in 20–160 Hz."""
+    """With κ = 0, it is irregular everywhere from 20 to 160 Hz."""
     assert settle(scene("rig").evolve(f=f, k=0.0)).regime.name != "periodic"
 
 
 def test_windows_hold_the_largest_changes_oldest_first() -> None:
-    """Found in one pass over the record, they are those of every change by itself; a short record has none.
+    """One pass over the record finds the same changes as separate passes for each period; a short record has no
+    windows.
 
     The compiler may divide by the scale in one kernel and multiply by its reciprocal in the other: two roundings.
     """
@@ -70,8 +71,9 @@ def test_windows_hold_the_largest_changes_oldest_first() -> None:
 
 
 def test_a_cut_chain_from_rest_comes_to_the_attractor_that_rest_leads_to() -> None:
-    """Here an orbit of period 3 coexists, and fixed steps, of order 1 with the cut, lead to it. Period 1 and 8.1983 N
-    are those of an independent RK4 with events bisected, at 1500, 6000 and 18,000 steps a period."""
+    """An orbit of period 3 coexists here, and fixed steps, of order 1 with the cut, would lead to it. Period 1 and
+    8.1983 N are the results of an independent RK4 with bisected events, at 1500, 6000 and 18,000 steps per period.
+    """
     chain = scene("sec2").evolve(N=2, A0=1.533564291882614e-06, D=30.039042891685526, tension="cut",
                                  dissipation="tsuji", k=81388.67421059022, F0=0.028166385379778485)
     point, = resonance_curve(chain, [742.0479417595108]).points
@@ -81,7 +83,7 @@ def test_a_cut_chain_from_rest_comes_to_the_attractor_that_rest_leads_to() -> No
 
 
 def test_a_cut_chain_is_where_a_finer_computation_is_at_its_next_phase_0_and_in_its_section() -> None:
-    """Both are followed without an accuracy that is asked for; by fixed steps they were wrong by up to a hundredth."""
+    """Both are computed without a requested accuracy; with fixed steps, they used to be wrong by up to a hundredth."""
     chain = scene("sec2").evolve(N=3, tension="cut", k=2e5, f=1500.0, accuracy=1e-10)
     fine = run(chain, periods=20, record=1, samples=4)
     largest = np.abs(fine.displacement).max()
@@ -100,7 +102,7 @@ def test_a_cut_chain_that_goes_on_from_its_orbit_stays_there() -> None:
 
 
 def test_changes_within_the_tolerance_of_a_step_are_no_motion() -> None:
-    """With error control an orbit repeats to the tolerance only, with changes that seem to grow."""
+    """With error control, an orbit repeats only to the tolerance, with changes that seem to grow."""
     strobes = np.tile([[[1.0], [1.0]], [[-1.0], [-1.0]]], (50, 1, 1))
     strobes[:, 0, 0] += 4e-12 * np.arange(100) / 100 * np.cos(np.arange(100) ** 2)
     found = regime_criteria.find_period(strobes, rounding=regime_criteria.rounding_of(following_setting(True)))

@@ -1,4 +1,4 @@
-"""Peaks, valleys, flanks and the stop band of a curve, and what a motion there is called."""
+"""Peaks, valleys, flanks and the stop band of a curve, and the names of motions there."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ from granchain_core.steady.curve.resonance import Place, extrema, place_of, plac
 
 pytestmark = pytest.mark.quick
 
-#: A curve as of section 2 [Hz, N]: peaks at 340 and 1130 Hz with a deep valley between, and little beyond.
+#: A curve like that of section 2 [Hz, N]: peaks at 340 and 1130 Hz, a deep valley between them, and little beyond.
 F = np.array([30.0, 340.0, 600.0, 870.0, 900.0, 950.0, 1000.0, 1130.0, 1300.0, 1320.0, 1500.0, 2000.0, 3000.0])
 FORCE = np.array([0.1, 0.62, 0.4, 0.23, 0.46, 0.5, 0.55, 1.12, 0.12, 0.13, 0.1, 0.08, 0.06])
 PERIODS = [1, 1, 1, 1, 3, 3, 3, 3, 1, 1, 1, 1, 1]
 
 
 def place(at: float, output: float | None = None, transmission: float = 0.5) -> Place:
-    """Where a state on the curve lies."""
+    """Return the place of a state on the curve."""
     force = float(np.interp(at, F, FORCE)) if output is None else output
     return place_of(F, FORCE, PERIODS, at, force, transmission)
 
 
 def test_a_large_force_beside_a_peak_is_its_flank() -> None:
-    """951.5 Hz, at half a newton on the way up to the 1:3 peak, is not a valley."""
+    """951.5 Hz, with half a newton on the rise to the 1:3 peak, is not in a valley."""
     assert place(951.5) == Place("flank", 1130.0, 3)
     assert place_words((2, 3), place(951.5)) == "2:3 motion, flank of the 1:3 peak at 1130 Hz"
 
@@ -36,17 +36,18 @@ def test_peaks_and_valleys_have_the_papers_names_where_the_pushes_are_those() ->
 
 @pytest.mark.parametrize(("depth", "is_one"), [(0.85, False), (0.75, True)])
 def test_a_valley_is_a_fifth_below_both_peaks(depth: float, is_one: bool) -> None:
-    """Between peaks of 1 N and 1.1 N a dip to 0.85 N is none."""
+    """Between peaks of 1 N and 1.1 N, a dip to 0.85 N is not a valley."""
     found = extrema(np.array([0.1, 1.0, depth, 1.1, 0.1]))
     assert (2 in found) == is_one
 
 
 def test_nothing_is_claimed_while_there_is_no_curve_or_off_it() -> None:
-    """The curve unfinished, another branch at the same frequency, a frequency beside the curve, and its ends."""
+    """Examples are an unfinished curve, another branch at the same frequency, a frequency off the curve, and its ends.
+    """
     assert place_words((1, 1), None) == "1:1 motion (the curve is being computed)"
     assert place(1130.0, output=0.2) == Place("")
     assert place_of(F, FORCE, PERIODS, 4000.0, 0.05, 0.5) == Place("")
-    assert place(2900.0).kind != "valley", "a curve's end is not a valley: nobody knows how it goes on"
+    assert place(2900.0).kind != "valley", "a curve's end is not a valley: its continuation is unknown"
     assert place_words(None, place(1130.0)) == ""
 
 
@@ -57,5 +58,5 @@ def test_beyond_the_last_peak_where_little_arrives_is_the_stop_band() -> None:
 
 
 def test_a_deep_valley_between_peaks_keeps_its_name() -> None:
-    """However little arrives at the wall in an anti-resonance, it is no stop band."""
+    """However little force reaches the wall in an anti-resonance, it is not a stop band."""
     assert place_words((1, 1), place(870.0, transmission=0.1)) == "1:1 anti-resonance"

@@ -1,4 +1,4 @@
-"""A stop that another thread sets ends steady states wherever they are."""
+"""A stop set by another thread ends the computation of steady states at any point."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ from granchain_core.steady.settling import advance
 
 @pytest.mark.parametrize("start", ["up", "down"])
 def test_a_stop_ends_a_carried_point_that_would_run_for_ever(start: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Ten seconds of drive a period and no budget of steps: one point is hours of work.
+    """With a drive period of ten seconds and no limit of steps, one point takes hours.
 
-    It is given up, without a result.
+    It is given up without a result.
     """
     monkeypatch.setattr(advance, "MOST_SETTLING_STEPS", 10**15)
     stop, called, points = Stop(), list[tuple[Engine, np.ndarray]](), list[CurvePoint]()
@@ -54,7 +54,7 @@ def test_a_stop_between_carried_points_leaves_those_that_are_done() -> None:
 
 
 def test_a_stop_reaches_the_located_jumps_of_a_batch(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Set when the orbit with located events is begun, the last computation of a point whose force jumps."""
+    """It is set when the orbit with located events begins, the last computation of a point whose force jumps."""
     stop, located = Stop(), []
 
     class Stopped(LocatedOrbits):

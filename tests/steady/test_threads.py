@@ -1,4 +1,4 @@
-"""Work shared by threads: every result arrives, and whatever ends a thread ends the iteration."""
+"""Work shared by threads: every result arrives, and anything that ends a thread ends the iteration."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from granchain_core.steady.batch.threads import on_all_cores
 
 
 def squares(items: Iterator[int]) -> Iterator[int]:
-    """The work of one thread."""
+    """Do the work of one thread."""
     for item in items:
         yield item * item
 
@@ -26,7 +26,9 @@ def test_every_result_arrives_once(workers: int) -> None:
 
 @pytest.mark.parametrize("kind", [ValueError, SystemExit, KeyboardInterrupt, Cancelled])
 def test_an_exception_of_a_thread_is_raised_by_the_caller(kind: type[BaseException]) -> None:
-    """Also one that is no `Exception`, and `Cancelled` unasked: nobody waits for a thread that has ended."""
+    """This includes exceptions that are not an `Exception`, and an unrequested `Cancelled`, so that the caller never
+    waits for a thread that has ended.
+    """
     def work(items: Iterator[int]) -> Iterator[int]:
         for item in items:
             if item == 3:
@@ -50,7 +52,7 @@ def test_an_exception_of_a_thread_is_raised_by_the_caller(kind: type[BaseExcepti
 
 @pytest.mark.parametrize("asked", ["stop", "ended"])
 def test_what_was_asked_to_end_ends_without_an_exception(asked: str) -> None:
-    """The work sees the flag before the caller does, and leaves with `Cancelled`."""
+    """The work notices the flag before the caller does, and ends with `Cancelled`."""
     ended, stop = Stop(), Stop()
 
     def work(items: Iterator[int]) -> Iterator[int]:

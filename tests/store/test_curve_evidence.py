@@ -1,4 +1,4 @@
-"""A curve's file has the evidence for every point's regime, and one from before it was kept still opens."""
+"""A curve file has the evidence for every point's regime, and older files without it still open."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def test_the_evidence_comes_back(tmp_path: Path) -> None:
 
 
 def test_the_evidence_of_every_regime_comes_back(tmp_path: Path) -> None:
-    """The evidence is what decides between quasi-periodic and unsettled, and how a slow motion was followed."""
+    """The evidence decides between quasi-periodic and unsettled, and tells how the orbit of a slow motion was found."""
     regimes = (
         Regime("quasi-periodic", None, None, None, 900, (1e-4, 2e-3), return_distance=0.01, return_limit=0.15,
                window_ratios=(0.99, 1.01), lyapunov_periods=1200),

@@ -1,4 +1,4 @@
-"""Files harmed at random: a few dozen of each kind, and the judge notices what it looks for."""
+"""Randomly damaged files: a few dozen of each kind, and planted faults that the judge must notice."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def test_no_harmed_file_is_a_wrong_number_a_traceback_or_a_hang(kind: str) -> No
 
 
 def test_no_harmed_file_of_an_earlier_version_is_a_traceback_or_a_hang() -> None:
-    """A wrong number it may be: without a seal nobody can know."""
+    """A wrong number is possible, because without a seal nothing reveals it."""
     found = list(verdicts("run", False, len(HARMS), seed=78))
     assert [v for v in found if v.outcome in (TRACEBACK, HANG)] == []
     assert [v for v in found if v.outcome == WRONG and v.harm in judge.LEADING] == []

@@ -1,4 +1,4 @@
-"""Files: what is written comes back bit by bit, and other programs find labelled axes with units."""
+"""Files: results come back bit by bit, and other programs find labelled axes with units."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from granchain_core import BadInput, resonance_curve, run, scene, settle
 from granchain_core.store import load, save, save_curve
 from granchain_core.tables.provenance import kernels_digest
 
-#: The package has a function of the name of the module.
+#: From `sys.modules`, because the package has a function with the name of this module.
 provenance = sys.modules["granchain_core.tables.provenance"]
 
 pytestmark = pytest.mark.quick
@@ -37,7 +37,7 @@ def test_a_run_comes_back_bit_by_bit(tmp_path: Path, result) -> None:  # type: i
 
 
 def test_the_evidence_for_a_regime_comes_back_and_may_be_missing(tmp_path: Path, result) -> None:  # type: ignore[no-untyped-def]
-    """Files written before the return distance and the ratios were kept open too."""
+    """Files written before the return distance and the ratios were saved open too."""
     rich = replace(result.regime, name="quasi-periodic", period=None, lyapunov=(1e-4, 2e-3), lyapunov_periods=1000,
                    return_distance=0.01, return_limit=0.15, window_ratios=(0.99, 1.01))
     kept = replace(result, regime=rich)
@@ -68,7 +68,7 @@ def test_xarray_opens_a_run_with_labelled_axes_and_units(tmp_path: Path, result)
 
 def test_a_file_says_by_which_kernels_and_libraries_it_was_made(tmp_path: Path, result,  # type: ignore[no-untyped-def]
                                                                 monkeypatch: pytest.MonkeyPatch) -> None:
-    """Commits of one version whose kernels differ are told apart; llvmlite decides the bits of compiled code."""
+    """Commits of one version with different kernels can be told apart. llvmlite decides the bits of compiled code."""
     made = result.attributes()
     assert set(json.loads(made["versions"])) == {"python", "numpy", "scipy", "numba", "llvmlite", "h5py"}
     with xarray.open_dataset(save(result, tmp_path / "a.h5"), engine="h5netcdf") as root:
@@ -106,13 +106,13 @@ def test_a_failed_write_leaves_no_file_behind(tmp_path: Path, result) -> None:  
 
 
 def test_overlap_follows_from_what_is_stored(result) -> None:  # type: ignore[no-untyped-def]
-    # the elastic wall force is K [δ_N]^{3/2} of the stored overlap: the same numbers by two ways
+    # the elastic wall force is K [δ_N]^{3/2} of the stored overlap: the same numbers, computed in two ways
     elastic = result.scene.contact_stiffness()[-1] * np.maximum(result.overlap[:, -1], 0.0) ** 1.5
     assert elastic == pytest.approx(result.output_force_elastic, rel=1e-12)
 
 
 def test_a_steady_state_from_a_given_state_comes_back_with_its_start(tmp_path: Path) -> None:
-    """Older files say "previous state" for such a start, and are read the same."""
+    """Older files say "previous state" for such a start and load with the same start as new ones."""
     chain = scene("sec2").evolve(N=2, f=2000.0)
     first = settle(chain, samples=8)
     carried = settle(chain, start=first.state, samples=8)

@@ -1,6 +1,4 @@
-"""The border of files: the seal, what is followed and what is not, limits of the child, and one sentence for every
-error.
-"""
+"""The file border: the seal, links and data that are not followed, limits of the child, and one sentence per error."""
 
 from __future__ import annotations
 
@@ -26,12 +24,12 @@ from tools.damage.kinds import KINDS, made, told
 
 pytestmark = pytest.mark.quick
 
-#: A dataset that each reader needs.
+#: One dataset that each reader needs.
 NEEDED = {"run": "run/displacement", "start of orbit": "run/velocity", "force of a run": "run/input_force",
           "branch": "branch/state", "curve": "curve/period", "map": "map/regime", "observation": "observation/displacement"}
 
 
-#: What is said of each forgery; a dataset that a link replaced may be missed before the link is met.
+#: Words in the refusal of each forgery. For some there are two, depending on which check comes first.
 SAID = {"external link": ("is a link",), "soft link": ("is a link",), "external storage": ("is stored in another file",),
         "virtual dataset": ("is virtual",), "huge shape": ("is virtual", "bytes in a file of"),
         "circle of groups": ("is not a dataset", "is not a group")}
@@ -39,14 +37,14 @@ SAID = {"external link": ("is a link",), "soft link": ("is a link",), "external 
 
 @pytest.fixture(scope="module")
 def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, tuple[Path, Path]]:
-    """A file of every kind, with its seal and without."""
+    """A file of every kind, with and without its seal."""
     folder = tmp_path_factory.mktemp("files")
     return {name: made(kind, folder) for name, kind in KINDS.items()}
 
 
 @pytest.fixture
 def changed(files: dict[str, tuple[Path, Path]], tmp_path: Path) -> Callable[..., Path]:
-    """A sealed copy of a file after a change with h5py."""
+    """Function that changes a copy of a file with h5py and seals it again."""
     def change(kind: str, by: Callable[[h5py.File], Any]) -> Path:
         path = tmp_path / "changed.h5"
         path.write_bytes(files[kind][0].read_bytes())
@@ -58,7 +56,7 @@ def changed(files: dict[str, tuple[Path, Path]], tmp_path: Path) -> Callable[...
 
 
 def refused(read: Callable[[Path], Any], path: Path) -> str:
-    """The one sentence with which a file is refused."""
+    """Return the one sentence with which a file is refused."""
     with pytest.raises(BadInput) as caught:
         read(path)
     said = str(caught.value)
@@ -71,7 +69,7 @@ def refused(read: Callable[[Path], Any], path: Path) -> str:
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_no_flipped_bit_comes_back_as_a_number(kind: str, files: dict[str, tuple[Path, Path]], tmp_path: Path) -> None:
-    """One bit in seven of the seal's line and of the first hundred bytes, and two hundred in between."""
+    """Flips every seventh bit of the seal's line and of the first 100 bytes, and 200 random bits."""
     content = files[kind][0].read_bytes()
     end, rng = 8 * len(content), np.random.default_rng(1)
     bits = [*range(0, 800, 7), *(int(bit) for bit in rng.integers(end, size=200)), *range(end - 880, end, 7)]
@@ -113,7 +111,7 @@ def test_the_seal_is_the_digest_that_everybody_computes(files: dict[str, tuple[P
 
 
 def test_other_programs_open_a_sealed_file_without_being_told_its_format(files: dict[str, tuple[Path, Path]]) -> None:
-    """A user block would have moved the signature, by which xarray recognises HDF5."""
+    """A user block would have moved the signature by which xarray recognises HDF5."""
     path, old = files["run"]
     with xarray.open_dataset(path, group="run") as data, h5py.File(path) as file, h5py.File(old) as before:
         assert data.displacement.dims == ("time", "bead")
@@ -121,14 +119,16 @@ def test_other_programs_open_a_sealed_file_without_being_told_its_format(files: 
         assert (file["run/force"][()] == before["run/force"][()]).all()
 
 
-# --- what is not followed ---------------------------------------------------------------------------------
+# --- links and foreign data -------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("name", LEADING)
 @pytest.mark.parametrize("kind", NEEDED)
 def test_numbers_come_from_the_file_itself_alone(kind: str, name: str, files: dict[str, tuple[Path, Path]],
                                                  changed: Callable[..., Path], tmp_path: Path) -> None:
-    """Links on any part of the path, external and virtual data, shapes that were never written; sealed, and in a child.
+    """Links anywhere on the path, external and virtual data, and shapes that were never written are refused.
+
+    This holds for sealed files and for those that a child reads.
     """
     for seed in range(3):
         path = changed(kind, lambda file, seed=seed: FORGERIES[name](file, NEEDED[kind], tmp_path, np.random.default_rng(seed)))
@@ -141,7 +141,7 @@ def test_numbers_come_from_the_file_itself_alone(kind: str, name: str, files: di
 
 
 def test_data_in_pieces_are_not_read_even_if_all_is_there(changed: Callable[..., Path]) -> None:
-    """Chunked data may need a filter, and HDF5 would load one."""
+    """Chunked data may need a filter, which HDF5 would load."""
     def pieces(file: h5py.File) -> None:
         values = file["run/time"][()]
         del file["run/time"]
@@ -177,7 +177,7 @@ def test_kinds_and_values_are_checked(change: Callable[[h5py.File], Any], words:
     assert words in refused(load, changed("run", change))
 
 
-#: Datasets of each kind of file that have a dimension, with their units; those that a kind reads are all among them.
+#: Datasets with a unit in each kind of file, including all that its reader uses.
 DIMENSIONS = {
     "run": {"run/time": "s", "run/displacement": "m", "run/velocity": "m/s", "run/force": "N",
             "run/drive_displacement": "m", "run/jump_time": "s", "run/jump_force": "N"},
@@ -224,7 +224,7 @@ def test_every_error_of_a_library_is_one_sentence(error: type[Exception], files:
             with monkeypatch.context() as patch:
                 patch.setattr(plain.Plain, part, fails)
                 if part == "attribute" and name in ("force of a run", "observation"):
-                    continue  # they need none
+                    continue  # these read no attributes
                 refused(kind.read, files[name][0])
 
 
@@ -242,7 +242,7 @@ def test_the_commands_refuse_a_damaged_file_with_status_2(command: list[str], fi
 
 
 def test_what_is_no_file_is_refused_without_waiting(tmp_path: Path) -> None:
-    """A pipe would keep a reader waiting for ever."""
+    """A pipe would keep a reader waiting forever."""
     os.mkfifo(tmp_path / "pipe")
     for name in ("pipe", ".", "missing.h5"):
         refused(load, tmp_path / name)
@@ -254,7 +254,7 @@ def test_what_is_no_file_is_refused_without_waiting(tmp_path: Path) -> None:
 
 
 def child_that(does: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Put a program of a few words in the place of the child."""
+    """Replace the child by a program of a few words."""
     script = tmp_path / "child.py"
     script.write_text(f"import os, sys, time\nsys.stdout.write('{{\"found\": null}}\\n'); sys.stdout.flush()\n{does}\n")
     monkeypatch.setattr(child.plain, "__file__", str(script))
@@ -276,7 +276,7 @@ def test_a_child_that_hangs_or_ends_is_said(does: str, words: str, files: dict[s
 
 
 def test_a_child_has_limits_of_time_and_memory(tmp_path: Path) -> None:
-    """As the system enforces them: one second of computing, and memory beside the file's size."""
+    """The system enforces one second of computing time, and a memory limit on top of the file size."""
     program = ("import importlib.util, sys; spec = importlib.util.spec_from_file_location('plain', sys.argv[1]); "
                "plain = importlib.util.module_from_spec(spec); sys.modules['plain'] = plain; spec.loader.exec_module(plain); "
                "plain.limit(1, 10**6)\n")
@@ -290,7 +290,7 @@ def test_a_child_has_limits_of_time_and_memory(tmp_path: Path) -> None:
 
 
 def test_a_child_imports_nothing_of_granchain() -> None:
-    """Which would take a second, and be loaded from wherever the file stands."""
+    """Importing it would take a second, and it would be loaded from wherever the file is."""
     program = ("import sys; sys.path.insert(0, sys.argv[1]); import plain; "
                "print([m for m in sys.modules if 'granchain' in m or m == 'numba'])")
     command = [sys.executable, "-P", "-c", program, str(Path(plain.__file__).parent)]

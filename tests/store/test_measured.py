@@ -1,4 +1,4 @@
-"""A measurement beside a result in its file: units, where it comes from, and whether anything was measured."""
+"""A measurement saved along with a result: its units, its source, and whether anything was really measured."""
 
 from __future__ import annotations
 

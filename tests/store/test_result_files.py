@@ -1,4 +1,4 @@
-"""The tables of docs/result-files.md are the columns and attributes of every result that a public function returns."""
+"""The tables of docs/result-files.md list the columns and attributes of every result that a public function returns."""
 
 from __future__ import annotations
 
@@ -9,32 +9,32 @@ import pytest
 from test_tables import CHAIN, RESULTS, result
 
 PAGE = (Path(__file__).parents[2] / "docs" / "result-files.md").read_text(encoding="utf-8")
-#: The page's text by heading, of both levels; of two with one heading the first, to which a link leads.
+#: The page's text by heading of either level. If two headings are equal, the first counts, because links lead to it.
 PARTS = {part.partition("\n")[0]: part.partition("\n")[2]
          for part in reversed(re.split(r"^##+ ", PAGE, flags=re.MULTILINE)[1:])}
-#: The text under each heading that names classes, with its groups.
+#: The text under each heading that names classes, including its groups.
 SECTIONS = {heading: text for section in re.split(r"^## ", PAGE, flags=re.MULTILINE)[1:]
             for heading, _, text in [section.partition("\n")] if "`" in heading}
-#: The page's names of axes whose names are knobs or coordinates.
+#: The page's names for axes that are named after knobs or coordinates.
 AXES = {"ParameterMap": {"A0": "y", "f": "x"}, "BifurcationDiagram": {"f": "knob"}, "Basins": {"v1": "y", "u1": "x"}}
-#: Groups with a column for each knob or free parameter, of which the page says so in words.
+#: Groups with a column for each knob or free parameter, which the page describes in words.
 KNOBS = {"runs": set(CHAIN.knobs), "landscape": {"D"}}
-#: How the meaning of a largest force ends, which depends on the result.
+#: The end of the meaning of a largest force, which depends on the result.
 WHEN = re.compile(", (in the steady state|over the recorded time|along the orbit)$")
-#: The unit of a column on the page where unit and meaning depend on the result.
+#: The page's entry for the unit of a column whose unit and meaning depend on the result.
 OPEN = "its own"
 
 Columns = dict[str, tuple[str, str, str]]
 
 
 def linked(text: str) -> list[str]:
-    """The parts of the page that a part links to."""
+    """Return the parts of the page that a part links to."""
     return [part for heading, part in PARTS.items()
             if f"(#{re.sub(r'[^a-z0-9 _-]', '', heading.lower()).replace(' ', '-')})" in text]
 
 
 def page_columns(text: str) -> Columns:
-    """Axes, unit and meaning by name of the columns in a part of the page and in the parts it links to."""
+    """Return axes, unit and meaning of the columns in a part of the page and in the parts it links to, by name."""
     found: Columns = {}
     for part in linked(text):
         found |= page_columns(part)
@@ -44,18 +44,18 @@ def page_columns(text: str) -> Columns:
 
 
 def page_attributes(text: str) -> set[str]:
-    """The attributes in a part of the page and in the parts it links to."""
+    """Return the attributes in a part of the page and in the parts it links to."""
     rows = re.findall(r"^\| `(\S+)` \| (?:[^|]|(?<=\\)\|)+ \|$", text, re.MULTILINE)
     return {*rows}.union(*map(page_attributes, linked(text)))
 
 
 def kinds(heading: str) -> list[str]:
-    """The results of test_tables.py of the classes that a heading names."""
+    """Return the keys of test_tables.RESULTS for the classes that a heading names."""
     return [kind for kind in RESULTS if f"`{kind.split()[0]}`" in heading]
 
 
 def written(heading: str) -> dict[str, Columns]:
-    """The columns by group of all results under a heading, with the page's names of axes."""
+    """Return the columns of all results under a heading by group, with the page's names for axes."""
     groups: dict[str, Columns] = {}
     for kind in kinds(heading):
         names = AXES.get(kind, {})
@@ -74,7 +74,7 @@ def test_the_page_has_every_class_of_results() -> None:
 
 @pytest.mark.parametrize("heading", SECTIONS)
 def test_columns_of_every_group_are_those_of_the_page(heading: str) -> None:
-    """Name, axes, unit, and the long name as the meaning; axes of shared columns and open units are the result's."""
+    """Compares names, axes, units, and long names as meanings, except for axes and units that depend on the result."""
     parts = re.split(r"^### ", SECTIONS[heading], flags=re.MULTILINE)[1:]
     page = {group.strip("/ "): page_columns(part) for part in parts
             for group in part.partition("\n")[0].split(",")}
@@ -90,7 +90,7 @@ def test_columns_of_every_group_are_those_of_the_page(heading: str) -> None:
 
 @pytest.mark.parametrize("heading", SECTIONS)
 def test_attributes_of_the_root_are_those_of_the_page(heading: str) -> None:
-    """Two are there only where the amplitude was given, or the knob of a branch is F0; not all of test_tables.py is."""
+    """`amplitude` and `coordinate` may be missing: not every result has a given amplitude, or F0 as a branch knob."""
     common = page_attributes(PARTS["Every file"])
     page = page_attributes(SECTIONS[heading].partition("\n### ")[0])
     found = {re.sub(r"^knob_\w+?(_unit)?$", r"knob_…\1", name) for kind in kinds(heading)

@@ -1,4 +1,4 @@
-"""Every result as a dataset, a data frame, a file and a cell: the same names, units and numbers in all of them."""
+"""Every result as a dataset, a data frame, a file and a notebook cell: all have the same names, units and numbers."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def _measured() -> Any:
     return virtual_curve(CHAIN, [1800.0, 2000.0, 2200.0], 0.02, np.random.default_rng(1))
 
 
-#: Every result that a public function returns, each small; the name of its class first.
+#: A small example of every result that a public function returns. Each key starts with the name of its class.
 RESULTS = {
     "Run": lambda: granchain_core.run(CHAIN, periods=10, record=1, samples=16),
     "Settled": lambda: settle(CHAIN, samples=16),
@@ -66,7 +66,7 @@ RESULTS = {
 
 @cache
 def result(kind: str) -> Labelled:
-    """A result of each kind, computed once."""
+    """Return a result of this kind, computed once."""
     import granchain_core.accuracy  # noqa: F401  (its rows)
 
     return RESULTS[kind]()  # type: ignore[no-any-return]
@@ -84,7 +84,7 @@ def test_what_print_shows_is_the_summary_and_no_array(kind: str) -> None:
     assert shown == [result(kind).heading(), *(f"  {line}" for line in result(kind).summary())]
 
 
-#: Knobs that a result varies, and those that differ from the preset: only the latter are stated.
+#: Headings state the knobs that differ from the preset, but not those that the result varies.
 HEADINGS = {
     "Run": "Run of sec2: f = 2000 Hz, N = 2", "Curve": "Curve of sec2: N = 2", "Branch": "Branch of sec2: N = 2",
     "ParameterMap": "ParameterMap of sec2: N = 2", "BifurcationDiagram": "BifurcationDiagram of sec2: N = 2",
@@ -104,7 +104,7 @@ def test_the_heading_of_a_fit_states_the_frequency_of_a_series_only() -> None:
 
 @pytest.mark.parametrize("kind", RESULTS)
 def test_a_file_opens_in_xarray_as_to_xarray_gives_it(kind: str, tmp_path: Path) -> None:
-    """Names, axes, units, long names and numbers of each table; the root has the same attributes."""
+    """Names, axes, units, long names and numbers of each table agree, and the root has the same attributes."""
     found = result(kind)
     file = save(found, tmp_path / "a.h5")
     for table in found.tables():
@@ -116,7 +116,7 @@ def test_a_file_opens_in_xarray_as_to_xarray_gives_it(kind: str, tmp_path: Path)
     with xarray.open_dataset(file, engine="h5netcdf") as root:
         told = made.attrs
         assert {**root.attrs, "created": ""} == pytest.approx({**told, "granchain_schema": 1, "created": ""}, nan_ok=True)
-    made.to_netcdf(tmp_path / "b.nc", engine="h5netcdf")  # and it can be written again by others
+    made.to_netcdf(tmp_path / "b.nc", engine="h5netcdf")  # other programs can write it again
 
 
 @pytest.mark.parametrize("kind", RESULTS)
@@ -179,7 +179,7 @@ def test_chains_that_share_no_batch_and_have_no_orbit_do_not_name_them() -> None
 
 
 def test_error_estimate_is_the_error_that_the_command_line_calls_so() -> None:
-    """Of the displacements of a motion, of the output force of a point of a curve and of an attractor."""
+    """For a motion it is the error of the displacements, for a curve point or an attractor that of the output force."""
     for kind in ("Run", "Driven", "Observation"):
         motion: Any = result(kind)
         assert motion.error_estimate == motion.displacement_error > 0.0, kind

@@ -1,4 +1,6 @@
-"""A virtual record replayed by the model that made it: what is left once start and sensors are known, and what else."""
+"""A virtual record is replayed by the model that made it: the remaining difference with known start and sensors, and
+without.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,7 @@ CHAIN = scene("sec2").evolve(N=3, f=1000.0)
 
 
 def relative(path: Path, *options: str, capsys: pytest.CaptureFixture[str]) -> tuple[float, str]:
-    """The larger relative rms of both forces of a file that drives the rig, and what was said."""
+    """Drive the rig with a file. Return the larger relative rms difference of the two forces, and the messages."""
     assert main(["run", "fig12-60", "--drive", str(path), "--json", *options]) == 0
     printed, said = capsys.readouterr()
     found = json.loads(printed)
@@ -28,7 +30,7 @@ def relative(path: Path, *options: str, capsys: pytest.CaptureFixture[str]) -> t
 
 
 def test_perfect_sensors_leave_nothing_on_the_settled_motion(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """From rest the same record differs by more than its own size, and a sentence says why."""
+    """Replayed from rest, the same record differs by more than its own size, and a sentence says why."""
     path = tmp_path / "perfect.csv"
     path.write_text(virtual_series_csv(RIG, 4, Sensors(rate=20e3)), "utf-8")
     left, said = relative(path, "--start", "settled", capsys=capsys)
@@ -40,7 +42,7 @@ def test_perfect_sensors_leave_nothing_on_the_settled_motion(tmp_path: Path, cap
 @pytest.mark.parametrize(("rate", "limit"), [(20e3, 0.005), (2e3, 0.02)])
 def test_a_slow_sensor_leaves_nothing_if_its_bandwidth_is_known(
         rate: float, limit: float, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """At 2 kHz the lines between the samples of the velocity are what is left; without the bandwidth it is a third."""
+    """At 2 kHz, the rest comes from straight lines between velocity samples. Without the bandwidth, it is over 0.2."""
     path = tmp_path / "slow.csv"
     path.write_text(virtual_series_csv(RIG, 4, Sensors(rate=rate, bandwidth=1e3)), "utf-8")
     assert relative(path, "--start", "settled", "--bandwidth", "1000", capsys=capsys)[0] < limit
@@ -48,7 +50,7 @@ def test_a_slow_sensor_leaves_nothing_if_its_bandwidth_is_known(
 
 
 def test_a_record_that_begins_before_the_shaker_is_replayed_from_rest(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """By the command alone, without a start; a slow sensor needs its bandwidth as ever."""
+    """The command needs no start. A slow sensor still needs its bandwidth."""
     path = tmp_path / "rest.csv"
     for bandwidth in ([], ["--bandwidth", "1000"]):
         assert main(["virtual", "fig12-60", "--rate", "20000", "--periods", "6", "--start", "rest", "--out", str(path), *bandwidth]) == 0
@@ -79,7 +81,7 @@ def test_a_tip_is_compared_too() -> None:
 
 
 def test_measured_forces_tell_in_which_period_a_record_begins() -> None:
-    """A motion of period 2: the velocity is the same in both, and the state is not."""
+    """In a motion of period 2, the drive velocity is the same in both periods, but the state is not."""
     chain = scene("sec2").evolve(N=3, f=1900.0)
     settled = settle(chain)
     assert settled.regime.period == 2
@@ -103,7 +105,7 @@ def test_a_displacement_tells_the_phase_as_a_velocity_does() -> None:
 
 
 def test_a_recorded_run_is_a_beginning(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """The second half of a motion from rest, begun where the file of the first half ends."""
+    """The second half of a motion from rest starts where the file of the first half ends."""
     whole = run(CHAIN, periods=0, record=6, samples=400)
     half = 3 * 400
     time = whole.time[half:] - whole.time[half]
@@ -117,7 +119,8 @@ def test_a_recorded_run_is_a_beginning(tmp_path: Path, capsys: pytest.CaptureFix
     assert main([*words, "--start", str(tmp_path / "first.h5")]) == 0
     printed = json.loads(capsys.readouterr().out)
     assert "first.h5" in printed["start"] and printed["bandwidth"] is None
-    # lines between 400 samples a period; the input force has jumps, of which one may be on either side of a sample
+    # straight lines between 400 samples per period; the input force has jumps, which may fall on either side of a
+    # sample
     assert printed["residual_output"]["relative"] < 0.01
     assert main(words) == 0
     from_rest = json.loads(capsys.readouterr().out)
@@ -169,7 +172,7 @@ def test_a_fit_through_a_slow_sensor_finds_the_truth(tmp_path: Path, capsys: pyt
 
 
 def test_an_observer_compares_through_the_sensor(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Of a record whose output alone was filtered; and coarse samples are no pulse that was missed."""
+    """Only the record's output was filtered. With a known bandwidth, coarse samples do not count as a missed pulse."""
     true = run(CHAIN, periods=0, record=4, samples=1000)
     slow = Sensors(bandwidth=2e3)
     out = slow.passed(true.time, true.output_force, true.time)

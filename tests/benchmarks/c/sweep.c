@@ -1,8 +1,8 @@
-/* The limit for a curve: RK4 in w with a fixed step, WIDTH scenes a register, BLOCKS registers side by side.
+/* The limit for a curve: RK4 in w with a fixed step, WIDTH scenes per register, BLOCKS registers side by side.
  *
- * Every lane is one drive frequency with its own step and number of steps; a lane that has run its periods is filled
- * with the next frequency, the longest first. HARD of the N + 1 contacts take the square root of the square-root
- * unit, the others an approximate inverse root and Newton steps on the multipliers, so that both are busy at once.
+ * Every lane is one drive frequency with its own step and number of steps. A lane that has run its periods takes the
+ * next frequency, the longest period first. HARD of the N + 1 contacts use the square-root unit, and the others an
+ * approximate inverse root with Newton steps on the multipliers, so that both units are busy at once.
  * Compiled with -DWIDTH=… (8: AVX-512, 4: AVX2) -DN=… -DBLOCKS=… -DHARD=…
  */
 #include <immintrin.h>
@@ -13,15 +13,15 @@
 typedef __m512d V;
 #define OP(name) _mm512_##name##_pd
 #define NEWTON_STEPS 1
-#define LEAST 1e-100 /* 0 has no inverse root; what this adds to a force is 1e-150 */
+#define LEAST 1e-100 /* 0 has no inverse root; this adds 1e-150 to a force */
 static inline V inverse_root(V x) { return _mm512_rsqrt14_pd(x); }
 static inline unsigned greater(V a, V b) { return _mm512_cmp_pd_mask(a, b, _CMP_GT_OQ); }
 static inline unsigned not_less(V a, V b) { return _mm512_cmp_pd_mask(a, b, _CMP_GE_OQ); }
 #else
 typedef __m256d V;
 #define OP(name) _mm256_##name##_pd
-#define NEWTON_STEPS 2 /* from 12 bits */
-#define LEAST 1e-30    /* a float; what this adds to a force is 1e-45 */
+#define NEWTON_STEPS 2 /* starting from 12 bits */
+#define LEAST 1e-30    /* within the range of a float; this adds 1e-45 to a force */
 static inline V inverse_root(V x) { return _mm256_cvtps_pd(_mm_rsqrt_ps(_mm256_cvtpd_ps(x))); }
 static inline unsigned greater(V a, V b) { return _mm256_movemask_pd(_mm256_cmp_pd(a, b, _CMP_GT_OQ)); }
 static inline unsigned not_less(V a, V b) { return _mm256_movemask_pd(_mm256_cmp_pd(a, b, _CMP_GE_OQ)); }
@@ -41,11 +41,12 @@ static inline __attribute__((always_inline)) V power(V d, int hard) {
     V x = OP(max)(d, V1(LEAST)), r = inverse_root(x);
     for (int i = 0; i + 1 < NEWTON_STEPS; i++)
         r = OP(mul)(r, FNMA(OP(mul)(OP(mul)(V1(0.5), x), r), r, V1(1.5)));
-    V a = OP(mul)(x, r); /* the last step is taken on the root itself */
+    V a = OP(mul)(x, r); /* the last Newton step is done on the root itself */
     return OP(mul)(OP(mul)(x, a), FNMA(OP(mul)(V1(0.5), a), r, V1(1.5)));
 }
 
-/* One stage: slope at (u, w); first: acc = s + share·slope; else acc += …; out = s + ahead·slope unless last. */
+/* One stage: slope at (u, w). The first stage sets acc = s + share·slope, later ones add to acc; out = s + ahead·slope
+ * unless it is the last. */
 static inline __attribute__((always_inline)) V stage(const V *restrict u, const V *restrict w, const V *su,
                                                      const V *sw, V *restrict ou, V *restrict ow, V *restrict au,
                                                      V *restrict aw, V driver, V lambda, V ahead, V share,
@@ -58,7 +59,7 @@ static inline __attribute__((always_inline)) V stage(const V *restrict u, const 
     for (int i = 0; i < N; i++) {
         V right = i + 1 < N ? u[i + 1] : zero;
         V d = OP(max)(OP(sub)(here, right), zero);
-        /* spread the hard ones evenly */
+        /* spread the contacts with the square-root unit evenly */
         V e = power(d, ((i + 1) * HARD) / (N + 1) != ((i + 2) * HARD) / (N + 1));
         V du = FMA(lambda, OP(sub)(d_left, d), w[i]);
         V dw = OP(sub)(e_left, e);
@@ -103,7 +104,7 @@ static inline V quartic(V a, V b, V c, V d, V e) {
 static inline __attribute__((always_inline)) void watch(Block *b, V e) {
     V a0 = b->e4[3], b0 = b->e4[2], c0 = b->e4[1], d0 = b->e4[0];
     unsigned top = greater(c0, b0) & not_less(c0, d0) & greater(c0, b->top);
-    if (top) { /* rare: only a maximum that is a new largest value needs its top */
+    if (top) { /* rare: the top is needed only for a new largest value */
         V best = OP(max)(quartic(a0, b0, c0, d0, e), c0);
         for (int k = 0; k < WIDTH; k++)
             if (top >> k & 1) b->top[k] = best[k] > b->top[k] ? best[k] : b->top[k];
@@ -111,15 +112,15 @@ static inline __attribute__((always_inline)) void watch(Block *b, V e) {
     b->e4[3] = b0, b->e4[2] = c0, b->e4[1] = d0, b->e4[0] = e;
 }
 
-/* Peaks of `count` scenes: beta, steps a period; `passed` periods are run, then `watched` more with the peak taken.
- * Scenes are expected longest first. Returns the number of register steps taken. */
+/* Peaks of `count` scenes, each with its beta and steps per period: `passed` periods are run, then `watched` more over
+ * which the peak is found. Scenes must be sorted, longest first. Returns the number of register steps. */
 long sweep(int count, const double *beta, const long *steps, int passed, int watched, double lambda, double *peak) {
     enum { LANES = WIDTH * BLOCKS };
     static Block block[BLOCKS];
     long left[LANES], taken = 0;
     int scene[LANES], watching[LANES], next = 0, running = 0;
     unsigned before = _mm_getcsr();
-    _mm_setcsr(before | 0x8040); /* flush subnormals: the wave front ahead of the first pulse is nothing but them */
+    _mm_setcsr(before | 0x8040); /* flush subnormals: the wave front ahead of the first pulse consists of them */
     memset(block, 0, sizeof block);
     const V lam = V1(lambda);
     for (int l = 0; l < LANES; l++) scene[l] = -1, left[l] = 0, watching[l] = 1;
@@ -141,7 +142,7 @@ long sweep(int count, const double *beta, const long *steps, int passed, int wat
             ((double *)&b->sine)[k] = 0.0, ((double *)&b->cosine)[k] = 1.0;
             ((double *)&b->turn_c)[k] = cos(M_PI / n), ((double *)&b->turn_s)[k] = sin(M_PI / n);
             ((double *)&b->h)[k] = on ? 2.0 * M_PI / (rate * n) : 0.0;
-            ((double *)&b->top)[k] = on ? 1e300 : 0.0; /* nothing is looked for before the watched periods */
+            ((double *)&b->top)[k] = on ? 1e300 : 0.0; /* no peak is found before the watched periods */
             watching[l] = !on, left[l] = on ? (long)passed * steps[scene[l]] : 1L << 60;
             running += on;
         }

@@ -7,7 +7,7 @@ typedef __m512d V;
 
 typedef struct { V a, b; } P; /* lanes 0…7 and 8…15 */
 
-/* d^{3/2} by rsqrt14 and two Newton steps where -DEXACT is not given, else by the square root. */
+/* d^{3/2} from the square root if -DEXACT is given, otherwise from rsqrt14 and two Newton steps. */
 static inline V power(V d) {
 #ifdef EXACT
     return d * _mm512_sqrt_pd(d);
@@ -19,7 +19,7 @@ static inline V power(V d) {
 #endif
 }
 
-/* Slope at (u, w) with the driver at `drive`: contact i joins bead i − 1 and bead i. Lanes 11… of u stay 0. */
+/* Slope at (u, w) with the driver at `drive`: contact i joins beads i − 1 and i. Lanes from 11 on of u stay 0. */
 static inline __attribute__((always_inline)) void slope(P u, P w, double drive, V lambda, P *du, P *dw) {
     const V zero = _mm512_setzero_pd();
     const __mmask8 upper = 0x07; /* beads 8, 9, 10 */
@@ -37,7 +37,7 @@ static inline __attribute__((always_inline)) void slope(P u, P w, double drive, 
     dw->b = _mm512_maskz_sub_pd(upper, e_b, e_last);
 }
 
-/* `samples` rows of 11 displacements after the first (at rest), `every` steps apart, `steps` in a period. */
+/* `samples` rows of 11 displacements after the first (at rest), `every` steps apart, with `steps` steps per period. */
 void trajectory(double beta, double lambda, long steps, long every, long samples, const double *table, double *out) {
     unsigned before = _mm_getcsr();
     _mm_setcsr(before | 0x8040);

@@ -1,7 +1,7 @@
-"""Hand-written C, compiled on the spot: the limit of what a fixed step in w can do on this processor.
+"""Hand-written C, compiled when it is used: the speed limit for fixed steps in w on this processor.
 
-With AVX-512, a register has eight doubles; where kernels are compiled without it, the sweep has four (AVX2) and is
-compiled without AVX-512 as well, so that it has no more registers than they.
+With AVX-512, a register has eight doubles. If kernels are compiled without it, the sweep uses registers of four (AVX2)
+and is compiled without AVX-512 as well, so that it has no more registers than the kernels.
 """
 
 from __future__ import annotations
@@ -25,18 +25,18 @@ from ..problem import Solved
 
 _SOURCES = Path(__file__).resolve().parents[1] / "c"
 WIDE = has_avx512()
-#: Scenes in a register of the sweep.
+#: Scenes per register in the sweep.
 WIDTH = 8 if WIDE else 4
 _FLAGS = ("-O3", "-march=native", "-mprefer-vector-width=512" if WIDE else "-mno-avx512f", "-ffp-contract=fast",
           "-fno-math-errno", "-fno-trapping-math", "-shared", "-fPIC")
-#: Step in scaled time at `refine` 1, the same as granchain's fixed-step method; settings of the ladder are steps.
+#: Step in scaled time at `refine` 1, the same as in granchain's fixed-step method; settings of the ladder are steps.
 STEP = 0.2
-#: Registers of scenes side by side and contacts that use the square-root unit, tried in this order.
+#: Registers of scenes side by side, and contacts that use the square-root unit; all shapes are tried.
 SHAPES = ((1, 4), (1, 3), (1, 5), (1, 2), (1, 6), (2, 4)) if WIDE else ((1, 12), (1, 9), (1, 6), (1, 4), (2, 12), (2, 6))
 
 
 def missing() -> str:
-    """Why it cannot run, or nothing."""
+    """Return the reason why it cannot run, or an empty text."""
     if shutil.which("gcc") is None:
         return "no compiler called gcc"
     return "" if machine.has_flag("avx2") and machine.has_flag("fma") else "the processor has no AVX2"
@@ -49,7 +49,7 @@ def _folder() -> tempfile.TemporaryDirectory[str]:
 
 @functools.cache
 def library(name: str, **macros: int) -> ctypes.CDLL:
-    """One source compiled with these macros, and loaded."""
+    """Compile a source with these macros, and load it."""
     label = "-".join([name, *[f"{k}{v}" for k, v in macros.items()]])
     target = Path(_folder().name) / f"{label}.so"
     defined = [f"-D{k}={v}" for k, v in macros.items()]
@@ -63,7 +63,7 @@ def _pointer(array: np.ndarray) -> ctypes.c_void_p:
 
 def sweep_peaks(frequencies: np.ndarray, step: float, shape: tuple[int, int] = SHAPES[0],
                 beads: int = problem.BEADS, periods: tuple[int, int] = (problem.PASSED, problem.WATCHED)) -> Peaks:
-    """Peaks of the curve with steps of at most `step`, by the program of this shape."""
+    """Return the peaks of the curve from the program of this shape, with steps of at most `step`."""
     call = library("sweep", WIDTH=WIDTH, N=beads, BLOCKS=shape[0], HARD=shape[1]).sweep
     call.restype = ctypes.c_long
     call.argtypes = [ctypes.c_int, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int, ctypes.c_int, ctypes.c_double,
@@ -81,7 +81,7 @@ def sweep_peaks(frequencies: np.ndarray, step: float, shape: tuple[int, int] = S
 
 
 def _trajectory(steps: float, exact: bool) -> Callable[[], Solved]:
-    """RK4 with `steps` steps a period, a multiple of the samples."""
+    """Prepare RK4 with `steps` steps per period, a multiple of the samples per period."""
     call = library("trajectory", **({"EXACT": 1} if exact else {})).trajectory
     call.restype = None
     call.argtypes = [ctypes.c_double, ctypes.c_double, *[ctypes.c_long] * 3, ctypes.c_void_p, ctypes.c_void_p]
@@ -99,7 +99,7 @@ def _trajectory(steps: float, exact: bool) -> Callable[[], Solved]:
 
 @functools.cache
 def best_shape() -> tuple[int, int]:
-    """The fastest of the shapes here, on a few frequencies."""
+    """Return the shape that is fastest on this machine, for a few frequencies."""
     few = problem.curve_frequencies()[100::5]
     for shape in SHAPES:
         sweep_peaks(few[:8], STEP, shape)
@@ -107,7 +107,7 @@ def best_shape() -> tuple[int, int]:
 
 
 def cases() -> list[Case]:
-    """The trajectory along the chain and the sweep across scenes."""
+    """Return the trajectory along the chain and the sweep across scenes."""
     ladder = [problem.SAMPLES * round(8.0 * 1.1**k) for k in range(88)]
     sweep = Case(f"C, {'AVX-512' if WIDE else 'AVX2'}, batch", "w", unit="step",
                  curve_ladder=[STEP / refine for refine in CURVE_REFINES],

@@ -15,12 +15,12 @@ METHODS = ("DOP853", "VERN8", "LSODA")
 
 
 def missing() -> str:
-    """Why it cannot run, or nothing."""
+    """Return the reason why it cannot run, or an empty text."""
     return "" if importlib.util.find_spec("CyRK") else "CyRK is not installed"
 
 
 def solver(method: str, called: Any, tolerance: float) -> Solve:
-    """nbsolve2_ivp with rtol = atol = tolerance."""
+    """Solve by nbsolve2_ivp with rtol = atol = tolerance."""
     from CyRK import nbsolve2_ivp
 
     def solve(beta: float, times: np.ndarray) -> Solved:
@@ -35,7 +35,7 @@ def solver(method: str, called: Any, tolerance: float) -> Solve:
 
 
 def cases() -> list[Case]:
-    """Three methods in both forms."""
+    """Return three methods in both forms."""
     found = []
     for form in problem.FORMS:
         called = compiled.callback(form, "dy t y p")

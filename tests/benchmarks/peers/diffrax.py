@@ -1,4 +1,4 @@
-"""diffrax: adaptive Runge–Kutta in JAX, 64 bits, compiled for the CPU."""
+"""diffrax: adaptive Runge–Kutta in JAX, with 64 bits, compiled for the CPU."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ _STEPS = 1 << 24
 
 
 def missing() -> str:
-    """Why it cannot run, or nothing."""
+    """Return the reason why it cannot run, or an empty text."""
     return "" if importlib.util.find_spec("diffrax") else "diffrax is not installed"
 
 
 def slope(form: str) -> Any:
-    """The right-hand side in jax.numpy; the root's argument is kept off 0, where only its value is wanted."""
+    """Return the right-hand side in jax.numpy. Only values are needed, so the root's argument may be 0."""
     import jax.numpy as jnp
 
     def overlaps(t: Any, u: Any, beta: Any) -> Any:
@@ -48,7 +48,7 @@ def slope(form: str) -> Any:
 
 @functools.cache
 def _compiled(form: str, method: str) -> Any:
-    """diffeqsolve, jitted; compiled anew for every number of times asked for, not for a tolerance."""
+    """Return a jitted diffeqsolve; it is compiled again for another number of times, but not for another tolerance."""
     import diffrax
     import jax
     import jax.numpy as jnp
@@ -67,7 +67,7 @@ def _compiled(form: str, method: str) -> Any:
 
 
 def solver(form: str, method: str, tolerance: float) -> Solve:
-    """diffeqsolve with rtol = atol = tolerance; evaluations are its steps, taken or not, times the stages."""
+    """Solve by diffeqsolve with rtol = atol = tolerance; evaluations are attempted steps times stages."""
     run, stages = _compiled(form, method), {"Tsit5": 6, "Dopri8": 13}[method]
 
     def solve(beta: float, times: np.ndarray) -> Solved:
@@ -78,7 +78,9 @@ def solver(form: str, method: str, tolerance: float) -> Solve:
 
 
 def cases() -> list[Case]:
-    """Two methods in both forms; a curve's point is run once before it is timed, so that no compiler is."""
+    """Return two methods in both forms. A point of the curve is run once before it is timed, so that compiling is not
+    timed.
+    """
     return [case_of(f"diffrax {method}", form, lambda t, f=form, m=method: solver(f, m, t), rungs(1e-3, 1e-12, 1),
                     rungs(1e-7, 1e-9, 1), 60, warm=1)
             for form in problem.FORMS for method in METHODS]

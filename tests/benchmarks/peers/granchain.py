@@ -1,4 +1,4 @@
-"""granchain itself, through its engine for a trajectory and its batches for a curve."""
+"""granchain itself: its engine for a trajectory, and its batches for a curve."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ from .. import problem
 from ..case import CURVE_REFINES, Case, Peaks, rungs
 from ..problem import Solved
 
-#: Its fixed-step methods and the multiples of the fixed-step method's steps that are tried, from 0.5 to 246 in the
-#: ratio of the C program's numbers of steps.
+#: The fixed-step methods, and the factors of refinement that are tried, from 0.5 to 246 in the same ratio as the C
+#: program's numbers of steps.
 FIXED = ("rk4-split", "rk4")
 REFINES = tuple(0.5 * 1.1**k for k in range(66))
-#: Its methods with error control.
+#: The methods with error control.
 ADAPTIVE = ("dop853", "dop853-root")
-#: The reference: dop853 at its finest; for the curve, where 300 points are needed, coarser.
+#: Tolerances of the reference: dop853 at its finest, and a coarser one for the 300 points of the curve.
 FINEST, CURVE_TOLERANCE = 3e-15, 1e-9
 
 
 def missing() -> str:
-    """granchain itself is always installed."""
+    """Return an empty text: granchain itself is always installed."""
     return ""
 
 
@@ -40,14 +40,14 @@ def _scene(frequency: float = problem.FREQUENCY) -> Scene:
 
 
 def reference() -> Solved:
-    """The trajectory by dop853 at its finest; states are displacements and velocities."""
+    """Return the trajectory from dop853 at its finest; states are displacements and velocities."""
     samples = Engine(_scene(), MethodSetting("dop853", tolerance=FINEST), problem.SAMPLES).record(
         problem.PERIODS * problem.SAMPLES)
     return Solved(np.hstack([samples.displacement, samples.velocity]), None)
 
 
 def _recording(setting: MethodSetting) -> Callable[[], Solved]:
-    """One engine is set up outside the clock and started from rest again for every run."""
+    """Set up one engine, untimed, which every timed run starts again from rest."""
     engine = Engine(_scene(), setting, problem.SAMPLES)
     start = engine.state
 
@@ -64,7 +64,7 @@ def _recording(setting: MethodSetting) -> Callable[[], Solved]:
 
 
 def reference_peaks(frequencies: np.ndarray, tolerance: float = CURVE_TOLERANCE) -> tuple[np.ndarray, np.ndarray]:
-    """Peaks of all points and whether each is periodic, by dop853 on all cores."""
+    """Return the peaks of all points, and whether each is periodic, from dop853 on all cores."""
 
     def point(frequency: float) -> tuple[float, bool]:
         engine = Engine(_scene(frequency), MethodSetting("dop853", tolerance=tolerance), 1)
@@ -79,14 +79,15 @@ def reference_peaks(frequencies: np.ndarray, tolerance: float = CURVE_TOLERANCE)
 
 
 def _returns(strobes: np.ndarray, near: float = 1e-6) -> bool:
-    """Whether the last state came back, after 1 to 16 periods, to within `near` of its size."""
+    """Return whether the last state repeats one of 1 to 16 periods before, to a relative difference of `near`."""
     last = strobes[-1]
     changes = [np.abs(last - strobes[-1 - n]).max() for n in range(1, 17)]
     return bool(min(changes) <= near * np.abs(last).max())
 
 
 def batch_peaks(frequencies: np.ndarray, refine: float) -> Peaks:
-    """Exactly 100 + 20 periods of every point in batches on this thread: longest first, lanes filled as they end."""
+    """Run exactly 100 + 20 periods of every point in batches on this thread: longest first, lanes refilled as they end.
+    """
     scaled = [scale_chain(_scene(f)) for f in sorted(frequencies)]
     total = problem.PASSED + problem.WATCHED
     values, rest = np.zeros(len(scaled)), np.zeros(2 * scaled[0].bodies)
@@ -116,7 +117,7 @@ def batch_peaks(frequencies: np.ndarray, refine: float) -> Peaks:
 
 
 def cases() -> list[Case]:
-    """Every method of the engine that is worth it, and the batches."""
+    """Return the methods of the engine, and the batches."""
     found = [Case(f"granchain {m}", "w", REFINES, lambda r, m=m: _recording(MethodSetting(m, refine=r)), unit="refine")
              for m in FIXED]
     found += [Case(f"granchain {m}", "w", rungs(1e-4, 1e-13, 4), lambda t, m=m: _recording(MethodSetting(m, tolerance=t)))

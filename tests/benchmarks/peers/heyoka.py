@@ -1,8 +1,9 @@
-"""heyoka: Taylor's method to machine precision, with contact changes as events and piecewise equations.
+"""heyoka: Taylor's method to machine precision, with contact events and piecewise equations.
 
-The power 3/2 has no Taylor series where the overlap is 0, and Taylor steps shrink in proportion to the distance from
-it. So each contact has two gates, both switched by events: the dashpot's at d = 0, the elastic force's at a small
-overlap ε, below which the elastic force is left out. What that changes falls as ε^{5/2}; ε is set with the tolerance.
+The power 3/2 has no Taylor series at overlap 0, and Taylor steps shrink in proportion to the distance from it. Each
+contact therefore has two gates, both switched by events: that of the dashpot at d = 0, and that of the elastic force at
+a small overlap ε, below which the elastic force is omitted. The resulting error falls as ε^{5/2}; ε depends on the
+tolerance.
 """
 
 from __future__ import annotations
@@ -18,20 +19,20 @@ from .. import problem
 from ..case import Case, Solve, case_of, rest, rungs
 from ..problem import Solved
 
-#: ε for an error of e: e^{2/5} times this.
+#: For an error e, ε is e^{2/5} times this.
 _OVERLAP = 0.03
 _CONTACTS = problem.BEADS + 1
-#: Scaled time at which it takes over from the start, and the most steps of one problem.
+#: Scaled time at which heyoka takes over after the start, and the most steps of one problem.
 _BEGIN, _STEPS = 2.5, 5_000_000
 
 
 def missing() -> str:
-    """Why it cannot run, or nothing."""
+    """Return the reason why it cannot run, or an empty text."""
     return "" if importlib.util.find_spec("heyoka") else "heyoka is not installed"
 
 
 class _Switch:
-    """An event's callback: sets one gate by the direction in which the overlap crosses."""
+    """The callback of an event, which sets one gate by the direction in which the overlap crosses."""
 
     def __init__(self, gate: int) -> None:
         self.gate = gate
@@ -42,7 +43,8 @@ class _Switch:
 
 
 def _integrator(tolerance: float) -> Any:
-    """The equations in w with β as parameter 0, dashpot gates 1 to 12 and elastic gates 13 to 24."""
+    """Return an integrator of the equations in w; parameters are β (0), dashpot gates (1–12) and elastic gates (13–24).
+    """
     import heyoka as hy
 
     hy.set_logger_level_error()
@@ -55,7 +57,7 @@ def _integrator(tolerance: float) -> Any:
     elastic = []
     for c in range(_CONTACTS):
         gate = hy.par[1 + _CONTACTS + c]
-        elastic.append(gate * (gate * d[c] + (1.0 - gate)) ** 1.5)  # 1 stands for the overlap where the gate is shut
+        elastic.append(gate * (gate * d[c] + (1.0 - gate)) ** 1.5)  # with the gate shut, the base is 1
     system = [(u[i], w[i] + dashpot[i] - dashpot[i + 1]) for i in range(n)]
     system += [(w[i], elastic[i] - elastic[i + 1]) for i in range(n)]
     events = [hy.t_event(d[c], callback=_Switch(1 + c)) for c in range(_CONTACTS)]
@@ -65,20 +67,20 @@ def _integrator(tolerance: float) -> Any:
 
 
 def _begun(beta: float) -> np.ndarray:
-    """The state at `_BEGIN` from rest, by SciPy: events cannot be told from the start, where all overlaps are 0."""
+    """Return the state at `_BEGIN` from rest, by SciPy: at the start, all overlaps are 0 and events are ambiguous."""
     found = solve_ivp(problem.slope_w_numpy, (0.0, _BEGIN), rest(), "DOP853", args=(beta,), rtol=1e-13, atol=1e-22)
     return found.y[:, -1]
 
 
 def _gates(beta: float, state: np.ndarray, tolerance: float) -> np.ndarray:
-    """All parameters at `_BEGIN`."""
+    """Return all parameters at `_BEGIN`."""
     line = np.concatenate([[np.sin(beta * _BEGIN)], state[: problem.BEADS], [0.0]])
     overlap = line[:-1] - line[1:]
     return np.concatenate([[beta], overlap > 0.0, overlap > _OVERLAP * tolerance**0.4])
 
 
 def solver(tolerance: float) -> Solve:
-    """The integrator, compiled once, started again for every problem; the very first moments are not timed."""
+    """Compile the integrator once, and restart it for every problem; the time before `_BEGIN` is not timed again."""
     integrator = _integrator(tolerance)
     starts: dict[float, np.ndarray] = {}
 
@@ -100,5 +102,7 @@ def solver(tolerance: float) -> Solve:
 
 
 def cases() -> list[Case]:
-    """One row; its evaluations are Taylor steps. In (u, v) the dashpot's jumps are events as well, at the same cost."""
+    """Return one row, whose evaluations are Taylor steps. In (u, v), the dashpot's jumps would be events at the same
+    cost.
+    """
     return [case_of("heyoka, events", "w", solver, rungs(1e-4, 1e-15, 3), rungs(1e-5, 1e-8, 1), 60)]

@@ -1,4 +1,4 @@
-"""numbalsoda: LSODA in C++ and DOP853 in Fortran, called from Python with a compiled right-hand side."""
+"""numbalsoda: LSODA in C++ and DOP853 in Fortran with a compiled right-hand side, called from Python."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _STEPS = 100_000_000
 
 
 def missing() -> str:
-    """Why it cannot run, or nothing."""
+    """Return the reason why it cannot run, or an empty text."""
     return "" if importlib.util.find_spec("numbalsoda") else "numbalsoda is not installed"
 
 
@@ -26,12 +26,12 @@ def _callback(form: str) -> Any:
 
 
 def address(form: str) -> int:
-    """Address of the compiled right-hand side."""
+    """Return the address of the compiled right-hand side."""
     return int(_callback(form).address)
 
 
 def solver(method: str, function: int, tolerance: float) -> Solve:
-    """`lsoda` or `dop853` of numbalsoda with rtol = atol = tolerance."""
+    """Solve by numbalsoda's `lsoda` or `dop853` with rtol = atol = tolerance."""
     import numbalsoda
 
     call = getattr(numbalsoda, method)
@@ -45,7 +45,7 @@ def solver(method: str, function: int, tolerance: float) -> Solve:
 
 
 def cases() -> list[Case]:
-    """LSODA and DOP853 in both forms."""
+    """Return LSODA and DOP853 in both forms."""
     found = []
     for form in problem.FORMS:
         here = address(form)

@@ -13,17 +13,17 @@ from ..problem import Solved
 
 _COMPILED = {"uv": compiled.slope_uv, "w": compiled.slope_w}
 _NUMPY = {"uv": problem.slope_uv_numpy, "w": problem.slope_w_numpy}
-#: Tolerances below this are refused by solve_ivp.
+#: solve_ivp refuses tolerances below this.
 _LEAST_RTOL = 3e-14
 
 
 def missing() -> str:
-    """SciPy is always there."""
+    """Return an empty text: SciPy is always installed."""
     return ""
 
 
 def ivp(method: str, slope: Callable[..., np.ndarray], tolerance: float) -> Solve:
-    """solve_ivp with rtol = atol = tolerance; states in units of A0, so that atol means something."""
+    """Solve by solve_ivp with rtol = atol = tolerance; states are in units of A0, so that atol is meaningful."""
 
     def solve(beta: float, times: np.ndarray) -> Solved:
         found = solve_ivp(slope, (0.0, times[-1]), rest(), method, times, args=(beta,), rtol=max(tolerance, _LEAST_RTOL),
@@ -36,7 +36,7 @@ def ivp(method: str, slope: Callable[..., np.ndarray], tolerance: float) -> Solv
 
 
 def ode(slope: Callable[..., np.ndarray], tolerance: float) -> Solve:
-    """odeint (LSODA) with rtol = atol = tolerance."""
+    """Solve by odeint (LSODA) with rtol = atol = tolerance."""
 
     def solve(beta: float, times: np.ndarray) -> Solved:
         states, info = odeint(slope, rest(), times, (beta,), rtol=tolerance, atol=tolerance, tfirst=True,
@@ -47,7 +47,8 @@ def ode(slope: Callable[..., np.ndarray], tolerance: float) -> Solve:
 
 
 def cases() -> list[Case]:
-    """All methods compiled in both forms, and LSODA with NumPy as one would write it first."""
+    """Return all methods, compiled, in both forms, and LSODA with plain NumPy, the version that you would write first.
+    """
     found = []
     for form in problem.FORMS:
         slope = _COMPILED[form]

@@ -1,4 +1,4 @@
-"""A batch: several scenes at once converge to their motions with order about 3, each as if it ran alone."""
+"""Batches: scenes integrated at once converge to their motions with order about 3, each as if it ran alone."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from granchain_core.kernels.batch_size import BATCH_SIZE
 from granchain_core.scene.state import rest
 
 FREQUENCIES = (200.0, 340.0, 615.0, 1130.0, 1576.0, 2000.0, 2500.0, 3000.0)
-#: Scenes of a case; not the width of a batch, which is BATCH_SIZE and depends on the processor.
+#: Scenes per case. The width of a batch is BATCH_SIZE, which depends on the processor.
 SCENES = len(FREQUENCIES)
 PERIODS = 3
-#: A decade of steps.
+#: Refinements of the time step, over a decade.
 REFINED = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0)
 CHAINS = {
     "sec2": {}, "one bead": {"N": 1}, "six beads": {"N": 6}, "founded": {"kappa": 0.001}, "pressed": {"F0": 0.5},
@@ -29,25 +29,25 @@ CHAINS = {
 
 
 def scenes_of(case: str):
-    """The scenes of a case, one a frequency."""
+    """Return the scenes of a case, one for each frequency."""
     return [scene("sec2").evolve(f=f, **CHAINS[case]) for f in FREQUENCIES]
 
 
 def put(batch: Batch, member: int, one, refine: float) -> None:
-    """Start a scene from rest; it is looked at after its periods."""
+    """Start a scene from rest; the batch returns after PERIODS periods of it."""
     scaled = scale_chain(one)
     batch.put(member, scaled, scaled.from_si(rest(one)), refine, return_at=PERIODS, earliest=NEVER)
 
 
 def run_all(scenes, refine: float) -> tuple[np.ndarray, np.ndarray]:
-    """Displacements at the strobes (SCENES, PERIODS + 1, N) and largest forces of all periods (SCENES, 3), batch after
-    batch."""
+    """Return displacements at the strobes (SCENES, PERIODS + 1, N) and the largest forces over all periods (SCENES, 3).
+    """
     parts = [run_batch(scenes[i : i + BATCH_SIZE], refine) for i in range(0, len(scenes), BATCH_SIZE)]
     return np.concatenate([strobes for strobes, _ in parts]), np.concatenate([maxima for _, maxima in parts])
 
 
 def run_batch(scenes, refine: float) -> tuple[np.ndarray, np.ndarray]:
-    """Strobes and largest forces, as from `run_all`, of no more scenes than a batch has lanes."""
+    """Return what `run_all` does, for no more scenes than a batch has lanes."""
     batch = Batch(scenes[0], Stop())
     for member, one in enumerate(scenes):
         put(batch, member, one, refine)
@@ -62,8 +62,9 @@ def run_batch(scenes, refine: float) -> tuple[np.ndarray, np.ndarray]:
 
 @functools.cache
 def true(case: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The same by rk4-split at a 32nd of the step, whose error is 1e-9 (tests/numerics/test_orders.py), and the
-    elastic output force at the very end (SCENES,)."""
+    """Return the same from rk4-split at a 32nd of the step, whose error is 1e-9 (tests/numerics/test_orders.py), and
+    the elastic output force at the very end (SCENES,).
+    """
     engines = [Engine(one, MethodSetting("rk4-split", refine=32), 1) for one in scenes_of(case)]
     found = [engine.periods(PERIODS) for engine in engines]
     return (np.array([s[:, 0] for s, _ in found]), np.array([t.max(axis=0) for _, t in found]),
@@ -80,10 +81,11 @@ def errors(case: str) -> np.ndarray:
 
 @pytest.mark.parametrize("case", CHAINS)
 def test_batches_converge_with_order_three_over_a_decade_of_steps(case):
-    """The kink of opening and closing contacts is corrected to order 3; where no contact opens RK4 keeps its 4.
+    """The kink where contacts open and close is corrected to order 3; where no contact opens, RK4 keeps its order 4.
 
-    Fit through the geometric mean of the scenes. The kink's next term falls with the power 5/2 for one contact
-    and is seen with the smallest steps: within 0.3 of 3 from below. Where contacts seldom change the 4 is still seen.
+    The order is fitted to the geometric mean over the scenes. For one contact, the kink's next term falls with the
+    power 5/2 and shows at the smallest steps, so the order may be up to 0.3 below 3. Where contacts seldom open or
+    close, it is still near 4.
     """
     order = -np.polyfit(np.log(REFINED), np.log(errors(case)).mean(axis=1), 1)[0]
     print(f"{case}: order {order:.2f}, errors {errors(case)[0].max():.1e} to {errors(case)[-1].max():.1e}")
@@ -95,8 +97,9 @@ def test_batches_converge_with_order_three_over_a_decade_of_steps(case):
 
 @pytest.mark.parametrize("case", CHAINS)
 def test_batches_are_as_near_as_a_curve_needs(case):
-    """1e-4 at the default step (one free bead, which the driver hits at any phase, amplifies that tenfold) and, by
-    order 3, a thousand times nearer at a twelfth of it."""
+    """Errors are 1e-4 at the default step and, by order 3, about a thousand times smaller at a twelfth of it. A single
+    free bead, which the driver hits at any phase, amplifies them tenfold.
+    """
     found = errors(case).max(axis=1)
     assert found[0] < (2e-3 if case == "one bead" else 5e-4)
     assert found[-1] < 2e-7
@@ -104,11 +107,11 @@ def test_batches_are_as_near_as_a_curve_needs(case):
 
 @pytest.mark.parametrize("case", CHAINS)
 def test_batches_follow_the_largest_forces(case):
-    """Forces are seen where a step begins, so a period's last instant is the next one's first: where the run ends with
-    a large force it is not seen yet, elsewhere nothing is lost.
+    """Forces are evaluated where a step begins, so a period's last instant counts as the first of the next period. A
+    large force at the very end of a run is therefore not recorded yet; elsewhere nothing is lost.
 
-    Smooth maxima to 1e-3 (a quartic through five values and F ∝ δ^{3/2}); the input force of a dashpot jumps where
-    the driver strikes, between two steps, so that a fixed step sees less of it: a lower bound.
+    Smooth maxima are found to 1e-3 (a quartic through five values and F ∝ δ^{3/2}). The input force of a dashpot jumps
+    where the driver strikes, between two steps, so a fixed step gives only a lower bound.
     """
     found, (_, exact, at_end) = run_all(scenes_of(case), 4.0)[1], true(case)
     assert (found < exact * 1.001).all()
@@ -119,7 +122,7 @@ def test_batches_follow_the_largest_forces(case):
 
 @pytest.mark.parametrize("case", ["sec2", "Kuwabara–Kono"])
 def test_a_member_does_not_know_of_the_others(case):
-    """Alone, in other company, and in another lane a scene gives the same numbers to the last bit."""
+    """Alone, among other scenes and in another lane, a scene gives the same numbers to the last bit."""
     scenes = scenes_of(case)
     together = run_all(scenes, 1.0)[0]
     turned = run_all(scenes[3:] + scenes[:3], 1.0)[0]

@@ -1,4 +1,4 @@
-"""What the checks of a batch believe, from states made by hand; and what it takes back beside events."""
+"""The periodicity checks of a batch, on states made by hand, and the corrections of its steps across events."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ MEMBER, ROW = BATCH_SIZE - 2, 4
 
 
 def seen(record: np.ndarray, before: float | None = None, **numbers: float) -> Batch:
-    """A batch of two-bead chains in one member of which all numbers of the beads were `record`, strobe by strobe.
+    """Return a batch of two-bead chains in which all numbers of one member's beads were `record`, strobe by strobe.
 
-    `before` is what they were before an extrapolation, `numbers` are the member's own, fields of `Search` or `Record`.
+    `before` is their value before an extrapolation; `numbers` are fields of `Search` or `Record` for that member.
     """
     batch = Batch(scene("sec2").evolve(N=2), Stop())
     batch.state.record.strobes[MEMBER, : len(record), :, 1:-1] = record[:, None, None]
@@ -35,7 +35,8 @@ def seen(record: np.ndarray, before: float | None = None, **numbers: float) -> B
 
 
 def test_an_orbit_found_by_extrapolation_is_disturbed_before_it_is_believed() -> None:
-    """States that repeat are periodic where the chain came there by itself; where it was put there they are tried."""
+    """Repeated states count as periodic if the chain settled there; after an extrapolation, they are disturbed first.
+    """
     batch = seen(np.ones(60))
     assert checks.check_coarse.py_func(batch.state, MEMBER)
     batch = seen(np.ones(60), slowest_contraction=0.9)
@@ -50,9 +51,10 @@ def test_an_orbit_found_by_extrapolation_is_disturbed_before_it_is_believed() ->
     ((checks._PART_LEFT - 0.01) ** (1 / checks._TEST_ORBITS), True),
     ((checks._PART_LEFT + 0.01) ** (1 / checks._TEST_ORBITS), False)])
 def test_an_orbit_is_believed_where_its_disturbance_decays(rate: float, stable: bool) -> None:
-    """Sixteen periods after a disturbance of 1e-4: smaller, and the chain is put back; larger, and it was not an orbit.
+    """If a disturbance of 1e-4 has shrunk after sixteen periods, the chain is put back; if it has grown, it was on no
+    stable orbit.
 
-    The scale of displacements and velocities is the member's own: others have used the workspace meanwhile.
+    Displacements and velocities are scaled for this member, although others have used the workspace in the meantime.
     """
     offsets = 1e-4 * rate ** np.arange(checks._TEST_ORBITS + 1)
     state = seen(1.0 + offsets, before=1.0, tested_period=1, slowest_contraction=0.9).state
@@ -61,7 +63,7 @@ def test_an_orbit_is_believed_where_its_disturbance_decays(rate: float, stable: 
     assert checks.judge_perturbation.py_func(state, MEMBER) == stable
     assert state.search.tested_period[MEMBER] == 0 and (state.search.slowest_contraction[MEMBER] > 0.0) == stable
     assert (state.motion.y[1, MEMBER] == 1.0) == stable
-    assert (state.search.last_check[MEMBER, checks.CHECK_PERIOD] == 1.0) == stable, "what was not an orbit has no period"
+    assert (state.search.last_check[MEMBER, checks.CHECK_PERIOD] == 1.0) == stable, "a state that was not on an orbit has no period"
     assert state.work.scale == pytest.approx(1.0, rel=1e-2)
 
 
@@ -77,7 +79,8 @@ def test_an_extrapolation_is_kept_only_if_the_change_after_it_is_smaller(before:
 
 @pytest.mark.parametrize(("before", "slowest"), [(1e-3, 0.9), (1e-9, 0.0)])
 def test_after_an_undone_extrapolation_an_orbit_is_not_one_that_was_extrapolated_to(before: float, slowest: float) -> None:
-    """Such an orbit is neither disturbed nor called followed: the contraction is that from before the extrapolation."""
+    """Such an orbit is neither disturbed nor marked as followed: the contraction is the one before the extrapolation.
+    """
     state = seen(1.0 + 1e-3 * 0.9 ** np.arange(60), change_before=before, extrapolate_from=10_000,
                  slowest_contraction=0.9, contraction_before=0.0).state
     checks.check_coarse.py_func(state, MEMBER)
@@ -85,7 +88,7 @@ def test_after_an_undone_extrapolation_an_orbit_is_not_one_that_was_extrapolated
 
 
 def test_an_extrapolation_that_is_undone_leaves_no_trace_in_the_record() -> None:
-    """The record ends with the state from which it was extrapolated, and what was run since is not counted."""
+    """The record ends with the state from which it was extrapolated; the periods run since then are not counted."""
     before = 1.0 + 1e-3 * 0.9 ** np.arange(60)
     batch = seen(before, before=before[-1], periods=59)
     state = batch.state
@@ -102,7 +105,7 @@ def test_an_extrapolation_that_is_undone_leaves_no_trace_in_the_record() -> None
 
 
 def test_a_full_record_drops_its_older_half_and_keeps_its_beginning_right() -> None:
-    """Strobes from before the last move leave first; those since then stay, up to STROBES_KEPT of them."""
+    """Strobes before the last extrapolation are dropped first; of those since then, up to STROBES_KEPT are kept."""
     batch = seen(np.arange(1.0, 2.0 * record.STROBES_KEPT))  # one place is left
     state = batch.state
     record.move_member.py_func(state, MEMBER, np.full((2, 4), -1.0))
@@ -113,13 +116,13 @@ def test_a_full_record_drops_its_older_half_and_keeps_its_beginning_right() -> N
 
 
 def excess(power: float, r: float) -> float:
-    """Simpson's rule over one step through the kink less ∫ s^p over its closed part r."""
+    """Return Simpson's rule over one step through the kink minus ∫ s^p over its closed part r."""
     return (r**power + 4.0 * max(r - 0.5, 0.0) ** power) / 6.0 - r ** (power + 1.0) / (power + 1.0)
 
 
 @pytest.mark.parametrize("r", [1e-6, 0.05, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95, 1.0])
 def test_what_a_batch_step_across_an_event_gives_too_much(r: float) -> None:
-    """Impulse and path of contact_correction.py by their definition, law by law; `next_step_error` is good to 3e-8."""
+    """The errors in contact_correction.py agree with their definitions for every law; that of the next step to 3e-8."""
     half, speed, h, c = max(r - 0.5, 0.0), 0.7, 0.2, 0.3
     beside = ((r**1.5 + 4.0 * (r + 0.5) ** 1.5 + (r + 1.0) ** 1.5) / 6.0 - 0.4 * ((r + 1.0) ** 2.5 - r**2.5))
     assert contact_correction.impulse_error.py_func(r, r**1.5, half**1.5) == pytest.approx(excess(1.5, r) + beside, abs=3e-8)

@@ -1,4 +1,4 @@
-"""A lane of a batch that has become free takes the next scene, and nothing of the one before is left in it."""
+"""A free lane of a batch takes the next scene and keeps nothing of the previous one."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ COUNT = 2 * BATCH_SIZE + 3
 
 
 def scene_of(number: int, structure: str) -> Scene:
-    """A scene of three beads; whatever may differ between the members of a batch differs between any two in a row."""
+    """Return a scene of three beads; everything that may differ between members differs from one number to the next."""
     own = {"founded": {"kappa": 1e-3 * (1 + number % 4)}, "pressed": {"F0": 0.1 * (1 + number % 5)}, "unlike": {}}
     found = scene("sec2").evolve(N=3, f=300.0 + 40.0 * number, A0=2e-7 * (1 + number % 3), D=60.0 + 10.0 * (number % 7),
                                  **own[structure])
@@ -33,15 +33,16 @@ def scene_of(number: int, structure: str) -> Scene:
     return found
 
 
-#: Periods of each: members end at different times, so that lanes are filled while others are inside a period.
+#: Periods of each scene: members end at different times, so that lanes are refilled while others are within a period.
 PERIODS = [3 + (5 * i) % 7 for i in range(COUNT)]
 
 Found = dict[int, list[np.ndarray]]
 
 
 def seen(scenes: list[Scene], numbers: Sequence[int]) -> Found:
-    """Strobes, largest forces and jumps of each scene; the lane of a member that has ended takes the next, as in
-    steady/batch/jobs_in_batch.py."""
+    """Return strobes, largest forces and jumps of each scene; when a member ends, its lane takes the next one, as in
+    steady/batch/jobs_in_batch.py.
+    """
     waiting, batch = iter(numbers), Batch(scenes[numbers[0]], Stop())
     found: Found = {}
     held: dict[int, int] = {}
@@ -70,7 +71,7 @@ def seen(scenes: list[Scene], numbers: Sequence[int]) -> Found:
 
 @pytest.mark.parametrize("structure", ["founded", "pressed", "unlike"])
 def test_more_scenes_than_lanes_give_what_each_gives_alone(structure: str) -> None:
-    """To the last bit: strobes, largest forces and jumps."""
+    """Strobes, largest forces and jumps agree to the last bit."""
     scenes = [scene_of(number, structure) for number in range(COUNT)]
     together = seen(scenes, range(COUNT))
     assert sorted(together) == list(range(COUNT))
@@ -81,14 +82,14 @@ def test_more_scenes_than_lanes_give_what_each_gives_alone(structure: str) -> No
 
 
 def fingerprint(found: SteadyState) -> tuple[object, ...]:
-    """All of a steady state, bit by bit."""
+    """Return everything in a steady state, in a form that compares bit by bit."""
     return (found.regime, found.undecided, found.status, [float(top).hex() for top in found.maxima], found.force_errors,
             found.state.displacement.tolist(), found.state.velocity.tolist())
 
 
 @pytest.mark.parametrize("draft", [False, True])
 def test_steady_states_of_more_scenes_than_lanes_are_those_of_each_alone(draft: bool) -> None:
-    """A lane is filled by the next scene once the fine run of the one before has ended: to the last bit."""
+    """They agree to the last bit; a lane takes the next scene once the fine run of the previous one has ended."""
     scenes = [scene_of(number, "founded") for number in range(COUNT)]
     together = {found.scene.f: found for found in batch_results(iter(scenes), Stop(), draft)}
     assert sorted(together) == [one.f for one in scenes]
@@ -99,10 +100,10 @@ def test_steady_states_of_more_scenes_than_lanes_are_those_of_each_alone(draft: 
 
 @pytest.mark.parametrize("rows", ["displacement", "w"])
 def test_a_bead_far_from_the_driver_that_is_not_finite_is_reported(rows: str) -> None:
-    """A NaN spreads four beads in a step, so at the end of a period the first bead may still be finite."""
+    """A NaN spreads by four beads per step, so at the end of a period the first bead may still be finite."""
     chosen = scene("sec2").evolve(N=200, f=3000.0)
     batch, scaled = Batch(chosen, Stop()), scale_chain(chosen)
-    assert 4 * scaled.steps_per_period() < chosen.N, "the first bead must not have heard of it"
+    assert 4 * scaled.steps_per_period() < chosen.N, "the NaN must not have reached the first bead"
     start = np.zeros(2 * scaled.bodies)
     start[200 if rows == "displacement" else scaled.bodies + 200] = np.nan
     last = BATCH_SIZE - 1
@@ -122,7 +123,7 @@ def test_a_lane_keeps_no_check_of_its_last_member() -> None:
 
 @pytest.mark.parametrize("extrapolated", [False, True])
 def test_a_coarse_run_goes_on_fine_as_if_put_on_its_orbit(extrapolated: bool) -> None:
-    """To the last bit: the same state, largest forces and check as from a fine run that the caller begins."""
+    """State, largest forces and last check agree to the last bit with those of a fine run that the caller starts."""
     chosen = scene("sec2").evolve(N=3, f=1100.0 if extrapolated else 400.0)
     scaled = scale_chain(chosen)
     start, fine = scaled.from_si(rest(chosen)), 3

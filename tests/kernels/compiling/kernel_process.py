@@ -1,4 +1,4 @@
-"""A small kernel in a process of its own, with a cache of its own."""
+"""Run a small kernel in a separate process, with its own cache."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from forked import python
 
 ROOT = Path(__file__).resolve().parents[3]
 
-#: Runs one small kernel, and prints where it is kept, whether its result is right, and how often Numba loaded it.
+#: Runs one small kernel and prints the cache folder, whether its result is right, and how often Numba loaded it.
 PROGRAM = """
 import json
 import numpy as np
@@ -21,7 +21,7 @@ reset_peaks(peaks)
 right = bool(peaks[0] == -np.inf and peaks[1] == 0.0)
 print(json.dumps({"folder": str(CACHE_FOLDER), "right": right, "loaded": sum(reset_peaks.stats.cache_hits.values())}))
 """
-#: Says which folder is chosen, and compiles nothing.
+#: Prints the cache folder and compiles nothing.
 FOLDER = """
 import json
 from granchain_core.kernels.compiling.cache_folder import CACHE_FOLDER
@@ -30,7 +30,7 @@ print(json.dumps({"folder": str(CACHE_FOLDER)}))
 
 
 def used(folder: Path, program: str = PROGRAM) -> tuple[dict, list[str]]:
-    """What a new process says of its kernel, and its lines on stderr."""
+    """Run a program in a new process. Return what it prints about its kernel, and its lines on stderr."""
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "GRANCHAIN_CACHE": str(folder)}
     done = python("-c", program, folder=ROOT, environment=environment)
     assert done.returncode == 0, done.stderr

@@ -1,4 +1,4 @@
-"""A kernel called by its address gives what a call by its name gives, and is compiled once for all its callers."""
+"""A kernel called by address gives the same result as a call by name, and is compiled once for all its callers."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from granchain_core.steady.regime_criteria import find_period
 
 
 class Numbers(NamedTuple):
-    """Arrays, as kernels take them."""
+    """Arrays in a tuple, the form in which kernels take them."""
 
     values: np.ndarray
     limits: np.ndarray
@@ -27,14 +27,14 @@ class Numbers(NamedTuple):
 
 @numba.njit
 def raise_value(numbers, i):
-    """Add the limit to a value; whether it is positive then."""
+    """Add the limit to a value and return whether the sum is positive."""
     numbers.values[i] += numbers.limits[i]
     return numbers.values[i] > 0.0
 
 
 @numba.njit
 def positive(numbers, kernel):
-    """How many are positive."""
+    """Call a kernel for every value and count how many are positive."""
     count = 0
     for i in range(numbers.values.size):
         if call_at(kernel, (numbers, i)):
@@ -50,7 +50,7 @@ def test_the_kernel_sees_its_arguments_and_its_answer_comes_back() -> None:
 
 
 def test_all_structures_share_the_checks_of_a_batch() -> None:
-    """Inlined, they would be compiled in every structure anew (docs/compiling.md)."""
+    """If they were inlined, they would be compiled again for every structure (docs/compiling.md)."""
     for shown in (scene("sec2"), scene("sec2").evolve(k=1e5), scene("sec2").evolve(dissipation="tsuji")):
         batch = Batch(shown, Stop())
         batch.put(0, batch.example, np.zeros(2 * (shown.N + 2)), 1, return_at=1)
@@ -62,7 +62,7 @@ def test_all_structures_share_the_checks_of_a_batch() -> None:
 
 @numba.njit(boundscheck=True)
 def reads_beyond(numbers, i):
-    """Read past the end of an array, with bounds checks as NUMBA_BOUNDSCHECK=1 asks for."""
+    """Read past the end of an array, with the bounds checks that NUMBA_BOUNDSCHECK=1 switches on."""
     return numbers.values[i] > 0.0
 
 
@@ -77,5 +77,5 @@ def test_an_error_of_the_kernel_that_is_called_is_raised() -> None:
 
 @numba.njit
 def past_the_end(numbers, kernel):
-    """Call a kernel for an element that is not there."""
+    """Call a kernel for an element that does not exist."""
     return call_at(kernel, (numbers, numbers.values.size + 1))

@@ -14,7 +14,7 @@ import granchain_core
 from granchain_core import scene
 from granchain_core.integrate import Engine, MethodSetting
 
-#: Kernels of a few seconds, which any engine needs, and those of the two methods of whole runs.
+#: Kernels that compile in a few seconds and that every engine needs, and those of whole runs with the two methods.
 PLACE, METHODS = "engine.evaluate()", "engine.periods(1); engine.record(2)"
 PROGRAM = """
 import json, sys
@@ -32,7 +32,9 @@ print(json.dumps([sum(sum(getattr(k.stats, name).values()) for k in kernels) for
 
 
 def hits_and_misses(cache: Path | None, tree: Path, does: str) -> tuple[int, int]:
-    """Numba's own count in a new process with the core in `tree`; `cache` is None for the folder that all tests use."""
+    """Return Numba's own counts from a new process with the core in `tree`. With `cache` None, it uses the cache folder
+    that all tests share.
+    """
     environment = {**os.environ, "PYTHONPATH": str(tree), **({} if cache is None else {"GRANCHAIN_CACHE": str(cache)})}
     done = python("-c", PROGRAM, does, folder=tree, environment=environment)
     assert done.returncode == 0, done.stderr
@@ -40,7 +42,7 @@ def hits_and_misses(cache: Path | None, tree: Path, does: str) -> tuple[int, int
     return hits, misses
 
 
-#: Notes that a piece is compiled, or asks whether it is, without compiling anything.
+#: Marks a piece as compiled, or asks whether it is, without compiling anything.
 MARK = """
 import sys
 from granchain_core import scene
@@ -53,16 +55,15 @@ print(warm.is_warm(scene("sec2"), [warm.FIXED_STEP_KERNELS]))
 
 
 def copied_core(tree: Path) -> Path:
-    """A copy of the core with its scenes, files with the same times, so that what Python has compiled holds for them.
-    """
+    """Copy the core and its scenes, keeping the files' times so that Python's own compiled files remain valid."""
     root = Path(granchain_core.__path__[0]).parent
     for name in ("granchain_core", "assets"):
-        shutil.copytree(root / name, tree / name, ignore=shutil.ignore_patterns("*.pyc.*"))  # another process's, unfinished
+        shutil.copytree(root / name, tree / name, ignore=shutil.ignore_patterns("*.pyc.*"))  # another process's unfinished files
     return tree
 
 
 def is_warm(tree: Path, cache: Path, word: str = "ask") -> bool:
-    """What a new process in a copy of the core says."""
+    """Ask a new process that uses a copy of the core whether the piece is compiled; `word` "compile" marks it first."""
     environment = {**os.environ, "PYTHONPATH": str(tree), "GRANCHAIN_CACHE": str(cache)}
     done = python("-c", MARK, word, folder=tree, environment=environment)
     assert done.returncode == 0, done.stderr
@@ -70,7 +71,7 @@ def is_warm(tree: Path, cache: Path, word: str = "ask") -> bool:
 
 
 def test_what_is_called_compiled_is_so_for_its_content_alone(tmp_path: Path) -> None:
-    """Another environment with the same sources, touched files or a new comment need no compiling; an edit does."""
+    """Nothing is recompiled for a copy with the same sources, touched files or a new comment, only for an edit."""
     tree, clone, cache = copied_core(tmp_path / "one"), copied_core(tmp_path / "two"), tmp_path / "cache"
     assert not is_warm(tree, cache)
     assert is_warm(tree, cache, "compile")
@@ -86,7 +87,7 @@ def test_what_is_called_compiled_is_so_for_its_content_alone(tmp_path: Path) -> 
 
 
 def touched(tree: Path) -> Path:
-    """A copy of the core whose kernels' files have other times."""
+    """Copy the core and change the times of the kernels' files."""
     for path in (copied_core(tree) / "granchain_core" / "kernels").rglob("*.py"):
         os.utime(path, ns=(0, 0))
     return tree
@@ -94,7 +95,7 @@ def touched(tree: Path) -> Path:
 
 @pytest.fixture(scope="module")
 def compiled(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
-    """A copy of the core and the cache that its first process has filled: with the entries and all they call."""
+    """A copy of the core, and the cache that its first process filled with the entries and everything they call."""
     folder = tmp_path_factory.mktemp("compiled")
     tree, cache = copied_core(folder / "one"), folder / "cache"
     assert hits_and_misses(cache, tree, PLACE)[1] >= 2
@@ -103,7 +104,7 @@ def compiled(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
 
 def test_second_process_compiles_nothing_nor_does_another_copy_of_the_sources(compiled: tuple[Path, Path],
                                                                               tmp_path: Path) -> None:
-    """Later ones load the entries from disk."""
+    """Later processes load the entries from disk."""
     tree, cache = compiled
     for there in (tree, touched(tmp_path / "two")):
         hits, misses = hits_and_misses(cache, there, PLACE)
@@ -112,7 +113,7 @@ def test_second_process_compiles_nothing_nor_does_another_copy_of_the_sources(co
 
 
 def reworded(tree: Path) -> Path:
-    """A copy of the core with a line more above each kernel, and with other docstrings."""
+    """Copy the core, and add a line above each kernel and change the docstrings."""
     for path in (copied_core(tree) / "granchain_core" / "kernels").rglob("*.py"):
         path.write_text("# A line more.\n" + path.read_text(encoding="utf-8").replace('"""', '"""Well: ', 1)
                         .replace("@kernel", "# Another.\n@kernel"), encoding="utf-8")
@@ -132,7 +133,8 @@ def test_other_words_compile_nothing_and_another_number_does(compiled: tuple[Pat
 
 
 def test_the_kernels_of_whole_runs_are_loaded_from_disk_too(tmp_path: Path) -> None:
-    """Where they have been compiled, by this process or before it; what Numba cannot keep would be compiled here again.
+    """This process compiles them first, unless they are in the cache already. Kernels that Numba could not keep on disk
+    would be compiled again in the second process.
     """
     for method in ("rk4", "dop853"):
         engine = Engine(scene("sec2").evolve(f=2000.0), MethodSetting(method, tolerance=1e-3), 2)

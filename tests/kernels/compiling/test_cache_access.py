@@ -1,4 +1,4 @@
-"""Who may read, write and run a cache of kernels: all may read ours, and what others may have written is not run."""
+"""Access to a kernel cache: everyone may read ours, and kernels that others may have written are not run."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from kernel_process import FOLDER, used
 
 from granchain_core.kernels.compiling import cache, cache_folder
 
-#: The hashes of the sources, which take a tenth of a second each and are the same in all tests here.
+#: The hashes of the sources take a tenth of a second each, and are the same in all tests here.
 _HASHES = {name: cache_once(getattr(cache_folder, name)) for name in ("sources_hash", "source_bytes_hash")}
 
 
@@ -24,7 +24,7 @@ def hashed_once(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def mode_with(umask: int, folder: Path) -> int:
-    """The rights of a file of the cache."""
+    """Return the permissions of a cache file that is written with this umask."""
     files, before = cache._Files(str(folder), "f", "stamp"), os.umask(umask)
     try:
         files.save("one", "code of one")
@@ -34,7 +34,7 @@ def mode_with(umask: int, folder: Path) -> int:
 
 
 def chosen_in(base: Path, monkeypatch: pytest.MonkeyPatch, writable: bool = True) -> Path | None:
-    """The folder of kernels where the user chose `base`; a path whose text is the reason, where it is not used."""
+    """Return the kernel folder for the user's choice `base`; if it is not used, a path whose text is the reason."""
     def denied(**_: Any) -> None:
         raise PermissionError(13, "Permission denied")
 
@@ -46,13 +46,13 @@ def chosen_in(base: Path, monkeypatch: pytest.MonkeyPatch, writable: bool = True
 
 
 def test_what_one_user_compiled_another_can_read(tmp_path: Path) -> None:
-    """An image is warmed by root and run by somebody else: files have the rights that the user's umask leaves."""
+    """Root may warm an image that somebody else runs: files get the permissions that the user's umask leaves."""
     assert mode_with(0o022, tmp_path) == 0o644
 
 
 @pytest.mark.parametrize(("umask", "rights"), [(0o002, 0o755), (0o000, 0o755), (0o077, 0o700)])
 def test_nobody_else_can_write_what_is_compiled_whatever_the_umask_leaves(umask: int, rights: int, tmp_path: Path) -> None:
-    """Neither the folder, nor those in it, nor the files."""
+    """This is true of the folder, the folders in it, and the files."""
     assert mode_with(umask, tmp_path) == rights & 0o666
     before = os.umask(umask)
     try:
@@ -68,7 +68,7 @@ def test_nobody_else_can_write_what_is_compiled_whatever_the_umask_leaves(umask:
 
 @pytest.fixture
 def denied(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A chosen folder that cannot be made, for root as well: its parent is a file."""
+    """A chosen folder that not even root can create, because its parent is a file."""
     (tmp_path / "file").write_text("")
     (tmp_path / "tmp").mkdir()
     monkeypatch.setenv("TMPDIR", str(tmp_path / "tmp"))
@@ -99,7 +99,7 @@ def test_a_temporary_folder_that_may_be_anothers_is_not_used(planted: str, denie
         {"open to all": ours, "readable by all": ours, "open inside": inside}[planted].chmod(
             0o755 if planted == "readable by all" else 0o777)
     monkeypatch.setenv("GRANCHAIN_CACHE", str(denied))
-    monkeypatch.setattr(tempfile, "tempdir", None)  # Python remembers where it was
+    monkeypatch.setattr(tempfile, "tempdir", None)  # Python caches the temporary folder
     said: list[str] = []
     monkeypatch.setattr(cache_folder, "warn_once", said.append)
     assert cache_folder.cache_folder() is None
@@ -122,7 +122,7 @@ def test_a_temporary_folder_of_another_owner_is_not_used(denied: Path, tmp_path:
 @pytest.mark.parametrize("whose", ["ours", "anybody may write", "the group may write", "another user's"])
 def test_kernels_in_a_folder_are_run_if_nobody_else_can_have_written_them(
         whose: str, writable: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Its files are unpickled; a checksum in a file says nothing of who has written it."""
+    """The files are unpickled, and a checksum in a file says nothing about who wrote it."""
     if whose == "another user's" and os.getuid() != 0:
         pytest.skip("only root can give a folder away")
 
@@ -141,7 +141,7 @@ def test_kernels_in_a_folder_are_run_if_nobody_else_can_have_written_them(
                          ids=oct)
 def test_kernels_are_run_if_nobody_else_can_put_another_folder_in_their_place(
         rights: int, safe: bool, writable: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Whoever may write to the folder around them could rename them after they were looked at."""
+    """Anyone who may write to the enclosing folder could rename them after they were checked."""
     base = tmp_path / "base"
     folder = base / f"kernels-{cache_folder.sources_hash()}"
     folder.mkdir(parents=True)
@@ -156,7 +156,7 @@ def test_kernels_are_run_if_nobody_else_can_put_another_folder_in_their_place(
 @pytest.mark.parametrize("writable", [True, False], ids=["writable", "read-only"])
 def test_a_link_in_place_of_a_folder_of_kernels_is_not_followed(
         writable: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """In a sticky folder another user may have made it, and let it point elsewhere after it was looked at."""
+    """In a sticky folder, another user may have made the link, and could redirect it after it was checked."""
     base, own = tmp_path / "base", tmp_path / "own"
     for folder in (base, own):
         folder.mkdir(mode=0o755)
@@ -173,7 +173,7 @@ def test_a_link_in_place_of_a_folder_of_kernels_is_not_followed(
 @pytest.mark.parametrize("place", ["the folder itself", "a folder above it"])
 def test_a_link_in_place_of_the_chosen_folder_is_followed_once(place: str, tmp_path: Path,
                                                                monkeypatch: pytest.MonkeyPatch) -> None:
-    """Whoever made it in a sticky folder may let it point elsewhere later, when the files are read."""
+    """A user who made the link in a sticky folder could redirect it later, when the files are read."""
     shared, own = tmp_path / "shared", tmp_path / "own"
     for folder in (shared, own, own / "inside"):
         folder.mkdir(mode=0o755)
@@ -189,7 +189,7 @@ def test_a_link_in_place_of_the_chosen_folder_is_followed_once(place: str, tmp_p
 @pytest.mark.parametrize(("rights", "safe"), [(0o755, True), (0o777, False), (0o775, False), (0o1777, True)], ids=oct)
 def test_nobody_else_can_rename_a_folder_above_the_chosen_one(
         rights: int, safe: bool, writable: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Then another could be put in its place, with another cache in it."""
+    """If it could be renamed, another folder with another cache could be put in its place."""
     above = tmp_path / "above"
     base = above / "between" / "base"
     folder = base / f"kernels-{cache_folder.sources_hash()}"
@@ -212,7 +212,7 @@ def test_a_folder_above_the_chosen_one_is_not_another_users(tmp_path: Path, monk
 
 
 def test_the_users_own_cache_is_closed_to_others(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """It is granchain's alone, and earlier versions made it with the rights that a umask of 002 leaves to the group."""
+    """It belongs to granchain alone. Earlier versions created it group-writable under a umask of 002."""
     base = tmp_path / "granchain"
     base.mkdir()
     base.chmod(0o775)
@@ -224,7 +224,7 @@ def test_the_users_own_cache_is_closed_to_others(tmp_path: Path, monkeypatch: py
 
 @pytest.mark.skipif(os.getuid() != 0, reason="only root can give a folder away")
 def test_kernels_in_a_folder_of_another_owner_are_not_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The owner may rename what is in it whatever its rights are."""
+    """The owner may rename everything in the folder, whatever its permissions."""
     base = tmp_path / "base"
     base.mkdir()
     os.chown(base, 12345, 12345)

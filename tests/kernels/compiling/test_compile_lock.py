@@ -1,4 +1,6 @@
-"""One process compiles a kernel and the others load it; nobody waits for ever, and nobody is needed to unlock."""
+"""One process compiles a kernel and the others load it. No process waits forever, and no lock has to be removed by
+hand.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +19,7 @@ from numba.core.errors import TypingError
 from granchain_core.kernels.compiling import cache, compile_lock
 from granchain_core.kernels.compiling.compile_lock import CompileLock
 
-#: Compiles one small kernel and prints from where it came: numbers loaded, and compiled.
+#: Obtains one small kernel and prints how many versions were loaded and how many compiled.
 _COMPILE = """
 import numpy as np
 from granchain_core.kernels.forces.peaks import reset_peaks
@@ -40,7 +42,7 @@ def test_who_waits_gets_the_lock_next_and_who_has_no_patience_goes_without(tmp_p
     assert first.held
     waiting = threading.Thread(target=second.acquire)
     waiting.start()
-    third.acquire(patience=0.2)  # patience ends; it compiles by itself
+    third.acquire(patience=0.2)  # gives up waiting; it would compile without the lock
     assert not third.held and not second.held
     first.release()
     waiting.join(60.0)
@@ -64,7 +66,7 @@ def test_an_interrupted_wait_leaves_no_file_open(tmp_path: Path, monkeypatch: py
 
 @pytest.fixture
 def locks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[], list[CompileLock]]:
-    """A cache in an empty folder; the locks that are held there."""
+    """A cache in an empty folder; returns a function that lists the locks held in it."""
     made: list[CompileLock] = []
 
     def lock(path: Path) -> CompileLock:
@@ -77,7 +79,7 @@ def locks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[], list[
 
 
 def test_a_compilation_that_fails_releases_its_lock(locks: Callable[[], list[CompileLock]]) -> None:
-    """The next attempt fails as soon as the first: it does not wait for a lock of its own process."""
+    """The next attempt fails as quickly as the first, since it does not wait for a lock of its own process."""
     @numba.njit
     def unknown(x):
         return x.unknown
@@ -100,7 +102,7 @@ def test_an_interrupted_compilation_releases_its_lock(where: str, locks: Callabl
 
     def interrupted(*words: object) -> None:
         held.append(len(locks()))
-        if where != "look" or held[-1]:  # the second look, with the lock
+        if where != "look" or held[-1]:  # the second lookup, with the lock held
             raise KeyboardInterrupt
 
     cache.keep_on_disk(twice)
@@ -114,7 +116,7 @@ def test_an_interrupted_compilation_releases_its_lock(where: str, locks: Callabl
 
 def test_a_kernel_that_another_process_has_just_compiled_is_not_compiled_again(
         locks: Callable[[], list[CompileLock]], monkeypatch: pytest.MonkeyPatch) -> None:
-    """Between the first look and the lock, for which there is no wait then."""
+    """The other process finishes between the first lookup and the lock, which is then free at once."""
     def twice(x):
         return 2 * x
 
@@ -153,7 +155,7 @@ def test_a_process_that_is_killed_locks_nobody_out(tmp_path: Path) -> None:
 
 def test_where_there_are_no_locks_everyone_compiles(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "file").write_text("")
-    lock = CompileLock(tmp_path / "file" / "f.nbc")  # no folder can be made there
+    lock = CompileLock(tmp_path / "file" / "f.nbc")  # no folder can be created there
     lock.acquire()
     assert not lock.held
     monkeypatch.setattr(compile_lock, "fcntl", None)

@@ -1,4 +1,4 @@
-"""A cache of kernels that is damaged, full or of other versions costs time and one line, nothing else."""
+"""A kernel cache that is damaged, full or of another version costs time and one line of output, nothing else."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ from numba.core.dispatcher import Dispatcher
 
 from granchain_core.kernels.compiling import cache, cache_folder
 
-#: A full disk, which only root could make, is imitated by a limit of 0 bytes on files: writing raises `OSError` as
-#: well.
+#: A full disk, which only root could set up, is imitated by a file size limit of 0 bytes: writing raises `OSError`, as
+#: it does on a full disk.
 _FULL = "import resource, signal\nsignal.signal(signal.SIGXFSZ, signal.SIG_IGN)\nresource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))\n"
 
 
 @pytest.fixture(scope="module")
 def filled(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A cache that holds the kernel."""
+    """A cache that contains the kernel."""
     folder = tmp_path_factory.mktemp("filled")
     answer, messages = used(folder)
     assert answer["right"] and answer["loaded"] == 0 and messages == []
@@ -38,7 +38,7 @@ def filled(tmp_path_factory: pytest.TempPathFactory) -> Path:
                                      "serialize.dumps"])
 def test_with_another_numba_kernels_are_compiled_for_the_process_and_one_line_says_so(private: str, tmp_path: Path) -> None:
     lacking = "import sys, types, numba\nfrom numba.core import caching, runtime, serialize\n"
-    if private == "serialize.dumps":  # Numba itself calls it, so it is missing only where it is imported from now on
+    if private == "serialize.dumps":  # Numba itself calls it, so only later imports must miss it
         lacking += ("sys.modules[serialize.__name__] = another = types.ModuleType('another')\n"
                     "vars(another).update(vars(serialize)); ")
         private = "another.dumps"
@@ -48,7 +48,7 @@ def test_with_another_numba_kernels_are_compiled_for_the_process_and_one_line_sa
     assert len(messages) == 1 and private.split(".")[-1].lstrip("_") in messages[0] and "this process only" in messages[0]
 
 
-#: The private names in the row of docs/compiling.md, by the classes whose instances have them.
+#: The private names in the row of docs/compiling.md, with the class whose instances have each.
 OWNERS = {"_load_overload": caching.Cache, "_index_key": caching.Cache, "_guard_against_spurious_io_errors": caching.Cache,
           "_impl_class": caching.FunctionCache, "_impl": caching.Cache, "_cache_file": caching.Cache,
           "_locator_classes": caching.CacheImpl, "_cache_path": caching.UserProvidedCacheLocator,
@@ -56,7 +56,7 @@ OWNERS = {"_load_overload": caching.Cache, "_index_key": caching.Cache, "_guard_
 
 
 def take_away(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let a class of Numba's, or its instances once they are made, lack an attribute."""
+    """Remove an attribute from a Numba class, or from its instances once they are created."""
     owner = OWNERS[name]
     if name == "_cache":  # which Numba's own dispatcher needs
         hide(monkeypatch, cache, owner, name)
@@ -77,7 +77,7 @@ def take_away(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize("name", ["", *OWNERS])
 def test_without_any_of_numbas_private_names_nothing_is_kept(name: str, monkeypatch: pytest.MonkeyPatch,
                                                              caplog: pytest.LogCaptureFixture) -> None:
-    """With all of them (the empty name) the compiled code is kept."""
+    """With all of them (the empty name), the compiled code is kept."""
     @numba.njit
     def twice(x):
         return 2 * x
@@ -120,7 +120,7 @@ def test_a_damaged_kernel_is_dropped_said_in_one_line_and_compiled_again(damage,
     assert answer["right"] and answer["loaded"] == 0
     assert len(messages) == 1 and "Damaged kernels" in messages[0] and "compiled again" in messages[0]
     assert cache.read_verified(file) == file.read_bytes()[32:] and len(file.read_bytes()) > len(whole) // 2
-    assert not mark.exists(), "a server would compile in its own process what is marked as compiled"
+    assert not mark.exists(), "a server would compile kernels that are marked as compiled in its own process"
 
 
 def test_a_whole_kernel_is_loaded(filled: Path) -> None:
@@ -130,7 +130,7 @@ def test_a_whole_kernel_is_loaded(filled: Path) -> None:
 
 def test_a_full_disk_is_said_once_and_the_kernel_runs(filled: Path, tmp_path: Path) -> None:
     answer, messages = used(filled, _FULL + PROGRAM)
-    assert answer["right"] and answer["loaded"] == 1 and messages == []  # what is there is used
+    assert answer["right"] and answer["loaded"] == 1 and messages == []  # kernels already on disk are used
     answer, messages = used(tmp_path, _FULL + PROGRAM)
     assert answer["right"] and not list(tmp_path.rglob("*.nbc"))
     assert len(messages) == 1 and "cannot be kept" in messages[0] and "File too large" in messages[0]
@@ -161,7 +161,7 @@ def test_a_file_that_holds_another_version_is_not_believed(tmp_path: Path) -> No
 
 
 def test_processes_that_compile_at_once_lose_nothing_of_each_other(tmp_path: Path) -> None:
-    """Two find an entry missing and write it, one after the other: every entry is there, and no other file."""
+    """Two processes miss an entry and write theirs one after the other: all entries are kept, and no other file."""
     one, other = (cache._Files(str(tmp_path), "f", "stamp") for _ in range(2))
     assert one.load("a") is None and other.load("b") is None
     one.save("a", 1)

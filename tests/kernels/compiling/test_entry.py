@@ -1,4 +1,4 @@
-"""Kernels that are called past Numba's dispatcher get arguments of the types they were compiled for."""
+"""Kernels that are called without Numba's dispatcher get arguments of the types they were compiled for."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from granchain_core.kernels.compiling import entry
 from granchain_core.kernels.samples import first_not_finite
 from granchain_core.scene.state import State
 
-#: Chains of one vector and of blocks, and effects in every slot.
+#: Chains in one vector and in blocks, with an effect in every slot.
 CHAINS = [{}, {"N": 2}, {"N": 40}, {"dissipation": "none"}, {"dissipation": "tsuji", "tension": "cut"},
           {"kappa": 0.5, "F0": 1.0}]
 
 
 @pytest.fixture(autouse=True)
 def checked(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """Compare the types at every call."""
+    """Compare argument types at every call."""
     monkeypatch.setattr(entry, "CHECK_TYPES", True)
     yield
 
@@ -53,7 +53,7 @@ def test_every_kind_of_chain(changes: dict) -> None:
 
 
 def test_a_workspace_of_another_type_has_a_specialization_of_its_own() -> None:
-    """Tests take its vectors away from a stepper that has run with them."""
+    """Tests may remove the vectors of a stepper that has already run with them."""
     engine = Engine(scene("sec2"), MethodSetting(RK4_SPLIT), 4)
     engine.record(2)
     engine.stepper.work = engine.stepper.work._replace(simd=None)
@@ -78,7 +78,7 @@ def test_a_batch_compares_the_types_of_the_kernel_that_it_calls_by_address() -> 
     batch = Batch(shown, Stop())
     batch.put(0, batch.example, np.zeros(2 * (shown.N + 2)), 1, return_at=1)
     assert batch.run() == (0, True)
-    batch._run = lambda *arguments: (0, 0)  # alone it would notice the type as well
+    batch._run = lambda *arguments: (0, 0)  # on its own it would notice the type as well
     work = batch.state.work
     batch.state = batch.state._replace(work=work._replace(limit=work.limit.astype(np.float32)))
     with pytest.raises(TypeError, match="begin_or_check_member is called with"):

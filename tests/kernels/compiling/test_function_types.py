@@ -1,4 +1,5 @@
-"""A function that kernels call is compiled once for the types of its arguments, whoever calls it and with what numbers.
+"""A function that kernels call is compiled once per set of argument types, whatever its callers and the numbers in the
+calls.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ class Spring(NamedTuple):
 
 
 def parts() -> tuple[Any, Any]:
-    """A compiled function of an index, and one that is chosen by a slot."""
+    """Return a compiled function of an index, and one that is selected by a slot."""
 
     @Internal
     @numba.njit

@@ -1,4 +1,4 @@
-"""Parts of kernels are linked into their callers and are not translated by themselves; without that all still works."""
+"""Parts of kernels are linked into their callers and not translated separately; everything works without this, too."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from granchain_core.kernels.compiling import link_only
 from granchain_core.kernels.compiling.jit import Internal
 from granchain_core.kernels.compiling.link_only import compiler_options
 
-#: What Numba keeps of a compiled function.
+#: The code library that Numba keeps of a compiled function.
 code_of = attrgetter("library")
 
 
 class AnotherLibrary:
-    """A class of Numba's for compiled code that lacks what link_only.py uses."""
+    """A class for compiled code, as in another Numba, without the attributes that link_only.py uses."""
 
 
 #: The private names in the rows of docs/compiling.md.
@@ -28,7 +28,7 @@ NAMES = re.findall(r"`(_\w+)`", " ".join(re.findall(r"^\| ([^|]+) \| `kernels/co
 
 
 def sum_of_squares(options: dict[str, Any]) -> tuple[Any, Any]:
-    """A kernel, and the part of it that is compiled with these options."""
+    """Return a kernel, and the part of it that is compiled with these options."""
 
     @Internal
     @numba.njit(error_model="numpy", **options)
@@ -47,11 +47,11 @@ def test_a_kernel_is_right_with_parts_of_either_kind(options: dict[str, Any]) ->
     kernel, square = sum_of_squares(options)
     assert kernel(3.0, 4.0) == 25.0
     assert kernel(3, 4) == 25
-    assert square(5.0) == 25.0, "called from Python it runs uncompiled"
+    assert square(5.0) == 25.0, "called from Python, it runs uncompiled"
 
 
 def test_only_the_kernel_is_translated() -> None:
-    assert "pipeline_class" in compiler_options(), "this version of Numba has not what link_only.py uses"
+    assert "pipeline_class" in compiler_options(), "this version of Numba lacks attributes that link_only.py uses"
     kernel, square = sum_of_squares(compiler_options())
     kernel(3.0, 4.0)
     (whole,), (part,) = kernel.overloads.values(), square.dispatcher.overloads.values()

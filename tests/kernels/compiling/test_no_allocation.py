@@ -1,4 +1,4 @@
-"""A kernel that would allocate memory, itself or in a function that it calls, is refused while it is compiled."""
+"""A kernel that would allocate memory, itself or in a function it calls, is refused at compile time."""
 
 from __future__ import annotations
 
@@ -13,22 +13,22 @@ from granchain_core.kernels.compiling.jit import brief_kernel, inline_numba, int
 
 
 def new_array(values):
-    """An array of numbers."""
+    """Allocate an array of numbers."""
     return np.empty(values.size)[0]
 
 
 def copied(values):
-    """A copy."""
+    """Allocate a copy."""
     return values.copy()[0]
 
 
 def temporary(values):
-    """An array between two operations."""
+    """Allocate a temporary array between two operations."""
     return (2.0 * values + 1.0)[0]
 
 
 def new_list(values):
-    """A list."""
+    """Allocate a list."""
     return [values[0]][0]
 
 

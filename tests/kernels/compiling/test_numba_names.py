@@ -1,4 +1,4 @@
-"""The table of docs/compiling.md: the installed Numba has every name in it, and the kernels use it."""
+"""The installed Numba has every name in the table of docs/compiling.md, and the kernels use each one."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _PART = _PAGE.partition("\n## Undocumented names of Numba\n")[2].partition("\n##
 
 
 def rows() -> dict[str, list[Internal]]:
-    """The owners of names and their names, by the file of the core that uses them."""
+    """Read the table: owners and their names, by the file of the core that uses them."""
     found: dict[str, list[Internal]] = {}
     for what, where, without in re.findall(r"^\| (`numba[^|]+) \| `([\w/.]+)` \| ([^|]+) \|$", _PART, re.MULTILINE):
         for part in what.split("<br>"):
@@ -45,14 +45,14 @@ def test_a_file_uses_the_names_of_its_rows(file: str) -> None:
 
 
 def test_modules_of_numba_beyond_its_documentation_are_in_the_table() -> None:
-    """`numba.core` is no public module; of it only events are documented."""
+    """`numba.core` is not a public module; only its events are documented."""
     imported = {path.relative_to(_CORE).as_posix(): text for path in _CORE.rglob("*.py")
                 if re.search(r"^ *from numba\.core\b(?! import event$)", text := path.read_text("utf-8"), re.MULTILINE)}
     assert set(imported) <= set(ROWS)
 
 
 def test_the_table_of_llvm_has_what_kernels_ask_of_it() -> None:
-    """The intrinsics by name; a width and the name of an instruction stand in braces there as in the source."""
+    """Intrinsics are listed by name, with widths and instruction names in braces as in the source."""
     used = {(name, path.relative_to(_CORE).as_posix()) for path in (_CORE / "kernels").rglob("*.py")
             for name in re.findall(r'f?"(llvm\.[\w.{}]+)"', path.read_text("utf-8"))}
     listed = set(re.findall(r"^\| `(llvm\.[\w.{}]+)` \| [^|]+ \| `([\w/.]+)` \|", _PART, re.MULTILINE))

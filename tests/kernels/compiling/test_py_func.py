@@ -1,4 +1,4 @@
-"""What docs/compiling.md says of functions that a debugger steps through."""
+"""Functions run uncompiled, for a debugger, as docs/compiling.md says."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def test_the_example_runs_uncompiled_and_gives_the_same_motion(monkeypatch: pyte
     monkeypatch.undo()
     compiled = Engine(scene("sec2"), MethodSetting("rk4-split"), 8)
     compiled.record(1)
-    # vectors sum in another order
+    # vectors add in a different order
     np.testing.assert_allclose(names["engine"].y, compiled.y, rtol=0, atol=1e-12 * np.abs(compiled.y).max())
     assert np.abs(compiled.y).max() > 0.0
 

@@ -1,4 +1,5 @@
-"""What of the kernels' sources names their compiled code: all that can change an instruction, nothing else."""
+"""The hash that names compiled code covers everything in the sources that can change an instruction, and nothing else.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +26,7 @@ def force(x, power=1.5):
 
 
 def hashed(folder: Path, text: str) -> str:
-    """The hash of a folder of kernels that has one file."""
+    """Return the hash of a kernel folder that contains one file."""
     folder.mkdir(exist_ok=True)
     (folder / "force.py").write_text(text, encoding="utf-8")
     return sources.sources_hash(folder)
@@ -88,14 +89,14 @@ def test_another_optimisation_level_changes_the_hash(level: int | str, tmp_path:
 
 @pytest.mark.parametrize("name", ["BOUNDSCHECK", "DEBUGINFO_DEFAULT", "SLP_VECTORIZE", "LOOP_VECTORIZE", "ENABLE_AVX"])
 def test_a_setting_that_changes_the_code_changes_the_hash(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """With a cache filled without bounds checks, NUMBA_BOUNDSCHECK=1 would find no error."""
+    """Otherwise NUMBA_BOUNDSCHECK=1 would find no error with a cache that was filled without bounds checks."""
     before = hashed(tmp_path, SOURCE), sources.source_bytes_hash(tmp_path)
     monkeypatch.setattr(sources.numba.config, name, not getattr(sources.numba.config, name))
     assert sources.sources_hash(tmp_path) != before[0] and sources.source_bytes_hash(tmp_path) != before[1]
 
 
 def made(body: str):
-    """The function `f` of a source."""
+    """Return the function `f` that a source defines."""
     names: dict = {}
     exec(body, names)
     return names["f"]

@@ -1,5 +1,5 @@
-"""The coefficients of DOP853 satisfy the sums that make it what it is: order 8, errors of order 5 and 3, and a dense
-output of order 7.
+"""The coefficients of DOP853 satisfy its order conditions: a step of order 8, error estimates of orders 5 and 3, and a
+dense output of order 7.
 """
 
 from __future__ import annotations
@@ -16,34 +16,34 @@ import pytest
 from granchain_core.kernels.dop853.step import dense_coefficients, interpolant
 from granchain_core.kernels.dop853.tableau import ALL_STAGES, E3, E5, STAGES, A, C
 
-#: The coefficients are rounded to 16 digits: 16 terms of order ten, each off by 1.1e-15, sum to within 2e-14.
+#: The coefficients are rounded to 16 digits: 16 terms of about ten, each off by 1.1e-15, add up to within 2e-14.
 ROUNDING = 2e-14
 B = A[STAGES]
 
 
 def test_each_stage_is_taken_at_the_time_its_row_sums_to():
-    """Σ_j a_ij = c_i for all stages, those of the dense output included."""
+    """Σ_j a_ij = c_i for all stages, including those of the dense output."""
     np.testing.assert_allclose(A.sum(axis=1), C, atol=ROUNDING)
 
 
 def test_method_is_explicit():
-    """No stage needs a later one."""
+    """No stage depends on itself or a later one."""
     assert A.shape == (ALL_STAGES, ALL_STAGES)
     assert not np.triu(A).any()
 
 
-#: A rooted tree: the trees that hang on its root.
+#: A rooted tree, given as the subtrees attached to its root.
 Tree = tuple["Tree", ...]
 
 
 @functools.cache
 def trees(order: int) -> list[Tree]:
-    """All rooted trees with this many nodes."""
+    """Return all rooted trees with this many nodes."""
     return list(_forests(order - 1, order - 1))
 
 
 def _forests(nodes: int, largest: int) -> Iterator[Tree]:
-    """All sets of trees with this many nodes together, none of which has more than `largest`."""
+    """Yield all multisets of trees with this many nodes in total and at most `largest` nodes per tree."""
     if nodes == 0:
         yield ()
     for order in range(min(nodes, largest), 0, -1):
@@ -54,17 +54,17 @@ def _forests(nodes: int, largest: int) -> Iterator[Tree]:
 
 
 def size(tree: Tree) -> int:
-    """Its number of nodes."""
+    """Return the number of nodes."""
     return 1 + sum(map(size, tree))
 
 
 def density(tree: Tree) -> int:
-    """γ: the number of its nodes times the densities of the trees on its root."""
+    """Return γ, the number of nodes times the densities of the subtrees at the root."""
     return size(tree) * math.prod(map(density, tree))
 
 
 def stage_sums(tree: Tree) -> np.ndarray:
-    """Φ_i, for each stage: the product over the trees on the root of Σ_j a_ij Φ_j."""
+    """Return Φ_i for each stage: the product of Σ_j a_ij Φ_j over the subtrees at the root."""
     found = np.ones(ALL_STAGES)
     for branch in tree:
         found = found * (A @ stage_sums(branch))
@@ -72,7 +72,7 @@ def stage_sums(tree: Tree) -> np.ndarray:
 
 
 def test_there_are_as_many_trees_as_there_should_be():
-    """Hairer, Nørsett & Wanner, table II.2.3."""
+    """The numbers are those of Hairer, Nørsett & Wanner, table II.2.3."""
     assert [len(set(trees(order))) for order in range(1, 10)] == [1, 1, 2, 4, 9, 20, 48, 115, 286]
 
 
@@ -84,14 +84,14 @@ def test_step_satisfies_every_condition_of_order_8(order):
 
 
 def test_step_is_not_of_order_9():
-    """Conditions of the next order fail, that of quadrature among them: order 8 is no accident of weak tests."""
+    """Conditions of order 9 fail, including the one for quadrature, so the tests of order 8 are not too weak."""
     failed = [tree for tree in trees(9) if abs(B @ stage_sums(tree) - 1.0 / density(tree)) > 1e-7]
     assert ((),) * 8 in failed and len(failed) > 50
 
 
 @pytest.mark.parametrize(("estimate", "order"), [(E5, 5), (E3, 3)])
 def test_error_estimates_vanish_for_what_their_orders_integrate(estimate, order):
-    """Σ e_i Φ_i(t) = 0 for all trees with up to 5 nodes (fifth order) or 3 (third order), and not for all of the next.
+    """Σ e_i Φ_i(t) = 0 for all trees with up to 5 nodes (order 5) or 3 (order 3), but not for all trees with one more.
     """
     sums = [[abs(estimate @ stage_sums(tree)[: len(estimate)]) for tree in trees(nodes)] for nodes in range(1, order + 2)]
     assert max(max(row) for row in sums[:-1]) < ROUNDING
@@ -99,7 +99,7 @@ def test_error_estimates_vanish_for_what_their_orders_integrate(estimate, order)
 
 
 def dense_weights(x: float) -> np.ndarray:
-    """Weights b_i(θ) of the stages in the dense output at fraction θ = x of a step, from the kernel's own code."""
+    """Return the stages' weights b_i(θ) in the dense output at fraction θ = x of a step, from the kernel's own code."""
     step = SimpleNamespace(k=np.eye(ALL_STAGES), end=B, dense=np.zeros((7, ALL_STAGES)))
     dense_coefficients.py_func(1.0, np.zeros(ALL_STAGES), step)
     return interpolant.py_func(np.zeros(ALL_STAGES), step.dense, x)
@@ -107,7 +107,7 @@ def dense_weights(x: float) -> np.ndarray:
 
 @pytest.mark.parametrize("x", [0.05, 0.5, 0.9])
 def test_dense_output_satisfies_every_condition_of_order_7(x):
-    """Σ b_i(θ) Φ_i(t) = θ^|t|/γ(t) for all trees with up to 7 nodes, and not for all with 8 (section II.6 there)."""
+    """Σ b_i(θ) Φ_i(t) = θ^|t|/γ(t) for all trees with up to 7 nodes, but not for all with 8 (section II.6 there)."""
     def misses(order: int) -> float:
         return max(abs(dense_weights(x) @ stage_sums(tree) - x**order / density(tree)) for tree in trees(order))
 

@@ -1,4 +1,4 @@
-"""Events on the dense output of a step of dop853-root, for distances that are known in closed form."""
+"""Events on the dense output of a dop853-root step, for distances with a closed form."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from granchain_core.kernels.dop853_root.inside import change_before
 
 
 def parabola(start: float, root: float) -> np.ndarray:
-    """Rows of the dense output of start + x (x − root), and its value at the start."""
+    """Return the dense output's rows for the distance start + x (x − root), and its value at the start."""
     p = np.zeros(8)
     p[0], p[1], p[7] = 1.0 - root, -1.0, start
     return p
@@ -17,9 +17,10 @@ def parabola(start: float, root: float) -> np.ndarray:
 
 @pytest.mark.parametrize("start", [-1e-17, 0.0, 1e-17, -1e-9])
 def test_a_distance_that_falls_from_an_event_becomes_positive_after_its_minimum(start: float) -> None:
-    """Where a contact has just opened or closed the distance is rounding, of either sign, and no event.
+    """Where a contact has just opened or closed, the distance is a rounding error of either sign, and not an event.
 
-    Taken for one, it is found again at the same place for ever: rig at 60 Hz, tolerance 5.6e-7, after 10.75 periods.
+    If it counted as one, it would be found again at the same place forever, as in the scene rig at 60 Hz with a
+    tolerance of 5.6e-7 after 10.75 periods.
     """
     assert change_before.py_func(parabola(start, 0.4), True, 1.0) == pytest.approx(0.4, abs=1e-8)
 

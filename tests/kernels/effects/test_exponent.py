@@ -1,4 +1,4 @@
-"""The kernels' law of a contact has the exponent from which all outside the kernels follows."""
+"""The kernels' contact law has the exponent on which everything outside the kernels relies."""
 
 from __future__ import annotations
 

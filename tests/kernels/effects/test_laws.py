@@ -1,4 +1,5 @@
-"""A damping law is its exponent and its power: what is made of them, and that a law or effect that lacks one says so.
+"""A damping law is defined by its exponent and its power: the terms that follow from them, and the errors for a law or
+effect with a missing term.
 """
 
 from __future__ import annotations
@@ -23,28 +24,28 @@ TABLE = [(name, law.slot, law.exponent) for name, law in LAWS.items()]
 
 
 class Unfinished(NamedTuple):
-    """A law that says nothing of itself."""
+    """A law without an exponent and without a power."""
 
     coefficient: float
 
 
 @numba.njit(error_model="numpy")
 def terms(law, d):  # type: ignore[no-untyped-def]
-    """g, g', G and G/c."""
+    """Return g, g', G and G/c."""
     return loss.damping(law, d), loss.damping_slope(law, d), loss.primitive(law, d), loss.unit_primitive(law, d, d**0.5)
 
 
 @pytest.mark.parametrize("d", [0.2, 1.0, 3.0])
 @pytest.mark.parametrize(("name", "slot", "a"), TABLE)
 def test_a_law_has_the_terms_of_its_exponent(name: str, slot: type, a: float, d: float) -> None:
-    """g = c δ^a, g' = a c δ^{a−1}, G = c δ^{1+a}/(1 + a), compiled."""
+    """Compiled, g = c δ^a, g' = a c δ^{a−1} and G = c δ^{1+a}/(1 + a)."""
     primitive = d ** (1.0 + a) / (1.0 + a)
     assert terms(slot(0.3), d) == pytest.approx((0.3 * d**a, 0.3 * a * d ** (a - 1.0), 0.3 * primitive, primitive), rel=1e-14)
 
 
 @pytest.mark.parametrize("name", LAWS)
 def test_independent_computations_have_the_exponent_of_every_law(name: str) -> None:
-    """Theirs are written by hand."""
+    """Their exponents are written by hand."""
     assert name in EXPONENT, f"add {name} to EXPONENT of tools/fuzzing/laws.py"
     assert EXPONENT[name] == LAWS[name].exponent
 
@@ -109,7 +110,7 @@ def test_a_slot_without_code_is_named_in_python_and_by_the_compiler() -> None:
 def test_what_is_never_absent_has_no_code_for_none() -> None:
     @by_type
     def width_of(vector):  # type: ignore[no-untyped-def]
-        """How many numbers it holds."""
+        """Return how many numbers a vector contains."""
 
     width_of.of(Unfinished)(lambda vector: 8)
     compiled = numba.njit(lambda vector: width_of(vector))
@@ -119,7 +120,7 @@ def test_what_is_never_absent_has_no_code_for_none() -> None:
 
 
 class Half(NamedTuple):
-    """An effect of this file with one of two terms."""
+    """An effect of this file, with one of its two terms missing at first."""
 
     value: float
 

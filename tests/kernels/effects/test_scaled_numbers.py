@@ -1,4 +1,4 @@
-"""Numbers in SI become scaled numbers: beads that are not alike, damping at other amplitudes."""
+"""Conversion from SI units to scaled units, for unequal beads and for damping at other drive amplitudes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,8 @@ from granchain_core.scene import Bead
 
 
 def dimer(law: str) -> Scene:
-    """Six beads on a foundation, precompressed: steel and something light by turns, bead 3 heavy and soft."""
+    """Return six precompressed beads on a foundation: alternately steel and a lighter bead, with bead 3 heavy and soft.
+    """
     base = scene("sec2").evolve(N=6, kappa=0.002, F0=3.0, wall="rigid", f=400.0, dissipation=law)
     steel = base.bead(1)
     light = Bead(0.3 * steel.mass, 1.4 * steel.radius, 0.5 * steel.young, 0.2)
@@ -25,7 +26,7 @@ def dimer(law: str) -> Scene:
 
 
 def stiffness(a: Bead, b: Bead) -> float:
-    """(4/3) E* √R* of two spheres."""
+    """Return (4/3) E* √R* of two spheres."""
     modulus = 1.0 / ((1.0 - a.poisson**2) / a.young + (1.0 - b.poisson**2) / b.young)
     return 4.0 / 3.0 * modulus * math.sqrt(a.radius * b.radius / (a.radius + b.radius))
 
@@ -33,7 +34,8 @@ def stiffness(a: Bead, b: Bead) -> float:
 @pytest.mark.parametrize("seed", range(5))
 @pytest.mark.parametrize("law", ["none", "linear"])
 def test_unlike_beads_move_as_the_equations_say(law: str, seed: int) -> None:
-    """Forces, du/dt = v, m ẇ = F_left − F_right − k u and the stored energy, from SI by hand; Python runs the kernels.
+    """Forces, du/dt = v, m ẇ = F_left − F_right − k u and the stored energy agree with formulas in SI units; the
+    kernels run uncompiled.
     """
     chosen = dimer(law)
     beads = [chosen.bead(i) for i in range(1, 7)]
@@ -67,10 +69,10 @@ def test_unlike_beads_move_as_the_equations_say(law: str, seed: int) -> None:
 @pytest.mark.parametrize(("law", "power"), [("tsuji", 0.25), ("kuwabara-kono", 0.5)])
 @pytest.mark.parametrize("A0", [5e-8, 5e-7, 7e-6])
 def test_the_damping_named_by_the_knob_is_that_at_the_reference_overlap(law: str, power: float, A0: float) -> None:
-    """g = D (δ/δ_ref)^p N s/m at every drive amplitude, whatever the unit of length is."""
+    """g = D (δ/δ_ref)^p [N s/m] at every drive amplitude, whatever the unit of length."""
     chosen = scene("sec2").evolve(dissipation=law, A0=A0, D=31.0)
     scaled = scale_chain(chosen)
-    unit = chosen.bead(1).mass * scaled.scales.phi  # of damping
+    unit = chosen.bead(1).mass * scaled.scales.phi  # unit of damping
     for overlap in (1e-8, 3e-6):
         found = damping(scaled.slots.dissipation, overlap / scaled.scales.length) * unit
         assert found == pytest.approx(31.0 * (overlap / chosen.reference_overlap) ** power, rel=1e-12)

@@ -1,4 +1,4 @@
-"""Forces from outside the chain are given the number of the bead on which they act."""
+"""Forces from outside the chain receive the number of the bead on which they act."""
 
 from __future__ import annotations
 
@@ -24,7 +24,8 @@ def chain() -> ScaledChain:
 
 
 def numbers(monkeypatch: pytest.MonkeyPatch, module: Any, name: str, answer: int) -> list[int]:
-    """The numbers with which a module calls this term from now on, which answers with its argument `answer`."""
+    """Replace a module's term by one that returns its argument `answer`, and list the bead numbers it is called with.
+    """
     asked: list[int] = []
 
     def term(slots: Any, i: int, *values: Any) -> Any:
@@ -48,7 +49,7 @@ def test_every_term_is_asked_for_each_bead(monkeypatch: pytest.MonkeyPatch, chai
 
 
 def test_the_step_is_that_of_the_strongest_of_unequal_forces(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A force −c_i v_i on beads of one mass damps by the largest c_i."""
+    """For a force −c_i v_i on beads of equal mass, the largest c_i counts."""
     import granchain_core.integrate.scaling as module
 
     coefficients = np.array([0.0, 1.0, 7.0, 2.0, 0.0])

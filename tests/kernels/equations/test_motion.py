@@ -1,4 +1,5 @@
-"""The right-hand side in w is the (u, v) equation of the paper, for every law, tension, foundation, preload and wall.
+"""The right-hand side in w is equivalent to the paper's (u, v) equations for every law, tension, foundation, preload
+and wall.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from granchain_core.integrate.scaling import scale_chain
 from granchain_core.kernels.compiling.jit import kernel
 from granchain_core.kernels.equations.motion import contact_force, evaluate_at_phase, motion
 
-#: law, tension, kappa, preload, wall: all structures, each wall often enough
+#: law, tension, kappa, preload, wall: all structures, with every wall several times
 CASES = [(law, tension, kappa, preload, wall)
          for (law, tension, kappa, preload), wall in zip(
              itertools.product(LAWS, ("allowed", "cut"), (0.0, 0.002), (0.0, 3.0)),
@@ -24,20 +25,21 @@ CASES = [(law, tension, kappa, preload, wall)
 
 @kernel
 def compiled_motion(slots, u0, v0, y, dy, forces):
-    """The motion as kernels see it."""
+    """Evaluate the motion, compiled as in kernels."""
     motion(slots, u0, v0, y, dy, forces)
 
 
 @kernel
 def compiled_force(slots, y, dy, e, c):
-    """A contact's force as kernels see it."""
+    """Evaluate a contact's force, compiled as in kernels."""
     return contact_force(slots, y, dy, e, c)
 
 
 def evaluated(chosen, u, v, time, compiled=True):
-    """(scaled, θ, state, slope, total forces) of the kernel in scaled units for SI displacements and velocities (N,).
+    """Return the kernel's (scaled chain, θ, state, slope, total forces), in scaled units, for displacements and
+    velocities (N,) in SI units.
 
-    Not compiled, it is the same source run by Python: dozens of structures would take a minute to compile.
+    With `compiled=False`, Python runs the same source: dozens of structures would take a minute to compile.
     """
     slope_of, force = (compiled_motion, compiled_force) if compiled else (motion, contact_force)
     scaled = scale_chain(chosen)
@@ -54,7 +56,7 @@ def evaluated(chosen, u, v, time, compiled=True):
 
 
 def random_state(chosen, seed: int):
-    """Displacements and velocities with open and closed contacts among them."""
+    """Return displacements and velocities with which some contacts are open and others closed."""
     rng = np.random.default_rng(seed)
     length = 2 * chosen.A0 + float(chosen.static_overlap().max())
     speed = 3e-2 * np.sqrt(length / 1e-6)  # fast enough for a dashpot to pull
@@ -63,7 +65,8 @@ def random_state(chosen, seed: int):
 
 @pytest.mark.parametrize(("law", "tension", "kappa", "preload", "wall"), CASES)
 def test_forces_velocities_and_accelerations_are_those_of_the_paper(law, tension, kappa, preload, wall):
-    """Same contact forces, du/dt = v, and d²u/dt² as the (u, v) equations give; the w-slope sums elastic forces only.
+    """Contact forces, du/dt = v and d²u/dt² are those of the (u, v) equations; the slope of w contains only elastic
+    forces.
     """
     chosen = scene("sec2").evolve(N=5, dissipation=law, tension=tension, kappa=kappa, F0=preload, wall=wall, f=400.0)
     for seed in range(6):
@@ -73,7 +76,7 @@ def test_forces_velocities_and_accelerations_are_those_of_the_paper(law, tension
         scaled, theta, y, dy, total = evaluated(chosen, u, v, time, compiled)
         scales = scaled.scales
         expected, elastic = equations.forces(chosen, u, v, time)
-        # formulas in double precision either way; differences of displacements lose a digit or two
+        # both formulas are in double precision; differences of displacements lose a digit or two
         near = {"rtol": 1e-11, "atol": 1e-11 * max(np.abs(expected))}
         np.testing.assert_allclose(total * scales.force, expected, **near)
         np.testing.assert_allclose(dy[1 : chosen.N + 1] * scales.velocity, v, rtol=1e-12, atol=1e-12 * np.abs(v).max())
@@ -87,10 +90,10 @@ def test_forces_velocities_and_accelerations_are_those_of_the_paper(law, tension
 
 
 def acceleration_from_w(scaled, theta, y, compiled, step=1e-6):
-    """d²u/dτ² as the change of du/dτ along the flow itself: a central difference of the kernel's own velocities.
+    """Return d²u/dτ² as the change of du/dτ along the flow: a central difference of the kernel's own velocities.
 
-    Its error is (step·rate)² and rounding/step, with the kinks of the contacts further away than the step: up to 2e-10
-    of the largest acceleration here.
+    Its errors are of order (step·rate)² and rounding/step, since the contacts' kinks are further away than the step: up
+    to 2e-10 of the largest acceleration here.
     """
     row, space = scaled.bodies, scaled.forces()
     slope = np.zeros_like(y)
@@ -109,7 +112,7 @@ def acceleration_from_w(scaled, theta, y, compiled, step=1e-6):
 @pytest.mark.parametrize("preload", [0.0, 3.0])
 @pytest.mark.parametrize("where", [1, 3, 5])
 def test_a_nan_in_a_bead_is_seen_in_both_its_contacts(law, preload, where):
-    """A NaN displacement gives NaN forces and slopes at its neighbours: it never just cuts the chain there."""
+    """A NaN displacement gives NaN forces and slopes next to it: it never acts as a mere gap in the chain."""
     chosen = scene("sec2").evolve(N=5, dissipation=law, F0=preload)
     u, v = random_state(chosen, 0)
     u[where - 1] = np.nan
@@ -120,17 +123,18 @@ def test_a_nan_in_a_bead_is_seen_in_both_its_contacts(law, preload, where):
 
 
 def test_rest_without_overlap_is_an_equilibrium_and_preload_keeps_it_one():
-    """With the driver in its middle position nothing moves: no force without preload, F0 everywhere with it."""
+    """With the driver in its middle position, nothing moves. Without preload there is no force, with it F0 everywhere.
+    """
     for preload in (0.0, 7.0):
         chosen = scene("sec2").evolve(F0=preload, D=0.0, wall="rigid")
         scaled, _, _, dy, total = evaluated(chosen, np.zeros(11), np.zeros(11), 0.0)
         np.testing.assert_allclose(total * scaled.scales.force, preload, rtol=1e-14)  # rounding of (F0/K)^{2/3·3/2}
-        np.testing.assert_allclose(dy[scaled.bodies + 1 : -1], 0.0, atol=1e-13)  # of forces of order one
+        np.testing.assert_allclose(dy[scaled.bodies + 1 : -1], 0.0, atol=1e-13)  # relative to forces of order one
 
 
 @pytest.mark.parametrize("law", LAWS)
 def test_a_velocity_goes_into_w_and_comes_back(law):
-    """`evaluate_at_phase` turns v into w = v − (G_left − G_right)/m, and the slope's first half is v again."""
+    """`evaluate_at_phase` converts v into w = v − (G_left − G_right)/m, and the first half of the slope is v again."""
     chosen = scene("sec2").evolve(N=5, dissipation=law)
     u, v = random_state(chosen, 1)
     scaled, theta, expected, _, _ = evaluated(chosen, u, v, 0.2 / chosen.f)

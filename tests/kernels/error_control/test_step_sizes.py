@@ -1,4 +1,4 @@
-"""How a step's size follows from its error, and when it is too small."""
+"""Control of the step size by the error estimate, and the smallest step allowed."""
 
 from __future__ import annotations
 
@@ -15,7 +15,8 @@ pytestmark = pytest.mark.quick
 
 
 class Scripted(NamedTuple):
-    """A method of order 8 whose attempts have these errors, the last one again and again; `tried` are their sizes."""
+    """A method of order 8 whose attempts have these errors, the last one repeated; `tried` lists the attempted sizes.
+    """
 
     errors: list[float]
     tried: list[float]
@@ -37,7 +38,7 @@ def _known(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def accepted(errors: list[float], t: float = 0.0) -> tuple[tuple[int, float, float], list[float], Any]:
-    """What a step of size 1 from t leads to, the sizes that were tried, and the counts."""
+    """Return the result of a step of size 1 from t, the attempted sizes, and the counts."""
     method, counts = Scripted(errors, []), np.zeros(4, dtype=np.int64)
     trajectory = SimpleNamespace(workspace=Workspace(), drive=step.DriveCycle(1.0, 2.0 * np.pi))
     return step.accepted_step.py_func(method, trajectory, t, 1.0, counts), method.tried, counts
@@ -50,7 +51,7 @@ def test_a_step_grows_at_most_sixfold() -> None:
 
 @pytest.mark.parametrize("error", [1e-30, 1e-3, 0.3])
 def test_after_a_rejected_attempt_the_step_does_not_grow(error: float) -> None:
-    """Else it would come back to the size that was rejected."""
+    """Otherwise the step would grow back to the size that was just rejected."""
     (status, h, factor), tried, counts = accepted([2.0, error])
     assert (status, factor, counts[REJECTED], counts[EVALUATIONS]) == (DONE, 1.0, 1, 24)
     assert tried == [1.0, h] and h == pytest.approx(0.9 * 2.0**-0.125)
@@ -62,7 +63,7 @@ def test_after_a_rejected_attempt_the_step_may_shrink() -> None:
 
 @pytest.mark.parametrize("t", [0.0, 1.0, 6.0])
 def test_a_step_is_too_small_where_the_time_within_a_period_does_not_resolve_it(t: float) -> None:
-    """At t = 0 as well, where a step of any size changes the time."""
+    """This is true at t = 0 as well, where a step of any size changes the time."""
     (status, h, _), tried, _ = accepted([2.0], t)
     assert status == STEP_TOO_SMALL and len(tried) < 200
     assert 1.0 >= h / (2.2e-15 * (1.0 + t)) > 0.9 * 2.0**-0.125

@@ -1,4 +1,4 @@
-"""The formulas for closings, touches and maxima of forces between two states, against closed forms."""
+"""Formulas for closings, touches and force maxima between two states, compared with closed forms."""
 
 from __future__ import annotations
 
@@ -28,7 +28,8 @@ OWN, PULL = 1.3, -0.7
 
 
 def overlap_at(s: float, speed: float) -> tuple[float, float]:
-    """An overlap and its rate at time s of a contact that closes at 0 with `speed`: δ̈ = PULL − OWN δ̇ while closed."""
+    """Return overlap and rate at time s for a contact that closes at 0 with `speed`: δ̈ = PULL − OWN δ̇ while closed.
+    """
     if s <= 0.0:
         return speed * s + 0.5 * PULL * s * s, speed + PULL * s
     end = PULL / OWN
@@ -37,15 +38,17 @@ def overlap_at(s: float, speed: float) -> tuple[float, float]:
 
 
 def crossing(h: float, part: float, speed: float = 0.9) -> tuple[float, float]:
-    """What a step of size h, whose part `part` lies before the closing, makes of the instant and the rate there."""
+    """Return the closing's place in the step and its rate, as found from a step of size h that closes at `part`."""
     (before, rate), (after, rate_after) = (overlap_at(s, speed) for s in (-part * h, (1.0 - part) * h))
     return closing_rate.py_func(before, after, rate, rate_after + OWN * after, OWN, h)
 
 
 @pytest.mark.parametrize("part", [0.03, 0.5, 0.97])
 def test_the_rate_at_a_closing_is_of_third_order(part: float) -> None:
-    """Against the exact solution with constant pull; without its own damping the rate is then a parabola but for the
-    trapezium of the small correction, of order h⁴: the error falls 8-fold or more with half the step."""
+    """Compared with the exact solution for constant pull, the error falls by a factor of 8 or more when the step is
+    halved. Without the contact's own damping, the rate is a parabola; the trapezium rule for the small correction then
+    has an error of order h⁴.
+    """
     errors = [abs(crossing(h, part)[1] / 0.9 - 1.0) for h in (0.2, 0.1)]
     assert errors[0] < 2e-4
     assert errors[1] < max(errors[0] / 6.0, 1e-12)
@@ -53,8 +56,9 @@ def test_the_rate_at_a_closing_is_of_third_order(part: float) -> None:
 
 
 def test_a_closing_is_within_its_step_whatever_the_step_has_seen() -> None:
-    """Rates that do not fit the overlaps, as where a contact closes, opens and closes again in a step. Without damping
-    of its own the rate is a parabola, which departs from the straight line by a quarter of its bend."""
+    """The rates may contradict the overlaps, for example if a contact closes, opens and closes again within a step.
+    Without its own damping, the rate is a parabola, which departs from the straight line by a quarter of its bend.
+    """
     rng = np.random.default_rng(0)
     for _ in range(2000):
         before, after, h = -rng.uniform(0.0, 1.0), rng.uniform(1e-9, 1.0), rng.uniform(0.1, 1.0)
@@ -68,7 +72,7 @@ def test_a_closing_is_within_its_step_whatever_the_step_has_seen() -> None:
 
 
 def test_a_touch_within_a_step_is_that_of_constant_acceleration() -> None:
-    """δ = top − a s²/2 around its turn: it closes at the rate √(2 a top), whatever part of the step lies before."""
+    """δ = top − a s²/2 around its turn closes at the rate √(2 a top), wherever in the step the turn is."""
     a, top, h = 0.8, 1e-3, 0.3
     for turn in (0.3, 0.5, 0.7):
         (before, rate), (after, later) = ((top - 0.5 * a * s * s, -a * s) for s in (-turn * h, (1.0 - turn) * h))
@@ -77,7 +81,7 @@ def test_a_touch_within_a_step_is_that_of_constant_acceleration() -> None:
 
 
 def test_the_top_between_two_states_is_the_cubics() -> None:
-    """sin over a step of 0.2 around its top: a cubic through values and slopes is good to h⁴/384."""
+    """For a sine over a step of 0.2 around its top, a cubic through values and slopes is accurate to h⁴/384."""
     for shift in (-0.15, -0.1, -0.02):
         ends = [np.pi / 2 + shift, np.pi / 2 + shift + 0.2]
         top = cubic_top.py_func(np.sin(ends[0]), np.cos(ends[0]), np.sin(ends[1]), np.cos(ends[1]), 0.2)
@@ -87,13 +91,14 @@ def test_the_top_between_two_states_is_the_cubics() -> None:
 
 
 def test_a_cubic_called_monotone_is_largest_at_an_end() -> None:
-    """Random values and slopes, against the cubic on a fine grid; a force that is zero throughout is monotone too."""
+    """Random values and slopes are compared with the cubic on a fine grid; a force that is zero throughout is monotone.
+    """
     rng, x, called = np.random.default_rng(8), np.linspace(0.0, 1.0, 1001), 0
     for f0, s0, f1, s1, h in rng.uniform(-1.0, 1.0, (2000, 5)) * (1.0, 8.0, 1.0, 8.0, 0.4) + (0.0, 0.0, 0.0, 0.0, 0.5):
         if is_monotone.py_func(f0, s0, f1, s1, h):
             a, b = h * s0, h * s1
             cubic = f0 + x * (a + x * (3.0 * (f1 - f0) - 2.0 * a - b + x * (2.0 * (f0 - f1) + a + b)))
-            assert cubic.max() <= max(f0, f1) + 1e-14  # some roundings of values below 10
+            assert cubic.max() <= max(f0, f1) + 1e-14  # a few roundings of values below 10
             called += 1
     assert 100 < called < 1900
     assert is_monotone.py_func(0.0, 0.0, 0.0, 0.0, 1.0)
@@ -102,7 +107,7 @@ def test_a_cubic_called_monotone_is_largest_at_an_end() -> None:
 
 @pytest.mark.parametrize("offset", np.linspace(-0.5, 0.5, 11))
 def test_the_top_of_a_pulse_between_its_samples(offset: float) -> None:
-    """A cosine and a lopsided pulse sampled 0.25 apart: the quartic's top is theirs to a part in 1e5."""
+    """For a cosine and a lopsided pulse sampled every 0.25, the quartic finds the top to within 2e-5."""
     t = 0.25 * (np.arange(-2, 3) + offset)
     assert quartic_top.py_func(*np.cos(t)) == pytest.approx(1.0, abs=5e-6)
     assert quartic_top.py_func(*((t + 2.0) ** 2 * np.exp(-2.0 - t))) == pytest.approx(4.0 * np.exp(-2.0), abs=2e-5)
@@ -124,7 +129,7 @@ def test_the_top_of_a_maximum_is_little_above_its_values(values: tuple[float, fl
 
 @kernel
 def follow(alone, together, values):
-    """Follow a force of each member, alone and in a batch; values (T, L)."""
+    """Follow one force of each member, alone and in a batch; `values` are (samples, members)."""
     for k in range(values.shape[0]):
         update_batch_peak(together, 0, load_batch(values, k), INPUT_UNRESOLVED)
         for member in range(values.shape[1]):
@@ -132,7 +137,7 @@ def follow(alone, together, values):
 
 
 def test_a_batch_follows_peaks_as_one_chain_does() -> None:
-    """Random forces, many with dips of one value; the vectors take the last steps in another order."""
+    """The forces are random, many with a dip of a single value; vectors do the last operations in a different order."""
     values = aligned(4000, BATCH_SIZE)
     values[:] = np.exp(np.random.default_rng(5).normal(0.0, 0.1, values.shape))
     for first in range(0, len(values), 100):

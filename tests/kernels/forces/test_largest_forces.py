@@ -1,4 +1,4 @@
-"""Jumps of closing contacts, in every method and every part of the program."""
+"""Force jumps of closing contacts, with every method and in every part of the program."""
 
 from __future__ import annotations
 
@@ -15,30 +15,31 @@ from granchain_core.scene.state import State
 
 #: The methods that locate contact events.
 LOCATING = [name for name, method in METHODS.items() if method.error_control or method.converges_regularly]
-#: One bead that touches the driver when that starts with its full speed: the first force there is D A₀ 2πf, at t = 0+.
+#: One bead that touches the driver as the driver starts at full speed: the first force on it is D A₀ 2πf, at t = 0+.
 STRIKE = scene("sec2").evolve(N=1, D=400.0, f=500.0, accuracy=1e-6)
 
 
 @pytest.mark.parametrize("method", METHODS)
 def test_the_first_strike_of_the_driver_is_in_every_method(method: str) -> None:
-    """The jump at t = 0+, in closed form; methods that do not locate it read it off their first step: 1e-3."""
+    """The jump at t = 0+ has a closed form; methods that do not locate it find it from their first step, to 1e-3."""
     found = run(STRIKE, periods=0, record=1, samples=96, method=method)
     first = STRIKE.D * STRIKE.A0 * 2.0 * np.pi * STRIKE.f
     times, forces = found.jumps.of(0)
     assert times[0] == pytest.approx(0.0, abs=1e-6 * STRIKE.period)
     assert forces[0] == pytest.approx(first, rel=1e-9 if method in LOCATING else 1e-3)
     assert found.max_input_force >= forces.max()
-    assert found.force[0, 0] == 0.0  # at t = 0 itself nothing is pressed
+    assert found.force[0, 0] == 0.0  # at t = 0 itself, no contact is compressed
 
 
 @functools.cache
 def ends() -> Run:
-    """A strongly damped chain: its output force is largest at a jump."""
+    """Run a strongly damped chain, whose output force is largest at a jump."""
     return run(scene("sec2").evolve(D=300.0, f=100.0, accuracy=1e-8), periods=2, record=2, samples=4096)
 
 
 def test_jumps_stand_where_overlaps_are_zero_and_are_the_dashpots_force() -> None:
-    """Overlap and velocity read off the samples around a jump: straight lines between them are good to the spacing."""
+    """Overlap and velocity are interpolated linearly between the samples around a jump, to the accuracy of the spacing.
+    """
     found = ends()
     spacing = found.time[1] - found.time[0]
     assert len(found.jumps.time) > 10 and found.jumps.missing == 0
@@ -49,15 +50,16 @@ def test_jumps_stand_where_overlaps_are_zero_and_are_the_dashpots_force() -> Non
         part = (time - found.time[row]) / spacing
         assert found.overlap[row, contact] <= 1e-12 * found.scene.A0 < found.overlap[row + 1, contact]
         rate = velocity[row : row + 2, contact] - velocity[row : row + 2, contact + 1]
-        # the rate has a kink there, of λ times itself: straight lines are good to a part of λ φ spacing ≈ 0.03
+        # the rate's slope jumps there by λ times the rate: interpolation is accurate to a part of λ φ spacing ≈ 0.03
         assert force == pytest.approx(found.scene.D * (rate[0] + part * (rate[1] - rate[0])), rel=0.03)
 
 
 @pytest.mark.parametrize("beads", [19, 40])
 def test_a_jump_is_read_where_the_overlap_vanishes(beads: int) -> None:
-    """The cubic through a step's ends does not know the kink at its root and misses the closing by an order of h².
+    """The cubic through a step's ends does not contain the kink at its root, and misses the closing by an order of h².
 
-    Without a second look the errors are 2.5e-5 to 2e-7 here, with it 2e-7 and less: below what `jump_errors` knows of.
+    Without a second look, the errors are 2.5e-5 to 2e-7 here. With it they are at most 2e-7, below the bound of
+    `jump_errors`.
     """
     chain = scene("sec2").evolve(f=88.679, A0=1.60810e-8, D=211.888, k=2513.91, N=beads)
     on_its_way = Engine(chain, fixed_step_setting(), 1)
@@ -69,7 +71,8 @@ def test_a_jump_is_read_where_the_overlap_vanishes(beads: int) -> None:
 
 
 def jump_and_force(chain: Scene, setting: MethodSetting, state: State) -> tuple[float, float]:
-    """Lower bound of the relative error of the largest input force, which is at a jump, and that force [scaled]."""
+    """Return the lower limit of the relative error stated for the largest input force, at a jump, and the scaled force.
+    """
     engine = Engine(chain, setting, 1)
     engine.start(state)
     engine.reset_peaks()
@@ -90,13 +93,15 @@ def test_laws_without_a_jump_have_none(law: str) -> None:
     assert len(run(STRIKE.evolve(dissipation=law), periods=0, record=1).jumps.time) == 0
 
 
-#: Section 2's chain with D = 300 at 100 Hz: tests/numerics/forces/located.py, in (u, v) with located events, gives
-#: this.
+#: Largest output force [N] of section 2's chain with D = 300 N s/m at 100 Hz, as tests/numerics/forces/located.py
+#: computes it in (u, v) with located events.
 TRUTH = 0.1473283
 
 
 def test_every_part_of_the_program_gives_the_same_largest_force() -> None:
-    """Run, curve from rest and carried along, map and settled picture: to four digits and to what each states."""
+    """A run, curves from rest and upward, a parameter map and a settled picture agree to five digits, and with the
+    truth to their stated errors.
+    """
     chain = scene("sec2").evolve(D=300.0, f=100.0)
     points = [resonance_curve(chain, [100.0, 101.0], start=start).points[0] for start in ("rest", "up")]
     cell = parameter_map(chain, ("f", [100.0, 101.0]), ("A0", [chain.A0])).cells[0]
@@ -111,7 +116,9 @@ def test_every_part_of_the_program_gives_the_same_largest_force() -> None:
 
 
 def test_a_long_chain_sees_the_jumps_at_its_ends() -> None:
-    """40 beads go by vectors of eight, which leave steps with events to the scalar method: to what is stated."""
+    """A chain of 40 beads is integrated in blocks of eight, which leave steps with events to the scalar method. Its
+    forces agree with dop853 to the stated errors.
+    """
     chain = scene("sec2").evolve(N=40, D=300.0, f=400.0, accuracy=1e-6)
     long = resonance_curve(chain, [400.0], start="up").points[0]
     assert long.regime.period is not None
@@ -122,17 +129,17 @@ def test_a_long_chain_sees_the_jumps_at_its_ends() -> None:
         assert abs(force / true - 1.0) < stated < 2e-3  # of which 1/(1 − |μ|) is a part
 
 
-#: How near the top of the driver's way a bead stands that it just touches.
+#: Distance of a bead that is just touched from the driver's turning point, in drive amplitudes.
 NEAR = 2e-3
 
 
 @pytest.mark.parametrize("method", METHODS)
 def test_touches_shorter_than_a_step_are_found_or_said_not_to_be_resolved(method: str) -> None:
-    """A drive so fast that its period has 17 steps: the touch lasts a third of one, between two of them.
+    """The drive is so fast that a period has 17 steps: the touch lasts a third of a step, and lies between two samples.
 
-    The bead stands at A (1 − NEAR) against a soft wall; A sin θ crosses that at the rate A β √(1 − (1 − NEAR)²). The
-    wall moves it by a hundredth of NEAR until then. Where the touch is not resolved its overlap is that of two
-    parabolas: 10 %.
+    The bead is at A (1 − NEAR) in front of a soft wall, and A sin θ passes it at the rate A β √(1 − (1 − NEAR)²). Until
+    then, the wall moves it by a hundredth of NEAR. If the touch is not resolved, its overlap is approximated by two
+    parabolas, to 10 %.
     """
     chain, resolves = scene("sec2").evolve(N=1, f=20_000.0, wall=1e-3), method in LOCATING
     engine = Engine(chain, MethodSetting(method, tolerance=1e-9), 17)

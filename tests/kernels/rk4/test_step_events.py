@@ -1,4 +1,4 @@
-"""Events inside a fixed step: the first of several, and what Simpson's rule misses."""
+"""Events within a fixed step: the first of several, and the error of Simpson's rule."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ def test_the_first_of_several_contacts_is_taken() -> None:
     ends = np.zeros((END_ROWS, 3))
     for c, root in enumerate((0.6, 0.25, 0.8)):
         ends[OVERLAP, c], ends[RATE, c], ends[OVERLAP_END, c], ends[RATE_END, c] = -root, 1.0, 1.0 - root, 1.0
-    ends[[RATE, RATE_END]] /= 0.5  # rates are in time, for a step of 0.5
+    ends[[RATE, RATE_END]] /= 0.5  # rates are per unit time, for a step of 0.5
     contact, found = events.first_event.py_func(ends, 3, 0.5)
     assert (found, contact) == (pytest.approx(0.25, rel=1e-11), 1)
 
 
 def excess(power: float, r: float) -> float:
-    """Simpson's rule for s^p on [0, r], [r, r + 1] and [r + 1, r + 2] less the integral, by the definition."""
+    """Return Simpson's rule for s^p on [0, r], [r, r + 1] and [r + 1, r + 2] minus the integral, by definition."""
     pieces = [(0.0, r), (r, r + 1.0), (r + 1.0, r + 2.0)]
     simpson = sum((b - a) / 6.0 * (a**power + 4.0 * (0.5 * (a + b)) ** power + b**power) for a, b in pieces)
     return simpson - (r + 2.0) ** (power + 1.0) / (power + 1.0)
@@ -49,7 +49,9 @@ def test_the_excess_of_simpsons_rule_over_a_kink(r: float) -> None:
 @pytest.mark.parametrize(("law", "scale", "power"), [
     (LinearDashpot(0.3), 0.0, 1.25), (Tsuji(0.3), 0.8 * 0.3, 1.25), (KuwabaraKono(0.3), 2.0 / 3.0 * 0.3, 1.5)])
 def test_impulse_and_path_beside_an_event(rate, part, law, scale, power) -> None:  # type: ignore[no-untyped-def]
-    """K v^{3/2} h^{5/2} and c v^p h^{p+1} times the excess over the closed side: after a closing, before an opening."""
+    """They are K v^{3/2} h^{5/2} and c v^p h^{p+1} times the excess on the closed side, after a closing or before an
+    opening.
+    """
     ends, h = np.zeros((END_ROWS, 2)), 0.2
     ends[RATE, 1] = rate
     events.add_quadrature_errors.py_func(law, 1.4, ends, 1, h, 0.25)
@@ -59,8 +61,8 @@ def test_impulse_and_path_beside_an_event(rate, part, law, scale, power) -> None
 
 
 def test_the_excess_is_taken_back_from_beads_and_from_the_drivers_work() -> None:
-    """Contact c pushed its beads apart too much by ends[MOMENTUM_ERROR, c]; the driver did that of contact 0 at its
-    speed.
+    """Contact c gave its beads too much momentum, by ends[MOMENTUM_ERROR, c]; for contact 0, the driver did the
+    corresponding work at its own speed.
     """
     inverse, ends = np.array([0.0, 1.0, 0.5, 0.0]), np.zeros((END_ROWS, 3))
     ends[MOMENTUM_ERROR], ends[DISPLACEMENT_ERROR] = (3.0, 5.0, 8.0), (0.1, 0.4, 0.9)

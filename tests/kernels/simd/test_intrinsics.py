@@ -1,4 +1,4 @@
-"""Each intrinsic of `kernels/simd` by itself against NumPy, for vectors of every width."""
+"""Each intrinsic of `kernels/simd` agrees with NumPy, for vectors of every width."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ LOADS = {width: loader(width) for width in WIDTHS}
 
 
 def random_rows(count: int, width: int) -> np.ndarray:
-    """Rows of random numbers of both signs."""
+    """Return rows of random numbers of both signs."""
     rows = aligned(count, width)
     rows[:] = np.random.default_rng(width).standard_normal((count, width))
     return rows
@@ -38,7 +38,8 @@ def random_rows(count: int, width: int) -> np.ndarray:
 
 @pytest.fixture(scope="module", params=WIDTHS)
 def vectors(request: pytest.FixtureRequest) -> tuple[np.ndarray, Any]:
-    """Two rows of a width, and a kernel of that width: (rows, lane, out) gives the numbers that are no vectors."""
+    """Two rows of a width, and a kernel for that width: (rows, lane, out) stores the vectors and returns the scalars.
+    """
     read = LOADS[request.param]
 
     @kernel
@@ -71,7 +72,7 @@ def test_lanes_move_and_change_as_in_numpy(vectors: tuple[np.ndarray, Any]) -> N
     assert not out[5].any()
     assert np.array_equal(out[6], np.sqrt(np.abs(rows[0])))
     assert np.array_equal(out[7], rows[1])
-    # sums in any order: a rounding for each lane
+    # the order of summation is free: one rounding per lane
     assert total == pytest.approx(rows[0].sum(), abs=width * np.finfo(float).eps * np.abs(rows[0]).sum())
     assert largest == rows[0].max()
     assert mask == sum(1 << lane for lane in range(width) if rows[0, lane] > 0.0)
@@ -99,19 +100,19 @@ def test_the_absolute_value_of_special_numbers(vectors: tuple[np.ndarray, Any]) 
 
 @kernel
 def splat(value, out):
-    """One number in all lanes."""
+    """Store one number in all lanes."""
     store(out, 0, splat8(value))
 
 
 @kernel
 def first_bit(mask):
-    """The lowest bit that is set."""
+    """Return the lowest bit that is set."""
     return lowest_bit(mask)
 
 
 @kernel
 def inverse_roots(values, out):
-    """value^{−1/16} of all."""
+    """Compute value^{−1/16} for all values."""
     for i in range(values.size):
         out[i] = inverse_sixteenth_root(values[i])
 
@@ -130,9 +131,10 @@ def test_the_lowest_bit_is_that_of_a_mask_of_any_width() -> None:
 
 
 def test_the_inverse_sixteenth_root_is_right_to_about_four_percent() -> None:
-    """Over the errors that a step may have, and densely over sixteen factors of two, in which the error repeats."""
+    """This covers all errors that a step may have, and densely sixteen factors of two, after which the error repeats.
+    """
     values = np.concatenate([np.logspace(-290, 290, 5000), np.logspace(0, 16, 5000, base=2.0)])
     found = np.empty_like(values)
     inverse_roots(values, found)
     error = np.abs(found * values ** (1.0 / 16.0) - 1.0)
-    assert error.max() == pytest.approx(0.0426, abs=1e-4)  # measured; 2^16 further on it is the same
+    assert error.max() == pytest.approx(0.0426, abs=1e-4)  # measured; it repeats after a factor of 2^16

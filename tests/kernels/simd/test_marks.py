@@ -1,4 +1,4 @@
-"""The mark of a slot names the SIMD kernels that know it; the others are told that they do not."""
+"""The mark of a slot names the SIMD kernels that know it; for all others, the slot counts as unknown."""
 
 from __future__ import annotations
 
@@ -33,6 +33,6 @@ def test_absent_effects_are_known(slots: dict[str, object]) -> None:
 
 @pytest.mark.parametrize("folders", [("rk5",), (Slot,)], ids=str)
 def test_a_mark_without_folders_of_kernels_is_refused(folders: tuple[object, ...]) -> None:
-    """The second is the mark without brackets, which would say that all of them know the slot."""
+    """The second case is the mark without parentheses, which would mean that all of them know the slot."""
     with pytest.raises(TypeError, match="is not a folder of SIMD kernels; name those with terms of the slot, of rk4, batch"):
         registry.in_simd_kernels(*folders)

@@ -1,4 +1,4 @@
-"""The root of an overlap in batches, which x86 takes from some bits of an inverse root and a series."""
+"""The square root of an overlap in batches, which x86 computes from an approximate inverse root and a series."""
 
 from __future__ import annotations
 
@@ -15,20 +15,21 @@ load4 = loader(4)
 
 @kernel
 def roots_of_eight(values, out):
-    """√ of every row of eight."""
+    """Compute √ of every row of eight."""
     for row in range(values.shape[0]):
         store(out, row, root_by_series(load8(values, row)))
 
 
 @kernel
 def roots_of_four(values, out):
-    """√ of every row of four."""
+    """Compute √ of every row of four."""
     for row in range(values.shape[0]):
         store(out, row, root_by_series(load4(values, row)))
 
 
-#: By the vector's width: the kernel, the smallest and largest exponents of ten, and the series' first term left out.
-#: 14 bits of an inverse root leave |e| ≤ 2^{−13}, 1.5 · 2^{−12} of one in floats |e| ≤ 3 · 2^{−12} and its square.
+#: By vector width: the kernel, the smallest and largest exponents of ten, and the first omitted term of the series.
+#: An inverse root of 14 bits leaves |e| ≤ 2^{−13}; one in floats, accurate to 1.5 · 2^{−12}, leaves |e| ≤ 3 · 2^{−12}
+#: and its square.
 CASES = {
     BLOCK_WIDTH: (roots_of_eight, -200.0, 10.0, 5.0 / 16.0 * 2.0**-39),
     4: (roots_of_four, -30.0, 10.0, 35.0 / 128.0 * (3.0 * 2.0**-12) ** 4),
@@ -41,7 +42,7 @@ def test_every_size_of_a_batch_has_a_case() -> None:
 
 @pytest.mark.parametrize("width", CASES)
 def test_the_root_by_series_is_the_square_root(width: int) -> None:
-    """To the series' next term, over all overlaps and far beyond; a NaN stays a NaN."""
+    """They agree to the next term of the series, over all overlaps and far beyond; a NaN stays a NaN."""
     roots, low, high, left_out = CASES[width]
     values, found = aligned(1000, width), aligned(1000, width)
     values[:] = 10.0 ** np.random.default_rng(1).uniform(low, high, values.shape)
@@ -54,7 +55,7 @@ def test_the_root_by_series_is_the_square_root(width: int) -> None:
 
 @pytest.mark.parametrize("width", CASES)
 def test_an_overflow_is_not_hidden(width: int) -> None:
-    """Far beyond the range of floats the root is right or NaN, never a small number."""
+    """Far beyond the range of floats, the root is right or not finite, never a small number."""
     values, found = aligned(4, width), aligned(4, width)
     values[:] = np.array([1e39, 1e200, np.inf, 4.0])[:, np.newaxis]
     CASES[width][0](values, found)

@@ -1,4 +1,4 @@
-"""Vectors are rows of C-ordered arrays of float64, all others are refused while a kernel is typed; minus a vector."""
+"""Vectors are rows of C-ordered float64 arrays, and other arrays are refused at compile time; negation of a vector."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def first_row(array, out):
 
 @kernel
 def negative(array, out):
-    """−x of eight values."""
+    """Compute −x for eight values."""
     store(out, 0, -load8(array, 0))
 
 
@@ -45,7 +45,7 @@ def test_minus_is_that_of_numbers() -> None:
 
 @pytest.mark.parametrize(("beads", "width"), [(11, 16), (100, 8)])
 def test_rows_along_a_chain_begin_on_a_cache_line(beads: int, width: int) -> None:
-    """A vector that lies across two lines costs two accesses; a long chain took 8 to 25 % more time."""
+    """A vector across two cache lines costs two accesses, with which a long chain took 8 to 25 % longer."""
     work = Engine(scene("precompressed").evolve(N=beads), MethodSetting("rk4-split"), 1).stepper.work  # type: ignore[attr-defined]
     rows = [value for value in (*work.simd, *work.simd.preload) if getattr(value, "shape", ())[1:] == (width,)]
     assert len(rows) >= 5 and all(row.ctypes.data % 64 == 0 for row in rows)

@@ -1,4 +1,4 @@
-"""SIMD along the chain agrees with the scalar method, law by law; a batch, with each of its scenes alone."""
+"""SIMD along the chain agrees with the scalar method for every law, and a batch with each of its scenes alone."""
 
 from __future__ import annotations
 
@@ -22,19 +22,19 @@ from granchain_core.steady.curve.curve import CurvePoint
 from granchain_core.steady.settling.single_chain import settle_to_forces
 
 _BOTH = {"kappa": 0.001, "F0": 0.5}
-#: The chains in which a law other than the linear one stands, so that a law which is added is examined too.
+#: The chains in which every law but the linear one is tested, including laws that are added later.
 _OF_EACH_FURTHER_LAW: dict[str, dict[str, object]] = {
     "alone": {}, "rigid": {"wall": "rigid", **_BOTH}, "short": {"N": 5, "taper": 0.7, **_BOTH},
     "wide": {"N": 20, **_BOTH}, "long": {"N": 40, "dimer": 0.4, **_BOTH},
 }
-#: Each effect of the table with its usual values, in chains of one vector and of several, if vectors know it.
+#: Each effect in the table that vectors know, with its usual values, in chains of one vector and of several.
 WITH_EFFECTS: dict[str, dict[str, object]] = {
     f"{effect.name}, {beads} beads": {"N": beads, **effect.usual} for effect in EFFECTS for beads in (11, 40)
     if not unknown_slots(scale_chain(scene("sec2").evolve(**effect.usual)).slots, "rk4")}
 #: Laws, lengths (up to 6 beads fit into 8 doubles, 14 into 16, 30 into 32; longer chains are in blocks of eight),
-#: foundation, preload, unequal beads: every two values stand together in one of them. Each set of effects is compiled
-#: for each width, which takes 3 to 9 s; most of these sets are compiled for other tests too. Unequal beads cost
-#: nothing.
+#: foundation, preload and unequal beads, chosen so that every pair of values occurs in one of the chains. Each set of
+#: effects is compiled for each width, which takes 3 to 9 s, but most of these sets are compiled for other tests too.
+#: Unequal beads need no further compiling.
 CHAINS: dict[str, dict[str, object]] = {
     "plain": {}, "one": {"N": 1}, "two": {"N": 2}, "six": {"N": 6}, "seven": {"N": 7}, "fourteen": {"N": 14},
     "fifteen": {"N": 15, "dimer": 0.4}, "thirty": {"N": 30}, "thirty-one": {"N": 31},
@@ -48,7 +48,7 @@ CHAINS: dict[str, dict[str, object]] = {
     **{f"{law}-{name}": {"dissipation": law, **changes} for law in LAWS if law not in ("linear", "none")
        for name, changes in _OF_EACH_FURTHER_LAW.items()},
 }
-#: Eight scalar multiplications in another order, some hundred steps long, through contacts that amplify a little.
+#: Tolerance for operations in a different order over a hundred steps or so, slightly amplified by the contacts.
 ROUNDING = 1e-12
 
 
@@ -64,15 +64,16 @@ def test_every_two_values_stand_together_in_a_chain() -> None:
 @pytest.mark.parametrize("changes", (CHAINS | WITH_EFFECTS).values(), ids=CHAINS | WITH_EFFECTS)
 def test_steps_along_the_chain_are_the_scalar_steps(changes: dict[str, object]) -> None:
     shown = scene("sec2").evolve(**changes)
-    # there are no vectors with the energy account, which changes nothing in the motion
+    # with the energy account, which does not change the motion, no vectors are used
     fast, slow = (Engine(shown, MethodSetting("rk4-split"), 8, account) for account in (False, True))
     assert fast.stepper.work.simd is not None and slow.stepper.work.simd is None
-    samples = 24 if shown.has_dissipation else 16  # without damping, rounding grows tenfold in half a period
+    samples = 24 if shown.has_dissipation else 16  # without damping, rounding errors grow tenfold in half a period
     a, b = fast.record(samples), slow.record(samples)
     assert np.abs(a.displacement - b.displacement).max() < ROUNDING
     assert np.abs(a.force - b.force).max() < ROUNDING
-    # the fast steps follow forces by a quartic through values 0.2 apart, across the kinks of neighbours' events too:
-    # off by some 0.07 h of a slope's change λ² v there, with λ = 0.22, h = 0.2 and λ v as large as the force: 7e-4
+    # the fast steps find maxima with a quartic through values 0.2 apart, even across the kinks of neighbours' events:
+    # its error is about 0.07 h times the change of slope λ² v there; with λ = 0.22, h = 0.2 and λ v as large as the
+    # force, it is 7e-4
     assert fast.maxima == pytest.approx(slow.maxima, rel=1e-3, abs=ROUNDING)
     np.testing.assert_allclose(fast.closings, slow.closings, atol=1e-9)
     assert (fast.counts.array == slow.counts.array).all()
@@ -86,11 +87,11 @@ def test_a_curve_in_batches_is_what_each_frequency_gives_by_itself() -> None:
         assert point.force_errors.output is not None and alone.force_errors.output is not None
         allowed = point.force_errors.output + alone.force_errors.output
         assert point.max_output_force == pytest.approx(alone.max_output_force, rel=allowed)
-        assert allowed < 2e-3  # the coarse member steps differ from the finer ones by some 1e-4
+        assert allowed < 2e-3  # the members' coarse steps differ from the finer ones by about 1e-4
 
 
 def test_a_member_that_is_not_finite_does_not_lose_the_others() -> None:
-    # no scene does this: a damping that the member's step cannot follow makes the step smaller
+    # no scene does this by itself: a damping that a step cannot follow makes the step smaller
     scenes = [scene("sec2").evolve(f=f) for f in (1000.0, 1130.0)]
     block = Batch(scenes[0], Stop())
     for member, one in enumerate(scenes):

@@ -1,6 +1,6 @@
-"""Subnormal numbers are zero while kernels flush them, and numbers again afterwards.
+"""Subnormal numbers are zero while kernels flush them, and nonzero again afterwards.
 
-Other libraries compute in the same thread.
+The setting must be restored, because other libraries compute in the same thread.
 """
 
 from __future__ import annotations
@@ -27,13 +27,13 @@ FLUSHED = 0.0 if is_x86() else HALF
 
 
 def half() -> float:
-    """Half of a subnormal number, in this thread as it is now; from an array, so that nobody computes it earlier."""
+    """Return half of a subnormal number with this thread's current setting; an array prevents constant folding."""
     return float((np.array([SMALL]) * 0.5)[0])
 
 
 @pytest.fixture(autouse=True)
 def as_numbers() -> Iterator[None]:
-    """Subnormal numbers are numbers before and after every test."""
+    """Check before and after every test that subnormal numbers are not flushed."""
     assert half() == HALF
     yield
     assert half() == HALF
@@ -41,7 +41,7 @@ def as_numbers() -> Iterator[None]:
 
 @kernel
 def halves(values):
-    """Halves of three numbers: before, while and after subnormal numbers are flushed."""
+    """Halve three numbers: before subnormal numbers are flushed, while they are, and afterwards."""
     first = values[0] * 0.5
     before = flush_subnormals()
     second = values[1] * 0.5
@@ -57,7 +57,7 @@ def test_a_kernel_flushes_between_the_two_calls_alone() -> None:
 
 
 def test_a_flushed_function_restores_the_setting_that_it_found() -> None:
-    """Also where one is called from another: the inner one leaves the outer one's setting."""
+    """When flushed functions are nested, the inner one leaves the outer one's setting in place."""
     outer = flushed(lambda: (half(), flushed(half)(), half()))
     assert outer() == (FLUSHED,) * 3
 
@@ -76,7 +76,7 @@ def test_the_setting_is_restored_after_an_exception() -> None:
 @pytest.mark.parametrize("call", ["periods", "record"])
 @pytest.mark.parametrize("cancelled", [False, True], ids=["to the end", "cancelled"])
 def test_the_kernel_of_a_short_chain_restores_the_setting(call: str, cancelled: bool) -> None:
-    """By itself, without `flushed` around it."""
+    """The kernel does so itself, without `flushed` around it."""
     stop = Stop()
     engine = Engine(scene("sec2"), MethodSetting("rk4-split"), 8, stop=stop)
     inner = getattr(Engine, call).__wrapped__

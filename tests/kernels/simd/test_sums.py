@@ -1,4 +1,4 @@
-"""Sums over rows, and the largest lane, of vectors of every width along a chain, against NumPy."""
+"""Sums over rows and the largest lane agree with NumPy, for vectors of every width along a chain."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ moved_by_latest = moved_by_rows((0.0, 0.0, 7.0), 2)
 
 
 def rows(count: int, width: int) -> np.ndarray:
-    """Rows of random numbers."""
+    """Return rows of random numbers."""
     found = aligned(count, width)
     found[:] = np.random.default_rng(width).standard_normal((count, width))
     return found

@@ -1,6 +1,7 @@
-"""A NaN goes through what closes contacts, in every lane as in scalar code: it is never taken for an open contact.
+"""A NaN passes through the functions that decide whether a contact is closed, in every lane as in scalar code: it never
+counts as an open contact.
 
-A sum that cancels may lose one.
+A sum in which terms cancel may lose a NaN.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ VALUES = np.array([-1.0, 0.0, 2.0, np.nan, np.inf, -np.inf, 3.0, np.nan])
 
 @kernel
 def in_vectors(values, chosen, out):
-    """positive_part, at_least_tiny and gate of eight values."""
+    """Apply positive_part, at_least_tiny and gate to eight values."""
     overlaps = load8(values, 0)
     store(out, 0, positive_part(overlaps))
     store(out, 1, at_least_tiny(overlaps))
@@ -29,7 +30,7 @@ def in_vectors(values, chosen, out):
 
 @kernel
 def in_scalars(values, out):
-    """positive_part and gate one by one."""
+    """Apply positive_part and gate to the values one by one."""
     for i in range(values.size):
         out[0, i] = positive_part(values[i])
         out[1, i] = gate(values[i], 5.0)
@@ -51,7 +52,7 @@ def test_nan_overlaps_stay_nan_and_pass_their_damping() -> None:
 
 @kernel
 def there_and_back(x, y, alone, out):
-    """(x + y) − y of eight values, in vectors and one by one."""
+    """Compute (x + y) − y for eight values, in vectors and one by one."""
     rows = load8(y, 0)
     store(out, 0, (load8(x, 0) + rows) - rows)
     for i in range(alone.size):
@@ -59,7 +60,7 @@ def there_and_back(x, y, alone, out):
 
 
 def test_a_nan_that_cancels_in_a_sum_may_be_lost() -> None:
-    """`reassoc` with `nsz` lets the compiler take (x + y) − y for x. So states are examined, not sums of them."""
+    """With `reassoc` and `nsz`, the compiler may replace (x + y) − y by x. Kernels therefore check states, not sums."""
     x, y, out, alone = aligned(1), aligned(1), aligned(1), np.zeros(8)
     x[0], y[0] = 1.0, VALUES
     there_and_back(x, y, alone, out)

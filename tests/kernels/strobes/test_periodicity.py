@@ -1,4 +1,4 @@
-"""Regimes of sequences of states that are known: linear maps around a point, and the limit of a decaying one."""
+"""Regimes of known sequences of states: linear maps around a point, and the limit of a decaying sequence."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from granchain_core.steady import regime_criteria
 
 
 def strobes(multipliers: list[complex], amplitudes: list[float], count: int, seed: int = 1) -> np.ndarray:
-    """Stroboscopic states of a linear map around a point: (count + 1, 2, 3)."""
+    """Return stroboscopic states (count + 1, 2, 3) of a linear map around a point."""
     rng = np.random.default_rng(seed)
     fixed, modes = rng.standard_normal((2, 3)), rng.standard_normal((len(multipliers), 2, 3))
     k = np.arange(count + 1)
@@ -23,7 +23,7 @@ def strobes(multipliers: list[complex], amplitudes: list[float], count: int, see
 
 @pytest.mark.parametrize("rate", [0.5, 0.9, 0.97])
 def test_the_distance_bound_holds_for_a_linear_map(rate: float) -> None:
-    """Settled is said only where the true distance is below the bound, and the rate is found."""
+    """A motion counts as settled only if its true distance to the orbit is below the bound."""
     for count in range(20, 2000, 40):
         states = strobes([rate], [1.0], count)
         found = regime_criteria.find_period(states)
@@ -43,13 +43,13 @@ def test_the_workspace_holds_the_changes_of_every_period(longest: int) -> None:
 
 
 def test_a_slow_approach_is_not_called_settled_by_a_small_change() -> None:
-    """|μ| = 0.9999: a change of 1e-8 a period is a distance of 1e-4 (docs/model.md, Steady states)."""
+    """With |μ| = 0.9999, a change of 1e-8 per period is a distance of 1e-4 (docs/model.md, Steady states)."""
     assert regime_criteria.find_period(strobes([0.9999], [1e-4], 400)).name == "unsettled"
 
 
 @pytest.mark.parametrize("period", [2, 3, 4, 7])
 def test_roots_of_one_give_their_period(period: int) -> None:
-    """A multiplier e^{2πi/n} that does not decay is an orbit of period n."""
+    """A multiplier e^{2πi/n}, whose motion does not decay, gives an orbit of period n."""
     found = regime_criteria.find_period(strobes([np.exp(2j * np.pi / period), 0.3], [1.0, 1.0], 200))
     assert (found.name, found.period) == ("periodic", period)
 
@@ -63,7 +63,7 @@ def test_changes_that_are_rounding_do_not_make_a_period_longer() -> None:
 
 
 def test_a_closed_curve_is_not_periodic() -> None:
-    """An irrational rotation is quasi-periodic: no period is found, and with a zero exponent it is called that."""
+    """An irrational rotation has no period; it is labelled quasi-periodic with a Lyapunov exponent near zero."""
     states = strobes([np.exp(2j * np.pi * (np.sqrt(5) - 1) / 2)], [1.0], 420)
     assert regime_criteria.find_period(states).name == "unsettled"
     assert regime_criteria.regime_from_exponents(np.array([1e-4, -1e-4, 2e-4, -2e-4]), 400, states, 420).name == "quasi-periodic"
@@ -72,8 +72,7 @@ def test_a_closed_curve_is_not_periodic() -> None:
 
 @pytest.mark.parametrize("modes", [1, 3, ORBITS - 2])
 def test_the_limit_of_a_linear_map_with_few_modes_is_found_at_once(modes: int) -> None:
-    """k differences remove k − 1 modes; what is left are roundings of the states over the smallest 1 − μ, some 1e-14.
-    """
+    """k differences remove k − 1 modes; only the states' rounding over the smallest 1 − μ is left, about 1e-14."""
     states = strobes([0.98 - 0.1 * i for i in range(modes)], [1.0] * modes, ORBITS)
     limit = np.zeros((2, 3))
     reduced_rank(states, np.zeros((ORBITS, 6)), np.zeros((ORBITS, ORBITS)), limit)
@@ -82,14 +81,14 @@ def test_the_limit_of_a_linear_map_with_few_modes_is_found_at_once(modes: int) -
 
 @pytest.mark.quick
 def test_of_two_halves_the_slower_one_tells_the_rate() -> None:
-    """Nine changes that fall by 0.8 and then by 0.95 fall by 0.95: what is slow stays."""
+    """Changes that shrink by 0.8 and later by 0.95 have the rate 0.95, since the slow part remains."""
     changes = np.cumprod([1.0, *[0.8] * 4, *[0.95] * 4])
     assert periodicity.contraction_in(changes, 9, 1) == (pytest.approx(0.95, rel=1e-12), True)
 
 
 @pytest.mark.quick
 def test_the_shortest_period_is_told() -> None:
-    """States that alternate repeat after four periods too; their period is two."""
+    """Alternating states repeat after four periods as well, but their period is two."""
     states = np.zeros((9, 2, 1))
     states[1::2] = 1.0
     assert periodicity.shortest(states, np.ones(2), 4, 1e-10, 1e-10) == 2

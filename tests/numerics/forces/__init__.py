@@ -1,1 +1,1 @@
-"""Largest forces by a computation of their own, and whether what the product states about its own holds."""
+"""An independent computation of the largest forces, with which granchain's stated errors are checked."""

@@ -1,4 +1,5 @@
-"""Program: are the largest forces within what is stated of them? Random scenes, a table, and every one where not.
+"""A program that checks the stated errors of the largest forces: it prints a table for random scenes, and every scene
+with a force outside its stated error.
 
     python -m tests.numerics.forces run --count 1000 [--seed 1] [--few]
     python -m tests.numerics.forces curve --count 100
@@ -6,9 +7,9 @@
     python -m tests.numerics.forces run --seed 1 --only 17
     python -m tests.numerics.forces run --scene sec2 --set f=1130 --periods 300 --record 3
 
-`run` is a whole motion; `curve` and `map` are steady states, eight frequencies or cells a draw. Seeds by which factors
-were chosen are not those by which they are reported. `--scene` judges one motion instead, as `granchain run` computes
-it; the status is 1 if a force is not within what is stated of it.
+`run` checks whole motions; `curve` and `map` check steady states, with eight frequencies or cells per draw. The seeds
+with which safety factors were chosen are not those with which they are reported. `--scene` judges a single motion, as
+`granchain run` computes it. The status is then 1 if a force is not within its stated error.
 """
 
 from __future__ import annotations
@@ -27,12 +28,12 @@ from granchain_core import BadInput, Scene
 from .draw import FEW, STRUCTURES, Draw
 from .judge import COLUMNS, MOST_STEPS, SILENT, Verdict, judge_run, verdicts
 
-#: Bounds of λ in the table.
+#: Limits between the table's groups of λ.
 _STRENGTHS = (0.0, 0.02, 0.1, 0.5, 2.0, 100.0)
 
 
 def describe(v: Verdict) -> str:
-    """One verdict in a line."""
+    """Describe a verdict in one line."""
     s = v.scene
     figures = "; ".join(f"{name} true {e:.2e} stated {b:.1e} known {k:.0e}"
                         for name, e, b, k in zip(COLUMNS, v.error, v.stated, v.known, strict=True))
@@ -42,7 +43,7 @@ def describe(v: Verdict) -> str:
 
 
 def table(found: list[Verdict]) -> str:
-    """Rows by damping and force: how many claims, how many bounded, how many wrong by more than what matters."""
+    """Return a table by damping and force: numbers of claims, of bounded ones, and of forces with large errors."""
     rows = ["      λ          force    scenes  judged  claimed  bounded  wrong by > 1e-3 (all)  silent  median true/stated   worst"]
     groups = [(f"{a:g}..{b:g}", [v for v in found if a <= v.strength < b]) for a, b in itertools.pairwise(_STRENGTHS)]
     for name, part in [*groups, ("all", found)]:
@@ -61,14 +62,14 @@ def _part(true: list) -> str:
 
 
 def _summary(args: argparse.Namespace, found: list[Verdict], others: Counter[str], began: float) -> str:
-    """What was judged so far, in one line and a table."""
+    """Summarise the verdicts so far in a line and a table."""
     apart = "; ".join(f"{count} {name}" for name, count in others.items())
     return (f"{args.kind}, seed {args.seed}: {len(found)} scenes in {time.perf_counter() - began:.0f} s"
             f"{'; ' if apart else ''}{apart}\n{table(found)}")
 
 
 def judge_one(scene: Scene, periods: int, record: int, most_steps: int) -> int:
-    """Print the verdict on the forces of one's own motion; returns 1 if one is not within its error, or not judged."""
+    """Print the verdict on the forces of one motion; return 1 if one is not judged or not within its stated error."""
     verdict = judge_run(Draw(0, scene, periods, record), most_steps)
     if isinstance(verdict, str):
         print(f"Not judged: {verdict}.")
@@ -84,20 +85,20 @@ def judge_one(scene: Scene, periods: int, record: int, most_steps: int) -> int:
 
 
 def main() -> int:
-    """Print the table and what is not bounded, or the verdict on one motion; returns the status."""
+    """Print the table and the unbounded cases, or the verdict on one motion; return the exit status."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("kind", choices=("run", "curve", "map"))
     parser.add_argument("--count", type=int, default=100)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--few", action="store_true", help="only the structures of the test suite")
-    parser.add_argument("--only", type=int, help="this draw alone")
-    parser.add_argument("--minutes", type=float, default=600.0, help="no draw is begun later")
+    parser.add_argument("--only", type=int, help="judge only this draw")
+    parser.add_argument("--minutes", type=float, default=600.0, help="start no draw later than this")
     own = parser.add_argument_group("one motion instead of random ones")
     own.add_argument("--scene", metavar="SCENE", help="a name of `granchain scenes`, or a scene file NAME.toml")
     own.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="change a knob")
     own.add_argument("--periods", type=int, default=100, help="drive periods before those recorded (%(default)s)")
     own.add_argument("--record", type=int, default=20, help="drive periods recorded (%(default)s)")
-    own.add_argument("--most-steps", type=int, default=MOST_STEPS, help="steps after which the reference is given up (%(default)s)")
+    own.add_argument("--most-steps", type=int, default=MOST_STEPS, help="give up the reference after this many steps (%(default)s)")
     args = parser.parse_args()
     if args.scene is not None:
         if args.kind != "run":
@@ -105,7 +106,7 @@ def main() -> int:
         try:
             chosen = chosen_scene(args)
             if not chosen.is_driven:
-                parser.error("the reference has a driven chain only")
+                parser.error("the reference can compute driven chains only")
             return judge_one(chosen, args.periods, args.record, args.most_steps)
         except BadInput as problem:
             parser.error(str(problem))

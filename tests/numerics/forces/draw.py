@@ -1,4 +1,5 @@
-"""Random scenes for the largest forces: all laws, from hardly damped to overdamped, from quiet to loud, slow to fast.
+"""Random scenes for tests of the largest forces: all laws, from weak damping to overdamping, with drives from quiet to
+loud and from slow to fast.
 """
 
 from __future__ import annotations
@@ -16,20 +17,20 @@ STRUCTURES = with_every_law([
     ("linear", "allowed", False, True), ("tsuji", "cut", True, True), ("kuwabara-kono", "cut", False, False),
     ("kuwabara-kono", "allowed", True, True),
 ])
-#: Those that the test suite has time to compile.
+#: The structures that the test suite has time to compile.
 FEW = STRUCTURES[:3]
-#: Decades: f [Hz], A0 [m], λ = D/(mφ), κ, preload [N], thrown beads (in A0 φ).
+#: Powers of ten, from and to: f [Hz], A0 [m], λ = D/(mφ), κ, preload [N], speed of a thrown bead [A0 φ].
 RANGES = {"f": (0.0, 3.7), "A0": (-9.0, -5.0), "lambda": (-2.3, 0.7), "kappa": (-4.0, -1.0), "F0": (-2.0, 1.3), "thrown": (-1.0, 0.5)}
 ACCURACIES = (1e-4, 1e-6, 1e-8)
 MOST_BEADS, MOST_PERIODS, MOST_RECORDED = 40, 20, 3
-#: A run of several periods is not longer than so many times 1/φ: its truth takes a hundred thousand steps.
+#: A run of several periods lasts at most this many times 1/φ: its reference takes a hundred thousand steps.
 LONGEST = 1e4
 _WALLS = ("bead", "same-material", "rigid")
 
 
 @dataclass(frozen=True)
 class Draw:
-    """A scene and, for a run, its periods."""
+    """A scene, and the periods of a run that are discarded and recorded."""
 
     index: int
     scene: Scene
@@ -38,7 +39,9 @@ class Draw:
 
 
 def draw(seed: int, index: int, structures: list, longest: float = LONGEST) -> Draw:
-    """Draw number `index` of a whole motion, of several periods only within `longest`: the same for the same words."""
+    """Return draw number `index` of a whole motion, which is always the same for the same arguments. A motion of
+    several periods lasts at most `longest`.
+    """
     rng = np.random.default_rng([seed, index])
     law, tension, founded, pressed = structures[rng.integers(len(structures))]
     chosen = scene("sec2").evolve(A0=_decade(rng, "A0"))
@@ -54,7 +57,9 @@ def draw(seed: int, index: int, structures: list, longest: float = LONGEST) -> D
 
 
 def draw_steady(seed: int, index: int, structures: list) -> Scene:
-    """A chain whose steady states a curve or a map looks for: section 2's or the rig's, D up to 400, f as there."""
+    """Return a chain for a curve or a map of steady states: section 2's or the rig's, with D up to 400 N s/m and
+    frequencies in the usual range of that scene.
+    """
     rng = np.random.default_rng([seed, index, 1])
     law, tension, founded, pressed = structures[rng.integers(len(structures))]
     rig = rng.random() < 0.3
@@ -67,7 +72,7 @@ def draw_steady(seed: int, index: int, structures: list) -> Scene:
 
 
 def _shortened(chosen: Scene, periods: int, record: int, longest: float) -> tuple[int, int]:
-    """Periods discarded and recorded, at least one of these, within the longest time."""
+    """Return the numbers of discarded and recorded periods that fit into the longest time; at least one is recorded."""
     most = max(1, int(longest * chosen.f / _rate(chosen)))
     record = min(record, most)
     return min(periods, most - record), record
@@ -78,7 +83,7 @@ def _decade(rng: np.random.Generator, name: str) -> float:
 
 
 def _rate(chosen: Scene) -> float:
-    """φ."""
+    """Return φ [1/s]."""
     return float(np.sqrt(chosen.K * np.sqrt(chosen.A0) / chosen.bead(1).mass))
 
 
@@ -87,5 +92,5 @@ def _damping(chosen: Scene, strength: float) -> float:
 
 
 def strength(chosen: Scene) -> float:
-    """λ = D/(mφ)."""
+    """Return λ = D/(mφ)."""
     return float(chosen.D / (chosen.bead(1).mass * _rate(chosen)))

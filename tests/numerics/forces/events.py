@@ -1,4 +1,4 @@
-"""The first contact event inside a step, and the state of the contacts at the beginning."""
+"""The first contact event within a step, and the initial mode of every contact."""
 
 from __future__ import annotations
 
@@ -6,18 +6,18 @@ import numpy as np
 
 from .step import NET_FORCE, OPEN, SLACK, gap_and_rate, gap_and_rate_of, jit
 
-#: Places in a step at which contacts are looked at; turning points between them are looked for besides.
+#: Intervals of a step at whose ends contacts are examined; turning points within them are searched for as well.
 _LOOKS = 8
-#: What rounding of the displacements may make of an overlap: so many times their size.
+#: Error of an overlap by rounding, relative to the displacements.
 _ROUNDING = 4e-16
 _HALVINGS = 60
-#: What is watched: the overlap's zero, and the zero of the law's force where tension is cut.
+#: The watched quantities: the overlap and, if tension is cut, the law's force. An event is a zero of one of them.
 OVERLAP, FORCE = 0, 1
 
 
 @jit
 def _power_force(law, c, gap, rate):
-    """Force by the law over the power of the overlap in g: smooth and not flat where the force is zero."""
+    """Return the law's force over the power of the overlap in g, which is smooth with a nonzero slope at its zero."""
     d = max(gap, 0.0)
     return law.stiffness[c] * d ** (1.5 - 0.25 * law.power) + law.strength * rate
 
@@ -29,7 +29,7 @@ def _watched(law, c, what, gap, rate):
 
 @jit
 def _rounding(law, y, c, what):
-    """Values of what is watched below this are rounding."""
+    """Return the size below which a watched value is only rounding."""
     n = law.inverse_mass.size
     u = 1.0 if c == 0 else abs(y[c - 1])
     v = law.beta if c == 0 else abs(y[n + c - 1])
@@ -42,7 +42,7 @@ def _rounding(law, y, c, what):
 
 @jit
 def _least(law, y, scale, c, what):
-    """Values of what is watched below this are rounding, or no more than the error allowed in a step."""
+    """Return the size below which a watched value is only rounding or within the error allowed in a step."""
     n = law.inverse_mass.size
     u = (scale[c - 1] if c > 0 else 0.0) + (scale[c] if c < n else 0.0)
     v = (scale[n + c - 1] if c > 0 else 0.0) + (scale[n + c] if c < n else 0.0)
@@ -51,7 +51,7 @@ def _least(law, y, scale, c, what):
 
 @jit
 def _sign(law, state, what):
-    """+1 where an event makes it positive, −1 where negative, 0 where it is not watched."""
+    """Return +1 if an event makes the quantity positive, −1 if negative, 0 if it is not watched."""
     if what == OVERLAP:
         if state == OPEN:
             return 1.0
@@ -69,7 +69,7 @@ def _value(law, t, y, h, f, c, what, sign, x):
 
 @jit
 def _turn(law, t, y, h, f, c, what, sign, a, b):
-    """Where the value is largest between a and b, by golden section."""
+    """Return where the value is largest between a and b, by golden-section search; stop early where it is positive."""
     part = 0.5 * (np.sqrt(5.0) - 1.0)
     left, right = b - part * (b - a), a + part * (b - a)
     at_left = _value(law, t, y, h, f, c, what, sign, left)
@@ -94,7 +94,7 @@ def _turn(law, t, y, h, f, c, what, sign, a, b):
 
 @jit
 def _root(law, t, y, h, f, c, what, sign, a, b):
-    """The zero between a, where the value is not positive, and b, where it is."""
+    """Return the zero between a, where the value is not positive, and b, where it is."""
     if _value(law, t, y, h, f, c, what, sign, a) >= 0.0:
         return a
     for _ in range(_HALVINGS):
@@ -110,7 +110,7 @@ def _root(law, t, y, h, f, c, what, sign, a, b):
 
 @jit
 def _crossing(law, t, y, scale, h, f, c, what, sign, until):
-    """The first place up to `until` where the value has become positive by more than rounding; 2.0 where none is."""
+    """Return the first place up to `until` where the value becomes positive by more than rounding; 2.0 if none."""
     least = _least(law, y, scale, c, what)
     values = np.empty(_LOOKS + 1)
     for i in range(_LOOKS + 1):
@@ -130,7 +130,7 @@ def _crossing(law, t, y, scale, h, f, c, what, sign, until):
 
 @jit
 def _far(law, t, y, h, f, c, sign):
-    """Whether the overlap is so far from zero for its rate that it cannot come there within the step."""
+    """Return whether the overlap is too far from zero, at its rate, to reach it within the step."""
     near, fast = -np.inf, 0.0
     for i in range(3):
         gap, rate = gap_and_rate(law, t, y, h, f, c, 0.5 * i)
@@ -140,7 +140,7 @@ def _far(law, t, y, h, f, c, sign):
 
 @jit
 def first_event(law, mode, t, y, scale, h, f):
-    """The first event in the step from y: its place (2.0 where there is none), its contact and what becomes zero."""
+    """Return the first event in the step from y: its place (2.0 if there is none), contact and watched quantity."""
     where, contact, becomes = 2.0, -1, OVERLAP
     for c in range(mode.size):
         for what in range(2):
@@ -155,8 +155,9 @@ def first_event(law, mode, t, y, scale, h, f):
 
 @jit
 def missing(law, mode, t, y, h, f, end, c, what):
-    """How much longer the step of length h must be for what is watched of contact c to be zero at its end; 0 where it
-    is as near as rounding lets it be."""
+    """Return by how much the step h must be lengthened for the watched quantity of contact c to be zero at its end; 0
+    if it is as near to zero as rounding allows.
+    """
     sign = _sign(law, mode[c], what)
     gap, rate = gap_and_rate_of(law, t + h, end, c)
     value = _watched(law, c, what, gap, rate)
@@ -172,7 +173,7 @@ def missing(law, mode, t, y, h, f, end, c, what):
 
 @jit
 def after(law, mode, c, what):
-    """What acts in contact c behind its event."""
+    """Return the mode of contact c after its event."""
     if what == FORCE:
         return NET_FORCE if mode[c] == SLACK else SLACK
     return NET_FORCE if mode[c] == OPEN else OPEN
@@ -180,7 +181,7 @@ def after(law, mode, c, what):
 
 @jit
 def begin(law, mode, t, y):
-    """What acts in each contact of a state: one that touches without overlap is pressed unless it opens."""
+    """Set the mode of each contact for a state; a contact with overlap zero counts as closed unless it is opening."""
     for c in range(mode.size):
         gap, rate = gap_and_rate_of(law, t, y, c)
         least = _rounding(law, y, c, OVERLAP)

@@ -1,4 +1,4 @@
-"""Verdicts on the largest forces of runs, curve points and map cells: true error against the one that is stated."""
+"""Verdicts on the largest forces of runs, curve points and map cells: comparison of true and stated errors."""
 
 from __future__ import annotations
 
@@ -21,37 +21,37 @@ from .located import TooLong, located
 COLUMNS = ("input", "output", "elastic")
 #: Tolerances of the two reference computations.
 _TIGHT, _LOOSE = 1e-12, 1e-10
-#: An error counts as larger than the stated one if it is so by more than this many times how well the truth is known.
-#: An allowance, not derived: two computations may by chance differ by less than either's error.
+#: An error counts as larger than the stated one if it exceeds it by more than this many times the uncertainty of the
+#: reference. This is an allowance, not derived: two computations may by chance differ by less than either's error.
 _ALLOWANCE = 3.0
-#: A force is judged where the truth is known better than this part of what is stated: the allowance is below the stated
-#: error then, 3 × 0.3 < 1.
+#: A force is judged if the uncertainty of the reference is below this fraction of the stated error. The allowance is
+#: then below the stated error, since 3 × 0.3 < 1.
 _KNOWN_FRACTION = 0.3
-#: The least stated error in that comparison: the two reference computations agree to this where neither amplifies
+#: The smallest stated error in that comparison: the two reference computations agree to this if neither amplifies
 #: errors (measured, tests/numerics/test_force_errors.py).
 _REFERENCE_AGREES = 1e-9
-#: Steps after which the reference is given up.
+#: The reference is given up after this many steps.
 MOST_STEPS = 1_000_000
-#: Drive periods of relaxing onto an orbit.
+#: Maximum number of drive periods for relaxing onto an orbit.
 _PATIENCE = 4000
-#: The relative distance from its orbit at which a point is judged.
+#: A point is judged at this relative distance from its orbit.
 _ON_ORBIT = 1e-9
-#: A force wrong by more than this, plus so many times what is stated, is wrong in a way that matters: a definition,
-#: which docs/accuracy.md quotes.
+#: A force is silently wrong if its error exceeds this plus so many times the stated error: a definition, which
+#: docs/accuracy.md quotes.
 SILENT, _TIMES_STATED = 1e-3, 10.0
-#: Relative change of a force for a relative distance of displacements: 3/2 of an overlap's change, and an overlap is
-#: the difference of two displacements.
+#: Relative change of a force per relative distance of displacements: 3/2 of an overlap's change, and an overlap is the
+#: difference of two displacements.
 _FORCE_PER_DISTANCE = 3.0
-#: Seconds for a run.
+#: Time allowed for a run [s].
 BUDGET = 6.0
-#: Points of one curve, columns and rows of one map.
+#: Points of a curve, columns and rows of a map.
 _POINTS, _ACROSS, _DOWN = 8, 4, 2
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """One scene: the relative errors of its three forces, those stated (NaN where none is), and how well the truth is
-    known.
+    """One scene: the true and stated relative errors of its three forces (NaN if none is stated), and the uncertainty
+    of the reference.
     """
 
     kind: str
@@ -64,34 +64,34 @@ class Verdict:
 
     @property
     def strength(self) -> float:
-        """λ."""
+        """The scaled damping λ."""
         return strength(self.scene)
 
     @property
     def judged(self) -> np.ndarray:
-        """Columns whose truth is known better than what is stated of them, or than what matters where nothing is."""
+        """Columns whose reference is known well enough to judge the stated error or, if none is stated, SILENT."""
         expected = np.where(np.isnan(self.stated), SILENT, np.maximum(self.stated, _REFERENCE_AGREES))
         return self.known < _KNOWN_FRACTION * expected
 
     @property
     def bounded(self) -> np.ndarray:
-        """Columns that are within what is stated."""
+        """Columns whose error is within the stated one."""
         return self.error <= self.stated + _ALLOWANCE * self.known
 
     @property
     def silent(self) -> np.ndarray:
-        """Columns that are wrong in a way that matters."""
+        """Columns that are silently wrong, by more than SILENT plus ten times the stated error."""
         return self.error > SILENT + _TIMES_STATED * np.nan_to_num(self.stated) + _ALLOWANCE * self.known
 
 
 def apart(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Differences relative to b; 0 where both are 0, infinite where only b is."""
-    a, b = np.maximum(a, 0.0), np.maximum(b, 0.0)  # an open contact has no force, not less than none
+    """Return differences relative to b: 0 where both are 0, very large where only b is."""
+    a, b = np.maximum(a, 0.0), np.maximum(b, 0.0)  # an open contact has zero force, not −∞
     return np.where(a == b, 0.0, np.abs(a - b) / np.where(b > 0.0, b, 1e-300))
 
 
 def judge_run(drawn: Draw, most_steps: int = MOST_STEPS, budget: float = BUDGET) -> Verdict | str:
-    """The verdict on a whole motion, or why there is none; the reference is given up after `most_steps`."""
+    """Judge a whole motion, or return the reason why not; the reference is given up after `most_steps`."""
     chosen = drawn.scene
     try:
         found = run(chosen, drawn.periods, drawn.record, 16, budget=budget)
@@ -107,12 +107,12 @@ def judge_run(drawn: Draw, most_steps: int = MOST_STEPS, budget: float = BUDGET)
 
 
 def forces(found: Any) -> np.ndarray:
-    """The three largest forces of a run or a curve point."""
+    """Return the three largest forces of a run or a curve point."""
     return np.array([found.max_input_force, found.max_output_force, found.max_output_force_elastic])
 
 
 def on_orbit(chosen: Scene, state: State, n: int) -> tuple[State, float] | None:
-    """The state on the orbit of period n and its relative distance; None where it does not come near."""
+    """Return a state near the orbit of period n and its relative distance; None if the motion does not come near it."""
     before = None
     for _ in range(max(8, _PATIENCE // n)):
         after = located(chosen, n, 0, 1, 1e-11, state, MOST_STEPS // 8).state
@@ -126,7 +126,7 @@ def on_orbit(chosen: Scene, state: State, n: int) -> tuple[State, float] | None:
 
 
 def judge_point(kind: str, index: int, chosen: Scene, state: State, n: int, maxima: np.ndarray, stated: np.ndarray) -> Verdict | str:
-    """The verdict on a periodic point, or why there is none."""
+    """Judge a periodic point, or return the reason why not."""
     try:
         orbit = on_orbit(chosen, state, n)
         if orbit is None:
@@ -138,7 +138,7 @@ def judge_point(kind: str, index: int, chosen: Scene, state: State, n: int, maxi
 
 
 def judge_curve(seed: int, index: int, structures: list) -> Iterator[Verdict | str]:
-    """Verdicts on the periodic points of one short curve from rest."""
+    """Judge the periodic points of one short curve from rest."""
     base = draw_steady(seed, index, structures)
     frequencies = base.f * np.geomspace(1.0, 1.3, _POINTS)
     for point in resonance_curve(base, frequencies).points:
@@ -149,7 +149,7 @@ def judge_curve(seed: int, index: int, structures: list) -> Iterator[Verdict | s
 
 
 def judge_map(seed: int, index: int, structures: list) -> Iterator[Verdict | str]:
-    """Verdicts on the periodic cells of one small map."""
+    """Judge the periodic cells of one small map."""
     base = draw_steady(seed, index, structures)
     grid = Grid(base, Axis.of("f", base.f * np.geomspace(1.0, 1.3, _ACROSS)), Axis.of("D", base.D * np.geomspace(0.5, 1.0, _DOWN)))
     for result in iter_parameter_map(grid, workers=1):
@@ -163,9 +163,9 @@ def judge_map(seed: int, index: int, structures: list) -> Iterator[Verdict | str
 
 def verdicts(kind: str, count: int, seed: int, structures: list, first: int = 0, longest: float = LONGEST,
              budget: float = BUDGET) -> Iterator[Verdict | str]:
-    """Verdicts on draws `first` to `first + count − 1` of one kind; words where there is none.
+    """Judge draws `first` to `first + count − 1` of one kind; yield a verdict for each, or the reason why not.
 
-    `longest` and `budget` are those of a run.
+    `longest` and `budget` apply to runs.
     """
     for index in range(first, first + count):
         if kind == "run":

@@ -1,14 +1,14 @@
-"""An independent computation of the motion and of its largest forces: the paper's equations in (u, v), every contact
-event landed on by a step of its own. It shares nothing with the kernels.
+"""An independent computation of the motion and of its largest forces: it integrates the paper's equations in (u, v),
+and a step ends at every contact event. It shares no code with the kernels.
 
-Method    Dormand–Prince 8(5,3); what acts in a contact is held fixed in a step: nothing, the law, or nothing although
-          it touches (the law would pull, tension cut)
-Events    the overlap's zero, and that of K δ^{3/2} + g(δ) δ̇ where tension is cut, looked for on the step's polynomial
-          at nine places and at the turning points between them, so that a touch shorter than a step is seen; the step
-          is then repeated to end there
-Forces    of contact 0, of contact N, and of the latter's spring: the supremum over the recorded time, that is the
-          largest of the values at steps' ends, of the maxima between them and of the right limits where a contact
-          closes: D δ̇ with the linear law
+Method    Dormand–Prince 8(5,3); the mode of each contact is constant within a step: no force because it is open, the
+          force of the law, or no force although it is closed (the law would pull, and tension is cut)
+Events    zeros of the overlap and, if tension is cut, of K δ^{3/2} + g(δ) δ̇, searched for on the step's polynomial at
+          nine places and at the turning points between them, so that a touch shorter than a step is found; the step is
+          then repeated so that it ends there
+Forces    of contact 0, of contact N, and of the latter's spring: the supremum over the recorded time, that is, the
+          largest of the values at the ends of steps, of the maxima between them, and of the right limits where a
+          contact closes (D δ̇ with the linear law)
 Scales    length A0, time 1/φ, so that the equations have the coefficients of the paper's equation (2)
 """
 
@@ -38,35 +38,36 @@ from .step import (
     workspace,
 )
 
-#: A step is at most this part of a period. It grows and shrinks at most by these factors.
+#: A step is at most this fraction of a period; it grows and shrinks at most by these factors, with this safety factor.
 _LONGEST, _GROWS, _SHRINKS, _SAFETY = 1.0 / 16.0, 6.0, 0.2, 0.9
-#: Behind an event a step begins so many times as long as the last such step was.
+#: After a closing, the first step is this many times as long as the first step after the previous event.
 _AGAIN = 3.0
-#: An error is allowed per body: `tolerance` times its largest value so far, no less than this part of the chain's.
+#: The allowed error of each bead is `tolerance` times its largest value so far, or this fraction of the chain's if that
+#: is larger.
 _QUIET = 1e-4
-#: The chain's largest values count as no less than these parts of the driver's: at rest they are zero.
+#: The chain's largest values, which are zero at rest, count as at least this fraction of the driver's.
 _START = 1e-3
-#: Shortest step, over a period's length.
+#: Shortest step, as a fraction of a period.
 _SHORTEST = 1e-22
 _ROUNDING = 1e-16
-#: How a computation ends.
+#: Outcomes of a computation.
 DONE, TOO_LONG, NOT_FINITE = 0, 1, 2
-#: What is counted: steps, refused steps, events and closings; then the lengths of the next step, of the last behind a
-#: closing, and of usual ones.
+#: Counts of steps, rejected steps, events and closings; then the lengths of the next step, of the last step after an
+#: event, and of usual ones.
 _STEPS, _REFUSED, _EVENTS, _CLOSINGS, _NEXT, _BEHIND, _USUAL = range(7)
-#: Most events in a row at one instant: contacts that change to and fro there have no truth in this computation.
+#: Most events in a row at one instant: contacts that keep opening and closing there cannot be computed in this way.
 _MOST_AT_ONCE = 1000
-#: Most closings that are kept.
+#: Maximum number of closings that are recorded.
 _MOST_CLOSINGS = 100_000
 
 
 class TooLong(Exception):
-    """More steps than allowed, or contacts that change to and fro at one instant."""
+    """Raised if there are more steps than allowed, or if contacts keep opening and closing at one instant."""
 
 
 @jit
 def _scales(law, y, tolerance, most, scale):
-    """The error allowed in a step, never below what rounding makes of the overlaps and of a preload's forces."""
+    """Set the error allowed in a step, never below the rounding error of overlaps and of a preload's forces."""
     n = y.size // 2
     static = max(law.static.max(), 0.0)
     force = law.stiffness.max() * static * np.sqrt(static)
@@ -82,7 +83,7 @@ def _scales(law, y, tolerance, most, scale):
 
 @jit
 def _landed(law, mode, t, y, h, step, c, what):
-    """Repeat the step so that what is watched of contact c is zero at its end: its length and its error."""
+    """Repeat the step so that the watched quantity of contact c is zero at its end; return its length and error."""
     error = 0.0
     for _ in range(5):
         error = take_step(law, mode, t, y, h, step)
@@ -99,7 +100,7 @@ def _landed(law, mode, t, y, h, step, c, what):
 
 @jit
 def _pass(law, mode, y, c, what, time, t, counts, closings):
-    """What acts in contact c behind its event; a closing is kept with the right limit of its force."""
+    """Set the mode of contact c after its event; a closing is recorded with the right limit of its force."""
     counts[_EVENTS] += 1
     mode[c] = after(law, mode, c, what)
     counts[_NEXT] = counts[_USUAL]
@@ -119,7 +120,7 @@ def _keep_closing(law, y, c, time, t, counts, closings):
 
 @jit
 def _sample(y, t, h, step, rows, row, period, samples):
-    """Displacements at the instants that lie in the step; the row of the next one."""
+    """Store displacements at the sampling times within the step and return the row of the next one."""
     n = y.size // 2
     while row <= samples and period * row / samples <= t + h:
         x = (period * row / samples - t) / h
@@ -131,7 +132,8 @@ def _sample(y, t, h, step, rows, row, period, samples):
 
 @jit
 def one_period(law, step, mode, y, watched, time, tolerance, most_steps, most, counts, rows, maxima, closings):
-    """One drive period from phase 0, y and mode left at its end; where `watched`, `rows` (samples + 1, N) and `maxima`.
+    """Integrate one drive period from phase 0, and leave y and mode at its end. If `watched`, update `rows` (samples +
+    1, N) and `maxima`.
     """
     period, t, row, samples = 2.0 * np.pi / law.beta, 0.0, 1, len(rows) - 1
     kept, behind, at_once = np.empty(y.size), False, 0
@@ -187,7 +189,7 @@ def one_period(law, step, mode, y, watched, time, tolerance, most_steps, most, c
 
 @jit
 def _motion(law, step, mode, y, periods, record, tolerance, most_steps, most, counts, rows, maxima, closings):
-    """Run `periods` periods, then record `record`; rows (record, samples + 1, N)."""
+    """Run `periods` periods, then record `record` periods in `rows` (record, samples + 1, N)."""
     begin(law, mode, 0.0, y)
     counts[_NEXT] = counts[_USUAL] = counts[_BEHIND] = 1e-3
     period, spare = 2.0 * np.pi / law.beta, np.zeros((2, y.size // 2))
@@ -209,9 +211,8 @@ def _motion(law, step, mode, y, periods, record, tolerance, most_steps, most, co
 
 @dataclass(frozen=True, eq=False)
 class Located:
-    """A recorded motion in SI: the largest input, output and elastic output force [N], the closings in the recorded
-    time as (time s, contact, right limit of its force N), displacements (rows, N) [m], the state at the end, and the
-    cost.
+    """A recorded motion in SI units: the largest input, output and elastic output forces [N], the closings as (time
+    [s], contact, right limit of its force [N]), displacements (rows, N) [m], the final state, and the cost.
     """
 
     maxima: np.ndarray
@@ -224,7 +225,7 @@ class Located:
 
 @dataclass(frozen=True, eq=False)
 class Scaled:
-    """A scene's constants in scaled units and what they are measured in: m, 1/s, N."""
+    """A scene's constants in scaled units, and the units of length [m], rate [1/s] and force [N]."""
 
     law: Law
     length: float
@@ -233,7 +234,7 @@ class Scaled:
 
     @classmethod
     def of(cls, scene: Scene) -> Scaled:
-        """The constants of a scene."""
+        """Scale the constants of a scene."""
         mass, length = scene.bead(1).mass, scene.A0
         rate = np.sqrt(scene.K * np.sqrt(length) / mass)
         power = round(4.0 * EXPONENT[scene.dissipation]) if scene.has_dissipation else 0
@@ -243,7 +244,7 @@ class Scaled:
         return cls(law, length, float(rate), float(scene.K * length**1.5))
 
     def start(self, scene: Scene, state: State | None) -> np.ndarray:
-        """u and v (2N): those of the state, or rest with the scene's initial velocities."""
+        """Return scaled u and v (2N): those of the state, or rest with the scene's initial velocities."""
         y = np.zeros(2 * scene.N)
         if state is None:
             for number, speed in scene.start_velocity:
@@ -255,11 +256,11 @@ class Scaled:
 
 def located(scene: Scene, periods: int, record: int, samples: int = 16, tolerance: float = 1e-12,
             state: State | None = None, most_steps: int = 5_000_000, gaps: np.ndarray | None = None) -> Located:
-    """The motion from rest (or initial velocities), or from `state` at phase 0: `periods` discarded, then `record`
-    recorded.
+    """Compute the motion from rest (or initial velocities), or from `state` at phase 0: discard `periods` periods, then
+    record `record` periods.
 
-    `gaps` (N + 1,) [m] are between bodies that are at their places. Raises `TooLong`, and `FloatingPointError` where
-    the numbers are not finite.
+    `gaps` (N + 1,) [m] are those between bodies at their rest positions. Raises `TooLong`, or `FloatingPointError` if
+    numbers are not finite.
     """
     scaled = Scaled.of(scene)
     y, mode = scaled.start(scene, state), np.zeros(scene.N + 1, np.int64)

@@ -1,6 +1,6 @@
-"""One step of Dormand–Prince 8(5,3) for a chain in (u, v), its dense output, and the largest forces inside it.
+"""One step of Dormand–Prince 8(5,3) for a chain in (u, v), its dense output, and the largest forces within it.
 
-The state y holds u_1..u_N, then v_1..v_N, in scaled units; what acts in each contact is held fixed in a step.
+The state y contains u_1..u_N, then v_1..v_N, in scaled units. The mode of each contact is constant within a step.
 Coefficients: scipy.integrate._ivp.dop853_coefficients (Hairer, Nørsett & Wanner 1993, section II.5).
 """
 
@@ -17,9 +17,9 @@ from scipy.integrate._ivp import dop853_coefficients as table
 from granchain_core.kernels.compiling.cache import KernelCache
 from granchain_core.kernels.compiling.cache_folder import CACHE_FOLDER
 
-#: What acts in a contact: nothing, the law, or nothing though it touches (tension cut).
+#: Modes of a contact: open; the force of the law; closed but without force (tension cut).
 OPEN, NET_FORCE, SLACK = 0, 1, 2
-#: The forces followed: of contact 0, of contact N, of the spring of contact N.
+#: The forces examined: of contact 0, of contact N, and of the spring of contact N.
 INPUT, OUTPUT, ELASTIC = 0, 1, 2
 FORCES = 3
 
@@ -27,16 +27,16 @@ _A, _C = np.ascontiguousarray(table.A[1:12, :12]), np.ascontiguousarray(table.C[
 _B, _E3, _E5 = (np.ascontiguousarray(x) for x in (table.B, table.E3, table.E5))
 _A_MORE, _C_MORE = np.ascontiguousarray(table.A[13:]), np.ascontiguousarray(table.C[13:])
 _D = np.ascontiguousarray(table.D)
-#: Rows of slopes, and of the polynomial between a step's ends.
+#: Number of slopes, and of rows of the polynomial between a step's ends.
 SLOPES, POLYNOMIAL = 16, 7
-#: Places in a step at which forces are looked at for a top.
+#: Intervals of a step at whose ends forces are evaluated to find a maximum.
 _LOOKS = 8
 _GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
 
 
 class _Kept(KernelCache):
-    """Compiled versions on disk: those of the core's kernels know an edit by their own file, these call one another.
-    Files without compiled code do not count.
+    """Compiled versions on disk. The cache of the core's kernels notices an edit of a kernel's own file. The functions
+    here call one another, so this cache notices an edit of any file of the folder that has compiled functions.
     """
 
     def __init__(self, function: Any) -> None:
@@ -46,7 +46,7 @@ class _Kept(KernelCache):
 
 
 def jit(function: Any) -> Any:
-    """Decorator for compiled functions of this folder: compiled once a machine, by one process at a time."""
+    """Compile a function of this folder (a decorator): once per machine, and by one process at a time."""
     compiled = njit(function)
     if CACHE_FOLDER is not None:
         compiled._cache = _Kept(function)
@@ -54,7 +54,7 @@ def jit(function: Any) -> Any:
 
 
 class Law(NamedTuple):
-    """Constants of the scaled equations; `power` is four times that of the overlap in g(δ) = strength·δ^q."""
+    """Constants of the scaled equations; `power` is 4q in g(δ) = strength·δ^q."""
 
     inverse_mass: np.ndarray
     stiffness: np.ndarray
@@ -77,14 +77,14 @@ class Step(NamedTuple):
 
 
 def workspace(beads: int) -> Step:
-    """A workspace for so many beads."""
+    """Allocate a workspace for this number of beads."""
     size = 2 * beads
     return Step(np.zeros((SLOPES, size)), np.zeros(size), np.zeros(size), np.zeros(size), np.zeros((POLYNOMIAL, size)))
 
 
 @jit
 def damping(law, d):
-    """g(d) for an overlap d ≥ 0."""
+    """Return g(d) for an overlap d ≥ 0."""
     if law.power == 0:
         return law.strength
     if law.power == 1:
@@ -96,14 +96,14 @@ def damping(law, d):
 
 @jit
 def law_force(law, c, gap, rate):
-    """Force of contact c by the law, whether it would pull or not."""
+    """Return the law's force of contact c, even if it pulls."""
     d = max(gap, 0.0)
     return law.stiffness[c] * d * np.sqrt(d) + damping(law, d) * rate
 
 
 @jit
 def slope(law, mode, t, y, dy):
-    """(u̇, v̇) at time t of the period while `mode` says what acts."""
+    """Compute (u̇, v̇) at time t of the period, with the contacts in these modes."""
     n = law.inverse_mass.size
     u, v = np.sin(law.beta * t), law.beta * np.cos(law.beta * t)
     pushed = 0.0
@@ -119,7 +119,7 @@ def slope(law, mode, t, y, dy):
 
 @jit
 def _stages(law, mode, t, y, h, k, s, first, last, a, c):
-    """Slopes `first` to `last`, each from those before it."""
+    """Compute slopes `first` to `last − 1`, each from those before it."""
     for i in range(first, last):
         for j in range(y.size):
             s[j] = 0.0
@@ -135,9 +135,9 @@ def _stages(law, mode, t, y, h, k, s, first, last, a, c):
 
 @jit
 def take_step(law, mode, t, y, h, step):
-    """A step from y at t: leaves the state in step.end and returns the error over what is allowed.
+    """Take a step from y at t, leave the state in step.end, and return the error relative to the allowed one.
 
-    The slope at its beginning is expected in step.slopes[0].
+    step.slopes[0] must contain the slope at its beginning.
     """
     k, s, end = step.slopes, step.stage, step.end
     _stages(law, mode, t, y, h, k, s, 1, 12, _A, _C)
@@ -164,7 +164,7 @@ def take_step(law, mode, t, y, h, step):
 
 @jit
 def fill(law, mode, t, y, h, step):
-    """The polynomial between the ends of the step just taken."""
+    """Compute the polynomial between the ends of the step just taken."""
     k, end, f = step.slopes, step.end, step.polynomial
     _stages(law, mode, t, y, h, k, step.stage, 13, 16, _A_MORE, _C_MORE)
     for j in range(y.size):
@@ -181,7 +181,7 @@ def fill(law, mode, t, y, h, step):
 
 @jit
 def between(y, f, j, x):
-    """Component j at the part x of the step that began at y."""
+    """Return component j at the fraction x of the step that began at y."""
     value = 0.0
     for r in range(POLYNOMIAL):
         value = (value + f[POLYNOMIAL - 1 - r, j]) * (x if r % 2 == 0 else 1.0 - x)
@@ -190,7 +190,7 @@ def between(y, f, j, x):
 
 @jit
 def gap_and_rate(law, t, y, h, f, c, x):
-    """Overlap of contact c and its rate at the part x of a step."""
+    """Return the overlap of contact c and its rate at the fraction x of a step."""
     n = law.inverse_mass.size
     if c == 0:
         phase = law.beta * (t + x * h)
@@ -204,7 +204,7 @@ def gap_and_rate(law, t, y, h, f, c, x):
 
 @jit
 def gap_and_rate_of(law, t, y, c):
-    """Overlap of contact c and its rate in state y."""
+    """Return the overlap of contact c and its rate in state y."""
     n = law.inverse_mass.size
     u, v = (np.sin(law.beta * t), law.beta * np.cos(law.beta * t)) if c == 0 else (y[c - 1], y[n + c - 1])
     if c < n:
@@ -214,7 +214,7 @@ def gap_and_rate_of(law, t, y, c):
 
 @jit
 def _force(law, mode, which, gap, rate):
-    """The force `which` of a contact with this overlap and rate."""
+    """Return the force `which` of a contact with this overlap and rate."""
     c = 0 if which == INPUT else law.inverse_mass.size
     if which == ELASTIC:
         d = max(gap, 0.0)
@@ -224,7 +224,7 @@ def _force(law, mode, which, gap, rate):
 
 @jit
 def force_of(law, mode, which, t, y):
-    """The force `which` in state y."""
+    """Return the force `which` in state y."""
     gap, rate = gap_and_rate_of(law, t, y, 0 if which == INPUT else law.inverse_mass.size)
     return _force(law, mode, which, gap, rate)
 
@@ -237,10 +237,10 @@ def _force_between(law, mode, which, t, y, h, f, x):
 
 @jit
 def largest_in(law, mode, t, y, h, step, maxima, kept):
-    """Raise `maxima` to the largest forces in the step from y whose polynomial is filled: ends, and maxima between.
+    """Raise `maxima` to the largest forces at the ends of the step from y and between them; its polynomial is filled.
 
-    A top is found on the polynomial, where it need not be known well because the force is flat there, and its value
-    comes from a step that ends there. The polynomial stays; `kept` (2N) keeps the state at the end.
+    The place of a maximum is found on the polynomial; it need not be accurate, because the force is flat there. The
+    value is that of a step that ends there. The polynomial remains valid; `kept` (2N) keeps the state at the end.
     """
     n = law.inverse_mass.size
     values = np.empty(_LOOKS + 1)
@@ -268,7 +268,7 @@ def largest_in(law, mode, t, y, h, step, maxima, kept):
 
 @jit
 def _top(law, mode, which, t, y, h, f, a, b):
-    """Where the force is largest between a and b, by golden section."""
+    """Return where the force is largest between a and b, by golden-section search."""
     c, d = b - _GOLDEN * (b - a), a + _GOLDEN * (b - a)
     at_c = _force_between(law, mode, which, t, y, h, f, c)
     at_d = _force_between(law, mode, which, t, y, h, f, d)
