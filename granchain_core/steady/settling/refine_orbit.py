@@ -44,10 +44,10 @@ def refined_orbit(settling: SettlingRun, accuracy: float, samples: int = 1) -> t
     """Return an engine of the finer method on its own orbit, and the bound on the remaining distance.
 
     The orbit that the chain settled on differs from the true one by the error of its steps; a few more periods remove
-    it. With r the contraction of the regime (|μ| where it was computed, otherwise the observed factor) and `change` from
-    one n-period map to the next, the remaining distance is change·r/(1 − r), or `change` if that is larger: a map that
-    is not normal contracts by |μ| only in the long run. After an extrapolation, the distance is known from the changes
-    that follow; if these are not smaller, the extrapolation is undone.
+    this difference. With r the contraction factor of the regime (|μ| if it was computed, otherwise the observed one)
+    and `change` from one n-period map to the next, the remaining distance is change·r/(1 − r), or `change` if that is
+    larger: a map that is not normal contracts by |μ| only in the long run. After an extrapolation it is known from the
+    changes that follow; if these are not smaller, the extrapolation is undone.
     """
     scene, n = settling.scene, settling.regime.period
     assert n is not None
