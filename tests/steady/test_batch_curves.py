@@ -43,18 +43,22 @@ def test_what_is_extrapolated_is_what_the_chain_was_going_to() -> None:
 
 
 def test_a_computed_multiplier_is_kept_and_is_what_the_errors_rest_on(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Section 2's chain at 400 Hz has |μ| = 0.914 per orbit, and the orbit is found by extrapolation.
+    """Near 392 Hz, section 2's chain has |μ| ≈ 0.9 per orbit, and most of its orbits are found by extrapolation.
 
-    The decay observed before that depends on the width of vectors, so here every decay requires multipliers. One-sided
-    differences are accurate to 1e-4 for the map; coarse steps change |μ| by as much.
+    Which of them are, and the decay observed before, depend on the processor's approximate roots and on the width of
+    vectors. So there are several frequencies, and every decay requires multipliers. One-sided differences are accurate
+    to 1e-4 for the map; coarse steps change |μ| by as much.
     """
     monkeypatch.setattr("granchain_core.steady.batch.job._SLOW_CONTRACTION", 0.5)
-    found = results([400.0])[400.0]
-    exact = settle(scene("sec2").evolve(f=400.0, accuracy=1e-6))
-    assert found.regime.followed and found.regime.orbit_found_by == "extrapolation"
-    assert found.regime.multiplier == pytest.approx(exact.regime.multiplier, abs=1e-3)
-    assert found.errors is not None and found.errors.max() < 2e-4
-    assert found.maxima[1] == pytest.approx(exact.run.max_output_force, rel=found.errors[1])
+    extrapolated = [found for found in results([391.0, 392.0, 394.0, 397.0]).values()
+                    if found.regime.orbit_found_by == "extrapolation"]
+    assert extrapolated
+    for found in extrapolated:
+        exact = settle(found.scene.evolve(accuracy=1e-6))
+        assert found.regime.followed
+        assert found.regime.multiplier == pytest.approx(exact.regime.multiplier, abs=1e-3)
+        assert found.errors is not None and found.errors.max() < 2e-4
+        assert found.maxima[1] == pytest.approx(exact.run.max_output_force, rel=found.errors[1])
 
 
 def test_what_batches_call_quasi_periodic_was_measured_twice(monkeypatch: pytest.MonkeyPatch) -> None:
