@@ -23,7 +23,7 @@ class Pending:
         for callback in queued:
             callback()
 
-    def run_callbacks_until(self, until: Callable[[], bool], seconds: float = 20.0) -> None:
+    def run_callbacks_until(self, until: Callable[[], bool], seconds: float = 60.0) -> None:
         """Run callbacks until a condition is true."""
         waiting.until(until, seconds, self._call_all)
 
