@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from granchain_core.integrate.fixed import chain_width
 from granchain_core.integrate.methods import METHODS, method_for, setting_of
 from granchain_core.integrate.scaling import scale_chain, slots_of
 from granchain_core.kernels.batch_size import machine
@@ -24,6 +25,8 @@ def explanation(scene: Scene, method: str | None, samples: int) -> str:
         f"compiled in: {', '.join(present)}",
         f"absent, with no code and no array: {', '.join(absent) if absent else 'nothing'}",
         f"structure: {structure(scene)}",
+        *(["steps: scalar code, because a run keeps the energy account; pictures and curves use vectors"]
+          if chain_width(scaled) and not chosen.error_control else []),
         f"method: {chosen.title}, {why}; first {resolution}, then finer until two computations agree to that accuracy",
         f"restrictions: {chosen.restrictions}; reference: {chosen.reference}",
         f"machine: {machine()}",

@@ -22,7 +22,7 @@ from ..serve.computing.turns import TurnFlag
 from ..serve.computing.worker_pools import PICTURES
 from ..serve.monitoring.picture_stages import PictureStages
 from ..session.budget import WHOLE_PICTURE, RefusedPicture, TooLong, check_first_picture
-from ..session.energy_account import with_account
+from ..session.energy_account import account_piece, with_account
 from ..session.host import Caller
 from ..session.live import LiveRun, LiveStep
 
@@ -114,6 +114,8 @@ class PictureWork:
             for settled in pictures:
                 yield settled
         if request.account:
+            if not COMPILER.await_piece(scene, account_piece(scene), stop):
+                raise Cancelled
             with stop.held():
                 settled = with_account(settled, stop)
             yield settled

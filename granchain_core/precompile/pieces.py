@@ -10,8 +10,12 @@ CHECK_KERNELS = "checks"
 CURVE_KERNELS = "curve"
 DOP853_KERNELS = "dop853"
 FIXED_STEP_KERNELS = "fixed step"
-#: Kernels that any motion needs.
+#: Kernels of pictures and curves, without the energy account.
 MOTION_KERNELS = (FIXED_STEP_KERNELS, DOP853_KERNELS)
+#: The default method with the energy account, for `run` and the page's account.
+RUN_KERNELS = "run"
+#: dop853 with the energy account, for a run to a high accuracy; compiled only when it is needed.
+RUN_DOP853_KERNELS = "run with dop853"
 ORBIT_KERNELS = "orbit"
 BRANCH_KERNELS = "branch"
 OBSERVER_KERNELS = "observer"
@@ -21,7 +25,7 @@ COST_ACCOUNT_KERNELS = "cost account"
 
 #: Approximate time that each piece takes on two cores if nothing else is compiled [s].
 COMPILE_SECONDS = {
-    REGIME_KERNELS: 5, CHECK_KERNELS: 10, CURVE_KERNELS: 10, DOP853_KERNELS: 10, FIXED_STEP_KERNELS: 10,
-    ORBIT_KERNELS: 15, BRANCH_KERNELS: 40, OBSERVER_KERNELS: 10, ACCURACY_KERNELS: 20, COST_KERNELS: 10,
-    COST_ACCOUNT_KERNELS: 10,
+    REGIME_KERNELS: 5, CHECK_KERNELS: 10, CURVE_KERNELS: 10, DOP853_KERNELS: 10, FIXED_STEP_KERNELS: 10, RUN_KERNELS: 10,
+    RUN_DOP853_KERNELS: 15, ORBIT_KERNELS: 15, BRANCH_KERNELS: 40, OBSERVER_KERNELS: 10, ACCURACY_KERNELS: 20,
+    COST_KERNELS: 10, COST_ACCOUNT_KERNELS: 10,
 }

@@ -49,6 +49,8 @@ from .pieces import (
     OBSERVER_KERNELS,
     ORBIT_KERNELS,
     REGIME_KERNELS,
+    RUN_DOP853_KERNELS,
+    RUN_KERNELS,
 )
 
 
@@ -63,15 +65,11 @@ def structure(shown: Scene) -> str:
     return "+".join([*law, *effects, *beads]) + f", {length}"
 
 
-def _engine(setting: MethodSetting) -> Callable[[Scene], None]:
-    """Return a piece that compiles whole periods and samples with one method."""
-
-    def compile_engine(short: Scene) -> None:
-        engine = Engine(short, setting, 2)
-        engine.periods(1)
-        engine.record(2)
-
-    return compile_engine
+def _compile_engine(short: Scene, setting: MethodSetting, account: bool = False) -> None:
+    """Compile whole periods and samples with one method."""
+    engine = Engine(short, setting, 2, account=account)
+    engine.periods(1)
+    engine.record(2)
 
 
 def _regime(short: Scene) -> None:
@@ -138,15 +136,22 @@ def _cost(account: bool) -> Callable[[Scene], None]:
 #: Every piece, with the function that compiles it by a short run, in the order in which a visitor needs them.
 PIECES: dict[str, Callable[[Scene], None]] = {
     REGIME_KERNELS: _regime, CHECK_KERNELS: _checks, CURVE_KERNELS: _curve,
-    DOP853_KERNELS: _engine(dop853_setting(1e-3)), FIXED_STEP_KERNELS: _engine(fixed_step_setting()),
+    DOP853_KERNELS: lambda short: _compile_engine(short, dop853_setting(1e-3)),
+    FIXED_STEP_KERNELS: lambda short: _compile_engine(short, fixed_step_setting()),
+    RUN_KERNELS: lambda short: _compile_engine(short, following_setting(short.cuts_tension), account=True),
     ORBIT_KERNELS: _orbit, BRANCH_KERNELS: _branch, OBSERVER_KERNELS: _observer,
     ACCURACY_KERNELS: compile_methods, COST_KERNELS: _cost(account=False), COST_ACCOUNT_KERNELS: _cost(account=True),
+}
+#: Pieces that few computations need: compiled when one does, and not by `granchain warm`.
+PIECES_ON_DEMAND: dict[str, Callable[[Scene], None]] = {
+    RUN_DOP853_KERNELS: lambda short: _compile_engine(short, dop853_setting(1e-3), account=True),
 }
 
 
 def compile_piece(shown: Scene, piece: str) -> None:
     """Compile one piece for the scene's structure, or load it from the cache, and mark it as compiled."""
-    PIECES[piece](shown.evolve(f=max(shown.f, 1000.0), drive="harmonic"))  # short periods, and a drive that has orbits
+    short = shown.evolve(f=max(shown.f, 1000.0), drive="harmonic")  # short periods, and a drive that has orbits
+    {**PIECES, **PIECES_ON_DEMAND}[piece](short)
     if CACHE_FOLDER is not None:
         with contextlib.suppress(OSError):  # kernels are not cached either, as kernels/compiling/cache.py has reported
             _marker(CACHE_FOLDER, structure(shown), piece).touch()

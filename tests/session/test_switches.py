@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import pytest
+from numba.core import event
 
-from app.session.energy_account import with_account
+from app.session.energy_account import account_piece, with_account
 from app.session.session import Session
 from app.session.switches import ACCOUNT_SWITCH, SWITCHES, changes, present, variants
 from granchain_core import BadInput, scene, scene_names, settle
 from granchain_core.execution.stop import Stop
 from granchain_core.integrate.scaling import slots_of
-from granchain_core.precompile.warm import structure
+from granchain_core.precompile.warm import compile_piece, structure
 
 
 @pytest.mark.parametrize(("shown", "name"), [  # without damping, there is no tension to cut; see below
@@ -91,3 +92,14 @@ def test_the_account_of_a_picture_closes() -> None:
     # the account is as accurate as the motion with which it is integrated: a hundredth of the requested 1e-6
     assert counted.run.energy_residual is not None and counted.run.energy_residual < 1e-6
     assert counted.run.displacement is picture.run.displacement
+
+
+@pytest.mark.parametrize("accuracy", [1e-6, 1e-9])
+def test_the_account_needs_only_the_kernels_of_its_piece(accuracy: float) -> None:
+    """Otherwise, Numba would compile them in the server, and hold the GIL for half a minute."""
+    chain = scene("sec2").evolve(N=3, f=1000.0, accuracy=accuracy)
+    picture = settle(chain)
+    compile_piece(chain, account_piece(chain))
+    with event.install_recorder("numba:compile") as compilations:
+        with_account(picture, Stop())
+    assert compilations.buffer == []
