@@ -5,7 +5,7 @@
     `brief_kernel`   the same, but takes microseconds and keeps the GIL
     `internal`       a function of kernels, compiled separately and linked into its callers
     `inline_llvm`    the same, inlined by LLVM, so that values stay in registers
-    `inline_numba`   the same, inlined by Numba before types are inferred: for functions that each module calls only once
+    `inline_numba`   the same, inlined by Numba before types are inferred: for functions that each module calls once
 
 Functions that choose their code by a type are in dispatch.py.
 
