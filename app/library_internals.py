@@ -107,7 +107,8 @@ def _attributes(owner: type) -> frozenset[str]:
     for base in owner.__mro__:
         names.update(vars(base).get("__annotations__", ()))
         for method in vars(base).values():
-            names.update(_set_by(getattr(method, "__code__", None)))
+            function = getattr(method, "__func__", method)  # of a class method
+            names.update(_set_by(getattr(function, "__code__", None)))
     return frozenset(names)
 
 

@@ -1,1 +1,1 @@
-"""Programs that no test run needs: long checks, pictures of the docs, the site, the lock file."""
+"""Programs for developers: long checks, pictures of the docs, the site, the lock file; tests use some functions."""

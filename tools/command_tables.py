@@ -29,13 +29,15 @@ def table_of_json() -> str:
 #: Functions whose name differs from their command's.
 _FUNCTIONS = {"curve": "resonance_curve", "lyapunov": "lyapunov_spectrum", "rotation": "rotation_number",
               "bifurcation-diagram": "bifurcation_diagram", "map": "parameter_map", "accuracy": "work_precision"}
+#: What a command does in Python with another function before the one of its name.
+_FUNCTION_BEFORE = {"figure": "`granchain_core.paper.compute`, then "}
 
 
 def table_of_functions() -> str:
     """Return the table of README.md: the commands with a function, in the order of `granchain --help`."""
     unknown = {*_FUNCTIONS} - {*COMMANDS} | {*_FUNCTIONS.values()} - {*granchain.__all__}
     assert not unknown, f"no command or public function: {unknown}"
-    rows = [f"| `{name}` | `{function}` |" for name in COMMANDS
+    rows = [f"| `{name}` | {_FUNCTION_BEFORE.get(name, '')}`{function}` |" for name in COMMANDS
             if (function := _FUNCTIONS.get(name, name)) in granchain.__all__]
     return "\n".join(["| command | function |", "|---|---|", *rows])
 

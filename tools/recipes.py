@@ -19,12 +19,15 @@ def tables() -> list[tuple[str, str, Callable[[], str]]]:
 
 
 def table_of_steps(page: Path) -> str:
-    """Return the table of a recipe's numbered steps, with the files that each writes and edits."""
+    """Return the table of a recipe's numbered steps, with the files that each writes and edits.
+
+    A step without a block describes its edits in words.
+    """
     _, *parts = _STEP.split(page.read_text(encoding="utf-8"))
     rows = []
     for title, text in zip(parts[::2], parts[1::2], strict=True):
         new, edited = _files(text.partition("\n## ")[0])
-        rows.append(f"| {title} | {_listed(new)} | {_listed(edited)} |")
+        rows.append(f"| {title} | {_listed(new)} | {_listed(edited) if new or edited else 'see the step'} |")
     return "\n".join(["| step | new files | edited files |", "|---|---|---|", *rows])
 
 

@@ -59,8 +59,8 @@ def do(arguments: argparse.Namespace) -> None:
     for note in seen.record.notes:
         say(f"{note[0].upper()}{note[1:]}.")
     if seen.integration_error > chosen.accuracy:
-        say(f"The accuracy asked for, {chosen.accuracy:g}, was not reached: successive computations differ by "
-            f"{seen.integration_error:.1e}; an unstable observer amplifies every error.")
+        say(f"The accuracy asked for, {chosen.accuracy:g}, was not reached: the error of integration may be "
+            f"{seen.integration_error:.1e} of the largest displacement; an unstable observer amplifies every error.")
     elif seen.interpolation_error > chosen.accuracy:
         say(f"The samples limit this observer to an error of about {seen.interpolation_error:.1e}; integration itself "
             f"is good to {seen.integration_error:.1e}.")

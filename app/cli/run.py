@@ -155,6 +155,8 @@ def _evidence(regime: Regime) -> dict[str, Any]:
 
 def _show_run(result: Run) -> None:
     """Print a run in a few lines."""
-    print(f"{result.scene.name}: {result.regime.sentence}; {status_in_words(result.status)}")
+    of_record = result.regime.driven and result.regime.name == "unsettled"
+    print(f"{result.scene.name}: {result.regime.sentence}; {status_in_words(result.status)}"
+          f"{'; forces and errors are those of the recorded periods' if of_record else ''}")
     print(forces_in_words(result))
     print(errors_in_words(result))

@@ -7,7 +7,7 @@ from ..scripts import module
 
 
 class Tabs(Component):
-    """All tabs and the content of the chosen one; the tab *data* sends the text of a CSV file."""
+    """All tabs and the content of the chosen one; *data* sends the bytes of a file (CSV, HDF5, or a digitiser's)."""
 
     _esm = module("tabs.js")
     _stylesheets = [text(f"{name}.css")  # noqa: RUF012

@@ -3,8 +3,9 @@
 Where a register holds eight doubles (AVX-512), a batch has eight scenes. Zen 4 executes an instruction on such
 registers in two halves, and is still faster with eight scenes than with four, because only half as many instructions
 have to wait for one another. Where a register holds four doubles, vectors of eight scenes would take two registers
-each, and much of the time would be spent on moving them to the stack and back. Vectors along a chain (8, 16 or 32
-doubles) and of tangents (8) are the same on every processor.
+each, and much of the time would be spent on moving them to the stack and back. Where a register holds two doubles
+(SSE2, NEON), a batch has four scenes, and a vector takes two registers; this was not measured. Vectors along a chain
+(8, 16 or 32 doubles) and of tangents (8) are the same on every processor.
 """
 
 from __future__ import annotations

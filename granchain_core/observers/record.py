@@ -127,7 +127,7 @@ def prepared(record: ForceRecord, scene: Scene, offset: float | str = 0.0, gap: 
         notes.append(f"offset of {zero:.4g} N subtracted")
     elif float(np.abs(record.force).min()) > _NEAR_ZERO * float(np.abs(record.force).max()) and scene.F0 == 0.0:
         notes.append(f"the force is nowhere below {np.abs(record.force).min():.3g} N: if that is the sensor's offset, "
-                     "have it subtracted")
+                     "subtract it with --offset median, or --offset with its value (offset= in Python)")
     moved = ForceRecord(record.time, record.force - zero, record.output, record.place, record.understood)
     bridged = _bridged(moved, gap, notes)
     _check_sampling(moved, scene, sensors)

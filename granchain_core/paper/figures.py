@@ -123,6 +123,9 @@ FIGURES: dict[str, PaperFigure] = {one.number: one for one in _TABLE}
 def figure_of(number: str) -> PaperFigure:
     """Return the figure with this number. Raises `BadInput`, which names the nearest one."""
     if number not in FIGURES:
+        if number[:-1] in FIGURES and number[-1:].isalpha():
+            raise BadInput(f"There is no figure {number!r} of its own; figure {number[:-1]} is drawn with all its "
+                           "panels.")
         numbers = [int(number) for number in FIGURES if number.isdigit()]
         is_whole = number.isascii() and number.isdigit()
         near = min(max(int(number[:9]), numbers[0]), numbers[-1]) if is_whole else numbers[0]

@@ -37,7 +37,9 @@ class Regime:
         Factor by which changes shrank per orbit, 1 if they did not shrink; None if it was not observed. Files and JSON
         call it `decay`.
     distance : float or None
-        Bound on the relative distance to the orbit.
+        Bound on a relative distance to the orbit. For a motion that settled, it is that of the motion, or of the orbit
+        in a result that was computed again with finer steps (`Settled`). For an orbit that Newton's method found, it is
+        the residual over 1 − |μ|, the distance of the reported orbit; the motion itself may be farther away.
     periods_run : int
         Number of drive periods run.
     lyapunov : tuple of float or None

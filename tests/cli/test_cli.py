@@ -243,6 +243,13 @@ def test_an_undriven_chain_is_told_from_one_that_has_not_settled(capsys: pytest.
         assert (said["regime"], said["driven"]) == ("unsettled", driven)
 
 
+def test_forces_before_a_motion_has_settled_are_those_of_the_record(capsys: pytest.CaptureFixture[str]) -> None:
+    for words, transient in (["impact", "--set", "N=3"], False), (["sec2", "--set", "N=2", "--set", "f=2000"], True):
+        assert main(["run", *words, *SHORT]) == 0
+        line = capsys.readouterr().out.splitlines()[0]
+        assert line.endswith("; forces and errors are those of the recorded periods") == transient
+
+
 def test_words_say_whether_the_accuracy_was_reached_and_count_one_iteration(capsys: pytest.CaptureFixture[str]) -> None:
     chain = ["sec2", "--set", "N=2", "--set", "f=2000"]
     assert main(["run", *chain, "--periods", "60", "--record", "1", "--samples", "8"]) == 0

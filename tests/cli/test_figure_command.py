@@ -65,6 +65,7 @@ def test_an_svg_is_one_picture_with_its_caption(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("words", "said"), [
     (["13"], "There is no figure '13'; there are 1 to 12, 3a and 3b, the nearest is 12."),
+    (["6b"], "There is no figure '6b' of its own; figure 6 is drawn with all its panels."),
     (["two"], "the nearest is 1."), (["①"], "the nearest is 1."), (["9" * 5000], "the nearest is 12."),
     (["2", "--out", "a.pdf"], "name it a.html, not a.pdf"),
     (["2", "--out", "none/a.csv"], "Cannot write"),

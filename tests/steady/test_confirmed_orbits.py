@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from granchain_core import scene
+from granchain_core import orbit, scene, settle
 from granchain_core.integrate import Engine, MethodSetting
 from granchain_core.results.regime import Regime
 from granchain_core.steady.settling import regime_decisions
@@ -53,3 +53,11 @@ def test_a_motion_does_not_approach_an_unstable_orbit(monkeypatch: pytest.Monkey
     assert settled.name == recorded.name == "unsettled"
     assert settled.approaches is None and settled.multiplier is None
     assert settled.sentence == "not settled after 400 periods"
+
+
+def test_a_clear_multiplier_shown_is_that_of_the_flow_to_the_stated_error() -> None:
+    """One-sided differences at the motion's own state are good to about 1e-4."""
+    settled = settle(scene("sec2").evolve(f=250.0))
+    seen, exact = settled.regime.multiplier, orbit(settled.run.scene, 2, settled.state)
+    assert settled.regime.period == 2 and seen is not None and seen <= regime_decisions._CLEAR_MULTIPLIER
+    assert seen == pytest.approx(np.abs(exact.multipliers).max(), abs=1e-4)

@@ -1,7 +1,9 @@
-"""The generated parts of docs/paper.md: the table and the gallery, each between two marks."""
+"""The generated parts of docs/paper.md, each between two marks: the table, its rows that differ, the gallery."""
 
 from __future__ import annotations
 
+import re
+import textwrap
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -19,6 +21,19 @@ def table(rows: Sequence[Statement]) -> str:
     return "\n".join([*_HEAD, *lines])
 
 
+def not_reproduced(rows: Sequence[Statement]) -> str:
+    """Return the list of the statements that do not hold, from the rows with “Yes”."""
+    differ = [one for one in rows if one.differs.startswith("Yes")]
+    items = [f"{number}. *Figure {', '.join(one.figures)}.* {one.paper} *Here:* {_reason(one.differs)}"
+             for number, one in enumerate(differ, 1)]
+    return "\n".join("\n".join(textwrap.wrap(item, 120, subsequent_indent="   ", break_long_words=False,
+                                             break_on_hyphens=False)) for item in items)
+
+
+def _reason(differs: str) -> str:
+    return re.sub(r"^Yes, by", "By", differs.removeprefix("Yes. "))
+
+
 def gallery() -> str:
     """Return the gallery, with a picture of each figure; figure 3 shows 3a and 3b."""
     return "\n\n".join(f"### Figure {one.number}\n\n![{one.title}](paper/figure-{one.number}.png)"
@@ -26,7 +41,7 @@ def gallery() -> str:
 
 
 def with_parts(text: str, rows: Sequence[Statement]) -> str:
-    """Return the page with its table and its gallery updated."""
-    for name, part in (("table", table(rows)), ("gallery", gallery())):
+    """Return the page with its generated parts updated."""
+    for name, part in (("not reproduced", not_reproduced(rows)), ("table", table(rows)), ("gallery", gallery())):
         text = with_part(text, name, "python -m tools.paper", part)
     return text

@@ -1,7 +1,7 @@
-"""Flow control of pictures: at most two in flight, and waiting pictures are conflated.
+"""Flow control of pictures: the browser sets the pace (*backpressure*).
 
-At most two pictures are in flight until the browser acknowledges one. Of the waiting pictures, only the newest is sent.
-So the browser sets the pace (*backpressure*).
+At most `_MOST_IN_FLIGHT` pictures are in flight until the browser acknowledges one. Of the waiting pictures, only the
+newest is sent (*conflation*).
 """
 
 from __future__ import annotations

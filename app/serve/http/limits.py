@@ -1,8 +1,7 @@
 """Limits of sessions and uploads, and header names, that several modules need.
 
-The other limits of docs/security.md are in the modules that apply them: frame_rate.py, guarded_socket.py, sessions.py,
-message_rules.py, app/server.py, app/session/share.py and app/session/budget.py. This module imports nothing, because
-the command line reads it before it loads the server.
+docs/security.md lists all limits with their files. This module imports nothing, because the command line reads it
+before it loads the server.
 """
 
 #: Largest number of sessions at once, by default.

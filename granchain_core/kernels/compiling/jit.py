@@ -1,10 +1,11 @@
 """The decorators of kernels and the options they are compiled with; cache.py stores the compiled code.
 
-    `kernel`         called from Python; releases the GIL
-    `brief_kernel`   called from Python; takes microseconds and keeps the GIL
+    `kernel`         has an entry point for Python, and releases the GIL; other kernels may call it too, and are then
+                     linked with it
+    `brief_kernel`   the same, but takes microseconds and keeps the GIL
     `internal`       a function of kernels, compiled separately and linked into its callers
     `inline_llvm`    the same, inlined by LLVM, so that values stay in registers
-    `inline_numba`   the same, inlined by Numba before types are inferred: for functions with one caller
+    `inline_numba`   the same, inlined by Numba before types are inferred: for functions that each module calls once
 
 Functions that choose their code by a type are in dispatch.py.
 
@@ -115,8 +116,9 @@ def inline_llvm(function):
 
 
 def inline_numba(function):
-    """Copy a function's code into its one caller, or one per kind of step, before compiling (decorator).
+    """Copy a function's code into its caller before compiling (decorator); each module may call it only once.
 
+    Code inlined twice is compiled twice. Two modules may share a function if a scene needs only one of them.
     A function that is compiled separately is linked and optimised again in every caller, up to the kernel that Python
     calls (docs/compiling.md).
     """

@@ -1,4 +1,4 @@
-"""Continuation of a branch: tangent predictor, Newton corrector, and the search for special points in between.
+"""Continuation of a branch: predictor along the tangent with the branch's curvature, Newton corrector, special points.
 
 A failed step is halved. Below the shortest step the branch ends, and the last residuals are reported.
 

@@ -31,9 +31,9 @@ _WIDTH_FRACTION = 0.4
 #: [branch] Second part of that offset, as a fraction of the distance between the linear and the inverse quadratic
 #: estimate. The latter's error is a small fraction of the former's.
 _ERROR_FRACTION = 0.1
-#: [branch] Interval, in levels of bisection, at which the middle is used whatever the test function says.
+#: [branch] Interval, in levels of subdivision, at which the middle is used whatever the test function says.
 _LEVELS_TO_MIDDLE = 5
-#: [branch] Maximum number of levels of bisection between two neighbours. The interval is then accepted at its width.
+#: [branch] Maximum number of levels of subdivision between two neighbours. The interval is then accepted at its width.
 _MOST_LEVELS = 60
 
 

@@ -40,11 +40,15 @@ TESTS = Path(__file__).parents[2]
 
 
 PAGE = (TESTS.parent / "docs" / "security.md").read_text(encoding="utf-8")
+#: The rows of the table of the server's limits: limit, value, constant and file, tests.
+ROWS = re.findall(r"^\| ([^|]+) \| ([^|]+) \| ([^|]+) \| ([^|]+) \|$",
+                  PAGE.split("| limit | value | constant and file | tested by |")[1].split("\n\n")[0], re.MULTILINE)
 #: The limits of the server: a value, and the names of its tests.
-LIMITS = {limit: (value, re.findall(r"`(\w+)`", tests)) for limit, value, tests in re.findall(
-    r"^\| ([^|]+) \| ([^|]+) \| ([^|]+) \|$", PAGE.split("| limit | value | tested by |")[1].split("\n\n")[0], re.MULTILINE)}
-STATED_LIMITS = dict(re.findall(
-    r"^\| ([^|]+) \| (\d+) \|$", PAGE.split("| a visitor asks for | at most |")[1].split("\n\n")[0], re.MULTILINE))
+LIMITS = {limit: (value, re.findall(r"`(\w+)`", tests)) for limit, value, _, tests in ROWS}
+#: The rows of the table of what visitors may ask for: what, value, constant and file.
+ASKED_ROWS = re.findall(r"^\| ([^|]+) \| (\d+) \| ([^|]+) \|$",
+                        PAGE.split("| a visitor asks for | at most | constant and file |")[1].split("\n\n")[0], re.MULTILINE)
+STATED_LIMITS = {name: value for name, value, _ in ASKED_ROWS}
 
 
 def test_the_limits_of_the_document_are_those_of_the_code() -> None:
@@ -80,6 +84,17 @@ def test_what_pages_may_be_asked_is_what_the_document_says() -> None:
         "Analysis: starts of each of two knobs": questions.MOST_STARTS, "Analysis: drive periods": questions.MOST_PERIODS,
         "Analysis: strobes kept": questions.MOST_STROBES,
     } == {name: int(value) for name, value in STATED_LIMITS.items()}
+
+
+@pytest.mark.parametrize("where", [*(row[2] for row in ROWS), *(row[2] for row in ASKED_ROWS)])
+def test_the_constant_of_a_limit_is_in_the_file_that_the_document_names(where: str) -> None:
+    places = [re.fullmatch(r"((?:`\w+`(?:, | and )?)+) in `([\w/]+\.py)`", place) for place in where.split("; ")
+              if place != "set by `--max-sessions`"]
+    for place in places:
+        assert place is not None, where
+        source = (TESTS.parent / place[2]).read_text(encoding="utf-8")
+        for name in re.findall(r"`(\w+)`", place[1]):
+            assert re.search(rf"^(class )?{name}\b", source, re.MULTILINE), (name, place[2])
 
 
 @pytest.mark.parametrize(("limit", "tests"), [(limit, tests) for limit, (_, tests) in LIMITS.items()])
