@@ -22,7 +22,7 @@ from ...session.progress import COMPUTING, OFF, READY, Status, StatusWords
 from ...session.task import Job, Task
 from .view import Accuracy, described_methods, described_reference
 
-WORDS = StatusWords("the kernels of all methods", ACCURACY_KERNELS, kept="the measurements so far")
+WORDS = StatusWords("the kernels of all methods", ACCURACY_KERNELS, remaining="the measurements so far")
 
 
 def measured_for(scene: Scene) -> str:
