@@ -1,4 +1,4 @@
-"""Checked access to a file: the seal, links and data that are not followed, limits of the child, sentences of errors."""
+"""Checked access to a file: the seal, links and data that are not followed, limits of the child, and sentences."""
 
 from __future__ import annotations
 
