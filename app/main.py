@@ -1,5 +1,5 @@
 """The page for `panel serve app/main.py`: the page of `granchain serve`, without its guards (docs/security.md)."""
 
-from app.dashboard.entry import page
+from app.dashboard.entry import open_web_page
 
-page()
+open_web_page()

@@ -17,7 +17,7 @@ from bokeh.server.server import Server
 from bokeh.settings import settings
 
 from .curve.sweep import CURVES_SHARED
-from .dashboard.entry import page
+from .dashboard.entry import open_web_page
 from .dashboard.picture_work import PICTURES_SHARED
 from .library_internals import check_releases
 from .serve.compiling.compiler import COMPILER
@@ -122,8 +122,8 @@ def server_at(port: int, address: str, access: Access | None = None) -> Server:
     rules = Rules(hosts, Sessions(access.max_sessions), access.embedding, secret, frozenset(filter(_is_ipv6, names)),
                   access.proxy, access.proxy_header)
     server = rules.sessions.server = pn.serve(
-        {"/": _guarded_page}, port=port, address=address, start=False, show=False, title="granchain", location=False,
-        verbose=False, websocket_origin=[name for name in names if not _is_ipv6(name)],
+        {"/": _guarded_web_page}, port=port, address=address, start=False, show=False, title="granchain",
+        location=False, verbose=False, websocket_origin=[name for name in names if not _is_ipv6(name)],
         websocket_max_message_size=LARGEST_MESSAGE,
         extra_patterns=list(HANDLERS.items()),
         http_server_kwargs={"idle_connection_timeout": IDLE_TIME, "body_timeout": BODY_TIME,
@@ -137,11 +137,11 @@ def server_at(port: int, address: str, access: Access | None = None) -> Server:
     return server
 
 
-def _guarded_page() -> None:
-    """Make the page. Fail if its request had no guard, because then the promises of docs/security.md do not hold."""
+def _guarded_web_page() -> None:
+    """Open the web page. Fail if its request had no guard: then the promises of docs/security.md do not hold."""
     if not is_guarded():
         raise RuntimeError("a request reached the page without a check")
-    page()
+    open_web_page()
 
 
 def add_shared_metrics() -> None:

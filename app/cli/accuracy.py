@@ -38,9 +38,9 @@ def do(arguments: argparse.Namespace) -> None:
 
 def _accuracy_json(result: Any) -> dict[str, Any]:
     """Return the measurement as one JSON object; "naive" has the output force's error with plain steps in (u, v)."""
-    naive = [{"method": drawing.method, "steps_per_period": drawing.steps,
-              "output_force_error": finite_or_null(drawing.error), "failure": drawing.failure}
-             for drawing in result.lesson.drawn]
+    naive = [{"method": line.method, "steps_per_period": line.steps,
+              "output_force_error": finite_or_null(line.error), "failure": line.failure}
+             for line in result.lesson.lines]
     return {
         "reference": {"method": result.reference, "agreement": finite_or_null(result.agreement),
                       "second": result.second, "disagreement": result.disagreement},
@@ -63,6 +63,6 @@ def _show_accuracy(result: Any) -> None:
         best = result.cheapest(error)
         if best is not None:
             print(f"the cheapest way to {error:g} is {best.method}, {best.setting}: {1e3 * best.wall_s:.2f} ms")
-    for drawing in result.lesson.drawn if result.lesson else ():
-        drawn = drawing.failure or f"off by {100 * drawing.error:.2g} % of the largest"
-        print(f"output force by {drawing.method} with {drawing.steps} steps per period: {drawn}")
+    for line in result.lesson.lines if result.lesson else ():
+        outcome = line.failure or f"off by {100 * line.error:.2g} % of the largest"
+        print(f"output force by {line.method} with {line.steps} steps per period: {outcome}")

@@ -20,7 +20,7 @@ from granchain_core.orbits.branch.special import SpecialPoint
 from . import ending
 from .common import check_points, chosen_scene, finite_or_null, in_background, say, say_if, show_json, unbroken
 from .data_options import add_amplitude, chosen_amplitude
-from .foundation import kept_along
+from .foundation import kappa_changes_along
 from .options import add_result, whole
 from .picture import add_option as add_picture
 from .picture import check_files, write_picture
@@ -50,7 +50,7 @@ def do(arguments: argparse.Namespace) -> None:
     """Follow a branch of periodic orbits and report it."""
     check_files(arguments)
     check_points(arguments.points, 2, MOST_POINTS)
-    branch = _followed(arguments)
+    branch = _computed(arguments)
     write_picture(arguments.picture, f"A branch of {branch.axis.scene.name}", branch)
     for half in branch.half_branches:
         say(f"{len(half.points)} orbits {_way(half)}: {half.reason or 'stopped after the number of orbits asked for'}")
@@ -94,87 +94,91 @@ def _normal_form(point: SpecialPoint) -> dict[str, Any] | None:
         "error": finite_or_null(form.error), "reason": form.reason, "angle": point.angle}
 
 
-def _followed(arguments: argparse.Namespace) -> Branch:
+def _computed(arguments: argparse.Namespace) -> Branch:
     """Compute the branch and write its file; of an interrupted branch, only the missing orbits are computed."""
     from granchain_core.store import save_branch
 
-    begun: list[_Begun] = []
+    followed: _Followed | None = None
     if arguments.out:
-        ending.keeps(str(folder_of(arguments.out)))
+        ending.note_checkpoints(str(folder_of(arguments.out)))
 
     def work(stop: Any) -> Branch:
-        begun.append(followed := _begun(arguments, stop))
-        if followed.kept is not None:
-            followed.kept.begin(followed.branch)
+        nonlocal followed
+        followed = _start_or_resume(arguments, stop)
+        if followed.checkpoints is not None:
+            followed.checkpoints.begin(followed.branch)
         return Continuation(followed.branch, stop).run(arguments.points, _Progress(followed))
 
     try:
         branch = in_background(work, reports=True)
     except (Cancelled, KeyboardInterrupt):
-        if arguments.out and begun:  # --resume continues from the orbits found so far
-            save_branch(begun[0].branch, arguments.out)
-            written = f"{len(begun[0].branch.points)} orbits are in {arguments.out}; continue with --resume"
+        if arguments.out and followed:  # --resume continues from the orbits found so far
+            save_branch(followed.branch, arguments.out)
+            written = f"{len(followed.branch.points)} orbits are in {arguments.out}; continue with --resume"
             ending.wrote(written)
-            _remove(begun[0].kept)
+            followed.remove_checkpoints()
             raise Cancelled(written) from None
         raise
     except ComputationError:
-        if begun and begun[0].kept is not None:
-            begun[0].kept.kept.write()
+        if followed and followed.checkpoints is not None:
+            followed.checkpoints.folder.write()
         raise
     if arguments.out:
+        assert followed is not None
         with unbroken(arguments.out):
             save_branch(branch, arguments.out)
-            _remove(begun[0].kept)
+            followed.remove_checkpoints()
     return branch
 
 
-def _remove(kept: OrbitCheckpoints | None) -> None:
-    if kept is not None:
-        kept.kept.remove()
-
-
 @dataclass
-class _Begun:
-    """A branch to be followed, and the checkpoints that keep its orbits in the meantime."""
+class _Followed:
+    """A branch that is followed, and the checkpoints with its orbits; None without --out."""
 
     branch: Branch
-    kept: OrbitCheckpoints | None
+    checkpoints: OrbitCheckpoints | None
+
+    def remove_checkpoints(self) -> None:
+        """Remove the checkpoints, because the result's file has all orbits."""
+        if self.checkpoints is not None:
+            self.checkpoints.folder.remove()
 
 
-def _begun(arguments: argparse.Namespace, stop: Any) -> _Begun:
+def _start_or_resume(arguments: argparse.Namespace, stop: Any) -> _Followed:
     """Return a new branch, or the branch that --resume continues."""
     if arguments.resume:
         branch = _in_file(arguments)
-        kept = OrbitCheckpoints(branch.axis, len(branch.half_branches) > 1, arguments.out) if arguments.out else None
-        if kept is not None:
-            kept.kept.open(resume=True)
-        return _Begun((kept.branch() if kept is not None else None) or branch, kept)
+        if not arguments.out:
+            return _Followed(branch, None)
+        checkpoints = OrbitCheckpoints(branch.axis, len(branch.half_branches) > 1, arguments.out)
+        checkpoints.folder.open(resume=True)
+        return _Followed(checkpoints.branch() or branch, checkpoints)
     if arguments.resume is not None and not arguments.out:
         raise BadInput("--resume needs a FILE, or --out FILE, the file of the branch that was interrupted.")
     for option, value in (("--knob", arguments.knob), ("--from", arguments.start), ("--to", arguments.end)):
         if value is None:
             raise BadInput(f"granchain branch needs {option}, for example --knob f --from 340 --to 100.")
     chosen = chosen_scene(arguments)
-    say_if(kept_along(chosen, arguments.knob))
+    say_if(kappa_changes_along(chosen, arguments.knob))
     amplitude = chosen_amplitude(arguments, chosen)
-    kept, interrupted = None, None
+    new, interrupted = None, None
     if arguments.out:
-        kept = OrbitCheckpoints(KnobAxis.of(chosen, arguments.knob, arguments.start, arguments.end, amplitude),
-                                arguments.both, arguments.out)
-        kept.kept.open(resume=arguments.resume is not None)
-        interrupted = _interrupted(arguments, kept)
-    return _Begun(interrupted or begin_branch(chosen, arguments.knob, arguments.start, arguments.end, arguments.period,
-                                              both=arguments.both, stop=stop, amplitude=amplitude), kept)
+        new = OrbitCheckpoints(KnobAxis.of(chosen, arguments.knob, arguments.start, arguments.end, amplitude),
+                               arguments.both, arguments.out)
+        new.folder.open(resume=arguments.resume is not None)
+        interrupted = _interrupted(arguments, new)
+    return _Followed(interrupted or begin_branch(chosen, arguments.knob, arguments.start, arguments.end,
+                                                 arguments.period, both=arguments.both, stop=stop,
+                                                 amplitude=amplitude), new)
 
 
-def _interrupted(arguments: argparse.Namespace, kept: OrbitCheckpoints) -> Branch | None:
+def _interrupted(arguments: argparse.Namespace, checkpoints: OrbitCheckpoints) -> Branch | None:
     """Return the orbits found before an interruption, from their blocks or from --out; None if there are none."""
     from granchain_core.store import load_branch
 
     if arguments.resume is None:
         return None
-    interrupted, file = kept.branch(), Path(arguments.out)
+    interrupted, file = checkpoints.branch(), Path(arguments.out)
     if file.exists():
         try:
             written = load_branch(file)
@@ -182,7 +186,8 @@ def _interrupted(arguments: argparse.Namespace, kept: OrbitCheckpoints) -> Branc
             if interrupted is None:
                 raise
         else:
-            if kept.asks_for(written):  # some blocks may be missing, if the command was killed while it removed them
+            # some blocks may be missing, if the command was killed while it removed them
+            if checkpoints.asks_for(written):
                 interrupted = max(filter(None, (interrupted, written)), key=lambda branch: len(branch.points))
             elif interrupted is None:
                 raise BadInput(f"{file} holds another branch; give another --out.")
@@ -207,15 +212,15 @@ def _in_file(arguments: argparse.Namespace) -> Branch:
 
 
 class _Progress:
-    """Callback that keeps orbits and reports progress; the threads of both half-branches call it after each orbit."""
+    """Callback after each orbit, from the threads of both half-branches: it adds checkpoints and reports progress."""
 
-    def __init__(self, begun: _Begun) -> None:
-        self._begun = begun
+    def __init__(self, followed: _Followed) -> None:
+        self._followed = followed
         self._lock = threading.Lock()
 
     def __call__(self, half: HalfBranch) -> None:
-        if self._begun.kept is not None:
-            self._begun.kept.add(self._begun.branch.period, half)
+        if self._followed.checkpoints is not None:
+            self._followed.checkpoints.add(self._followed.branch.period, half)
         last = half.points[-1]
         if len(half.points) % _EVERY == 0:
             with self._lock:

@@ -19,7 +19,7 @@ from granchain_core.scene.validity import missing_impurity
 
 from . import ending
 from .compiling import announce_compiling
-from .foundation import kept_spring
+from .foundation import kappa_changed_by_amplitude
 
 T = TypeVar("T")
 
@@ -44,7 +44,7 @@ def chosen_scene(arguments: argparse.Namespace) -> Scene:
         changes[name] = value
     preset = scene(Path(arguments.scene) if arguments.scene.endswith(".toml") else arguments.scene)
     chosen = preset.evolve(**changes)
-    say_if(kept_spring(preset, chosen, changes))
+    say_if(kappa_changed_by_amplitude(preset, chosen, changes))
     say_if(missing_impurity(chosen))
     return chosen
 

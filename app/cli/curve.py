@@ -12,6 +12,7 @@ import numpy as np
 from granchain_core import BadInput
 from granchain_core.precompile.pieces import CHECK_KERNELS, FIXED_STEP_KERNELS
 
+from .checkpoints import add_resume, finished, writing_checkpoints
 from .common import (
     accuracy_unused,
     check_points,
@@ -26,7 +27,6 @@ from .common import (
 )
 from .compiling import compiling_beside
 from .data_options import add_amplitude, chosen_amplitude, with_answers
-from .keeping import add_resume, finished, keeping
 from .options import add_result, add_scheduler, number, scheduler_of, whole
 from .picture import add_option as add_picture
 from .picture import check_files, write_picture
@@ -123,36 +123,36 @@ def _swept(arguments: argparse.Namespace, request: CurveRequest) -> Curve:
 
     written = finished(arguments, "curve", load_curve,
                        lambda curve: CurveRequest.answered_by(curve).digest == request.digest)
-    kept = point_checkpoints(request, arguments.out) if arguments.out else None
+    folder = point_checkpoints(request, arguments.out) if arguments.out else None
     points = len(request.frequencies)
     known: list[CurvePoint] = []
-    if kept is not None:
+    if folder is not None:
         if written is not None:
-            kept.remove()
+            folder.remove()
             return written
-        kept.open(arguments.resume)
-        known = points_in(kept)
+        folder.open(arguments.resume)
+        known = points_in(folder)
     if known:
         say(f"{len(known)} of {points} points have already been computed.")
     done = [len(known)]
 
     def count(point: CurvePoint) -> None:
         done[0] += 1
-        if kept is not None:
-            kept.add(point)
+        if folder is not None:
+            folder.add(point)
         if point.failure:
             say(f"{point.frequency:g} Hz: {point.failure}")
         if sys.stderr.isatty():
             show_percent(done[0] / points)
 
     with (scheduler_of(arguments) as client,
-          keeping(kept, lambda: f"{done[0]} of {points} points")):
+          writing_checkpoints(folder, lambda: f"{done[0]} of {points} points")):
         swept = in_background(lambda stop: request.compute(stop=stop, on_point=count, known=known, scheduler=client),
                               reports=True)
-    if kept is not None:
+    if folder is not None:
         with unbroken(arguments.out):
             save_curve(swept, arguments.out)
-            kept.remove()
+            folder.remove()
     return swept
 
 

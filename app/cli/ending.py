@@ -34,7 +34,7 @@ _WORDS = {130: "Cancelled", 143: "Terminated"}
 class _EndRequest:
     """A request to end this process: the exit status of the first signal, and the function to call when it arrives.
 
-    `kept` is the folder of the pieces finished so far, if the command keeps any. `written` says what the result's file
+    `folder` has the pieces finished so far, if the command writes checkpoints. `written` says what the result's file
     contains, once that file is written.
     """
 
@@ -42,7 +42,7 @@ class _EndRequest:
         self.lock = threading.Lock()
         self.status: int | None = None
         self.tell: Callable[[], None] | None = None
-        self.kept = ""
+        self.folder = ""
         self.written = ""
 
 
@@ -89,9 +89,9 @@ def _wait(reading: int) -> None:
         _end()
 
 
-def keeps(folder: str) -> None:
+def note_checkpoints(folder: str) -> None:
     """Record the folder of finished pieces, for the last sentence of a computation that does not end in time."""
-    _REQUEST.kept = folder
+    _REQUEST.folder = folder
 
 
 def wrote(words: str) -> None:
@@ -101,8 +101,8 @@ def wrote(words: str) -> None:
 
 def _end() -> NoReturn:
     sentence = _REQUEST.written
-    if not sentence and os.path.isdir(_REQUEST.kept):
-        sentence = f"finished work is kept in {_REQUEST.kept}; continue with --resume"
+    if not sentence and os.path.isdir(_REQUEST.folder):
+        sentence = f"finished work is kept in {_REQUEST.folder}; continue with --resume"
     with suppress(OSError):
         os.write(2, f"{word()}{f': {sentence}' if sentence else ''}.\n".encode())
     os._exit(status())

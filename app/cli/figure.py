@@ -67,7 +67,7 @@ def _checked(name: str, theme: str) -> str:
     if theme not in THEMES:
         raise unknown_name("theme", theme, THEMES)
     if kind in (".png", ".svg"):
-        from ..plots.browser import browser
+        from ..headless.browser import browser
 
         browser()
     return kind
@@ -77,7 +77,7 @@ def _written(figure: Any, result: Any, kind: str, theme: str) -> bytes:
     """Return the content of the file."""
     if kind == ".csv":
         return table_of(result).encode("utf-8")
-    from ..plots.browser import png_of, svg_of
+    from ..headless.browser import png_of, svg_of
     from ..plots.file import captioned_html
     from ..plots.paper import paper_figure, size_of
 

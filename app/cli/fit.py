@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from granchain_core import BadInput
 from granchain_core.inputs.text import number_in
 
-from .common import check_points, chosen_scene, in_background, say, show_json
+from .common import check_points, chosen_scene, in_background, say, show_json, unbroken
 from .data_options import add_answers, add_bandwidth, with_answers
 from .options import add_json, add_scene, add_scheduler, number, scheduler_of, whole
 from .picture import add_option as add_picture
@@ -83,12 +83,13 @@ def do(arguments: argparse.Namespace) -> None:
     if sys.stderr.isatty():
         say()
     data = {**result.to_json(), "bandwidth": arguments.bandwidth if math.isfinite(arguments.bandwidth) else None}
-    if arguments.out:
-        values, misfits = result.landscape
-        landscape = {parameter.name: values[:, i].tolist() for i, parameter in enumerate(result.free)}
-        Path(arguments.out).write_text(json.dumps({**data, "landscape": {
-            **landscape, "misfit": misfits.tolist()}}, indent=1), encoding="utf-8")
-    write_picture(arguments.picture, f"A fit of {chosen.name}", result)
+    with unbroken(arguments.out):
+        if arguments.out:
+            values, misfits = result.landscape
+            landscape = {parameter.name: values[:, i].tolist() for i, parameter in enumerate(result.free)}
+            Path(arguments.out).write_text(json.dumps({**data, "landscape": {
+                **landscape, "misfit": misfits.tolist()}}, indent=1), encoding="utf-8")
+        write_picture(arguments.picture, f"A fit of {chosen.name}", result)
     if arguments.json:
         show_json(data)
     else:

@@ -8,13 +8,13 @@ from granchain_core import Scene
 from granchain_core.scene.validity import moved_kappa
 
 
-def kept_spring(before: Scene, after: Scene, named: Collection[str]) -> str:
+def kappa_changed_by_amplitude(before: Scene, after: Scene, named: Collection[str]) -> str:
     """Say how a new A0 changed kappa and how to keep it; return "" if A0 did not change, or k or kappa was set too."""
     notice = "" if {"k", "kappa"} & set(named) else moved_kappa(before, after)
     return notice and f"{notice}. It is {after.kappa:.6g} now; --set kappa={before.kappa:.6g} keeps it."
 
 
-def kept_along(current: Scene, *knobs: str) -> str:
+def kappa_changes_along(current: Scene, *knobs: str) -> str:
     """Say that kappa changes along a branch or map in A0 at constant k; return "" if it does not."""
     if "A0" not in knobs or {"k", "kappa"} & set(knobs) or current.k == 0.0:
         return ""

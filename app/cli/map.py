@@ -22,6 +22,7 @@ from granchain_core.parameter_maps.grid import MOST_CELLS
 from granchain_core.precompile.pieces import FIXED_STEP_KERNELS
 from granchain_core.scene.quantities import QUANTITIES
 
+from .checkpoints import add_resume, finished, writing_checkpoints
 from .common import (
     accuracy_unused,
     chosen_scene,
@@ -34,8 +35,7 @@ from .common import (
 )
 from .compiling import compiling_beside
 from .data_options import add_amplitude, chosen_amplitude
-from .foundation import kept_along
-from .keeping import add_resume, finished, keeping
+from .foundation import kappa_changes_along
 from .options import add_json, add_scene, add_scheduler, scheduler_of, values_from
 from .picture import add_option as add_picture
 from .picture import check_picture, write_picture
@@ -73,7 +73,7 @@ def do(arguments: argparse.Namespace) -> None:
     chosen = chosen_scene(arguments)
     grid = Grid(chosen, axis_from("--x", arguments.x), axis_from("--y", arguments.y),
                 chosen_amplitude(arguments, chosen))
-    say_if(kept_along(grid.scene, grid.x.knob, grid.y.knob))
+    say_if(kappa_changes_along(grid.scene, grid.x.knob, grid.y.knob))
     say_if(accuracy_unused(grid.scene, "cells"))
     check_writable(arguments.out)
     check_picture(arguments.picture)
@@ -94,17 +94,17 @@ def _found(arguments: argparse.Namespace, grid: Grid) -> tuple[ParameterMap, int
     written = finished(arguments, "map", load_parameter_map,
                        lambda parameter_map: parameter_map.complete and parameter_map.grid.digest == grid.digest)
     if written is not None:
-        Blocks(grid, arguments.out).kept.remove()
+        Blocks(grid, arguments.out).folder.remove()
         return written, 0
     done = [0]
     with scheduler_of(arguments) as client:
         blocks = Blocks.open(grid, arguments.out, arguments.resume)
         with (compiling_beside(grid.scene, FIXED_STEP_KERNELS),
-              keeping(blocks.kept, lambda: f"{done[0]} of {grid.size} cells")):
+              writing_checkpoints(blocks.folder, lambda: f"{done[0]} of {grid.size} cells")):
             parameter_map, computed = in_background(lambda stop: _filled(blocks, client, stop, done), reports=True)
     with unbroken(arguments.out):
         save_parameter_map(parameter_map, arguments.out)
-        blocks.kept.remove()
+        blocks.folder.remove()
     return parameter_map, computed
 
 

@@ -14,7 +14,7 @@ from .data_options import add_answers, add_bandwidth, with_answers
 from .forces import cost_in_words, forces_in_words, forces_json, scene_json, status_in_words
 from .options import add_result
 from .picture import add_option as add_picture
-from .picture import check_picture, write_picture
+from .picture import check_picture, write_files
 
 if TYPE_CHECKING:
     from granchain_core.observers import Observation
@@ -42,7 +42,7 @@ def do(arguments: argparse.Namespace) -> None:
     """Push a scene's chain with a measured force."""
     from granchain_core import observe as push
     from granchain_core.observers import first_state, read_force
-    from granchain_core.store import check_writable, save_observation
+    from granchain_core.store import check_writable
 
     chosen = chosen_scene(arguments)
     if arguments.start not in ("rest", "input"):
@@ -64,9 +64,7 @@ def do(arguments: argparse.Namespace) -> None:
     elif seen.interpolation_error > chosen.accuracy:
         say(f"The samples limit this observer to an error of about {seen.interpolation_error:.1e}; integration itself "
             f"is good to {seen.integration_error:.1e}.")
-    if arguments.out:
-        save_observation(seen, arguments.out)
-    write_picture(arguments.picture, f"An observer of {chosen.name}", seen)
+    write_files(arguments, f"An observer of {chosen.name}", seen)
     if arguments.json:
         show_json({**_json(seen), "bandwidth": arguments.bandwidth if math.isfinite(arguments.bandwidth) else None})
         return

@@ -16,12 +16,12 @@ from granchain_core.results.run import start_words
 from granchain_core.runs.budget import BUDGET
 from granchain_core.version import __version__
 
+from .checkpoints import add_resume, finished, writing_checkpoints
 from .common import chosen_scene, in_background, show_json, show_percent, unbroken
 from .compiling import compiling_beside
 from .data_options import add_answers, add_bandwidth, add_tip_mass
 from .driven import PERIODIC, check_no_samples, do_driven
 from .forces import errors_in_words, errors_json, forces_in_words, forces_json, scene_json, status_in_words, warn
-from .keeping import add_resume, finished, keeping
 from .options import add_result, number, whole
 from .picture import add_option as add_picture
 from .picture import check_picture, write_picture
@@ -91,9 +91,9 @@ def _result(chosen: Scene, arguments: argparse.Namespace) -> Run:
     progress = show_percent if sys.stderr.isatty() else None
     sizes = arguments.periods, arguments.record, arguments.samples
 
-    def computed(stop: Any, kept: RunCheckpoints | None) -> Run:
+    def computed(stop: Any, checkpoints: RunCheckpoints | None) -> Run:
         return run_scene(chosen, *sizes, arguments.method, stop=stop, progress=progress, budget=arguments.budget,
-                         kept=kept)
+                         kept=checkpoints)
 
     if not arguments.out:
         if arguments.resume:
@@ -101,18 +101,18 @@ def _result(chosen: Scene, arguments: argparse.Namespace) -> Run:
         return in_background(lambda stop: computed(stop, None), reports=True)
     from granchain_core.store import load, save
 
-    kept = RunCheckpoints(chosen, *sizes, arguments.method, arguments.out)
+    checkpoints = RunCheckpoints(chosen, *sizes, arguments.method, arguments.out)
     written = finished(arguments, "run", load, lambda run: _is_asked_for(run, chosen, arguments))
     if written is not None:
-        kept.kept.remove()
+        checkpoints.folder.remove()
         return written
-    kept.open(arguments.resume)
-    with keeping(kept.kept, lambda: f"{kept.done} of {arguments.periods} discarded periods of computation "
-                                    f"{kept.computation}"):
-        result = in_background(lambda stop: computed(stop, kept), reports=True)
+    checkpoints.open(arguments.resume)
+    with writing_checkpoints(checkpoints.folder, lambda: f"{checkpoints.done} of {arguments.periods} discarded periods "
+                                                         f"of computation {checkpoints.computation}"):
+        result = in_background(lambda stop: computed(stop, checkpoints), reports=True)
     with unbroken(arguments.out):
         save(result, arguments.out)
-        kept.kept.remove()
+        checkpoints.folder.remove()
     return result
 
 

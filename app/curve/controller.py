@@ -80,7 +80,7 @@ class CurveController:
         self._names.forget()
         self._drafts.drop()
         self._figure.clear()
-        self._figure.range(*slider_range(scene, "f"))
+        self._figure.set_range(*slider_range(scene, "f"))
         if selected:
             return self.select(scene, selected)
         self._wanted["features"] = scene.pattern == rig_beads()

@@ -70,9 +70,9 @@ class CurveFigure:
 
     def _line(self, start: str, grey: bool) -> ColumnDataSource:
         source = ColumnDataSource(curve_columns([], 1.0))
-        style, last = SWEEPS[start], {"line_color": GREY, "line_width": 1.8, "line_alpha": 0.45} if grey else {}
+        style, overrides = SWEEPS[start], {"line_color": GREY, "line_width": 1.8, "line_alpha": 0.45} if grey else {}
         renderers = [self.figure.add_glyph(source, Line(
-            **{**curve_line(start), "line_color": style.colour, **last}), level=style.level)]
+            **{**curve_line(start), "line_color": style.colour, **overrides}), level=style.level)]
         if not grey:
             marks = self.figure.add_glyph(source, Scatter(**curve_marks(start)))
             renderers.append(marks)
@@ -114,7 +114,7 @@ class CurveFigure:
         """Show fewer numbers on the axis if there is little room."""
         self.figure.xaxis[0].ticker.desired_num_ticks = 3 if compact else 5
 
-    def range(self, low: float, high: float) -> None:
+    def set_range(self, low: float, high: float) -> None:
         """Set the range of frequencies shown."""
         self.figure.x_range.update(start=low, end=high)
 

@@ -12,10 +12,10 @@ from granchain_core import BadInput, State
 from ..former_names import TABS, present_tab
 from ..pages.analysis.questions import read_question
 from ..pages.stories.page import story_places, story_step
+from ..session.initial_state import read_initial_state
 from ..session.pins import Pin, read_pin
 from ..session.session import Session
-from ..session.share import BROWSER_FIELDS, PINS, QUESTION, START, decode
-from ..session.starts import read_start
+from ..session.share import BROWSER_FIELDS, INITIAL_STATE, PINS, QUESTION, decode
 from .table import overlay_names, tab_names
 
 T = TypeVar("T")
@@ -49,7 +49,9 @@ def apply_address(session: Session, query: str) -> tuple[State | None, list[str]
     if session.question and _read(lambda: read_question(session.question, scene), sentences) is None:
         session.question = ""
     session.settled, session.initial_state = None, None
-    return _read(lambda: read_start(fields[START], scene), sentences) if START in fields else None, sentences
+    if INITIAL_STATE not in fields:
+        return None, sentences
+    return _read(lambda: read_initial_state(fields[INITIAL_STATE], scene), sentences), sentences
 
 
 def _pins(texts: list[str], sentences: list[str]) -> list[Pin]:

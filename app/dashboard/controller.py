@@ -106,7 +106,7 @@ class Controller:
     def _ready(self, message: dict[str, Any]) -> None:
         disable_nagle(self._document)
         self.views.set_compact(bool(message.get("compact")))
-        # Here rather than in `entry.page`: a plain GET must not start a compiler (docs/security.md).
+        # Here rather than in `entry.open_web_page`: a plain GET must not start a compiler (docs/security.md).
         COMPILER.prepare(self.session.scene)
         self.choices.set_theme(message.get("theme"))
         self.pinned.show()

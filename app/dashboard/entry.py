@@ -18,7 +18,7 @@ from .addresses import apply_address
 from .controller import Controller
 
 
-def page() -> None:
+def open_web_page() -> None:
     """Make a new page in the document of the present request; the address may be a share link."""
     pn.extension("katex", browser_info=False)  # otherwise Panel would add a root for it with every part
     document = pn.state.curdoc

@@ -1,4 +1,4 @@
-"""The share link, and files of the picture on the screen."""
+"""The share link, and files of the picture on the picture."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from granchain_core.store import save
 
 from ..curve.controller import CurveController
 from ..serve.computing.worker_pools import FILES
-from ..session.export import EXPORTS, TEXTS, Screen
+from ..session.export import EXPORTS, TEXTS, ExportedPicture
 from ..session.host import PageHost
 from ..session.message_checks import quoted
 from ..session.page import Actions
@@ -23,8 +23,8 @@ from .layout import Views
 from .main_picture import MainPicture
 
 _NONE = "There is no picture to save yet; wait for the first one."
-_PASSES = ("Only a settled picture can be exported as a script; a live run depends on when each knob moved. Choose "
-           "“settled”, or save the run as HDF5.")
+_LIVE_IS_NO_SCRIPT = ("Only a settled picture can be exported as a script; a live run depends on when each knob moved. "
+                      "Choose “settled”, or save the run as HDF5.")
 
 
 class Exports:
@@ -53,23 +53,23 @@ class Exports:
             self._write(".h5", partial(_hdf5, run, self._host.session.measured))
         elif isinstance(what, str) and what in TEXTS:
             end, text = TEXTS[what]
-            screen = self._screen(run, what)
-            self._write(end, lambda: text(screen).encode())
+            picture = self._exported_picture(run, what)
+            self._write(end, lambda: text(picture).encode())
         else:
             raise BadInput(f"There is no file {quoted(what)} to save; choose from {', '.join(EXPORTS)}.")
 
-    def _screen(self, run: Run, what: str) -> Screen:
+    def _exported_picture(self, run: Run, what: str) -> ExportedPicture:
         session = self._host.session
         if what in ("script", "notebook"):
             if session.mode == "live":
-                raise BadInput(_PASSES)
+                raise BadInput(_LIVE_IS_NO_SCRIPT)
             if session.settled is None or not session.settled.final or run.scene != session.scene:
                 raise BadInput("The picture is still being computed; save it when the status line no longer says "
                                "“preview”.")
         curves = self._curves.complete(session.scene)
         if what == "curve" and not curves:
             raise BadInput("No resonance curve is complete yet; wait until its progress bar disappears.")
-        return Screen(run, session.initial_state, curves, session.link)
+        return ExportedPicture(run, session.initial_state, curves, session.link)
 
     def _write(self, end: str, content: Callable[[], bytes]) -> None:
         scene = self._host.session.scene

@@ -84,7 +84,7 @@ class Views:
             "header": self.header, "knobs": self.knobs, "equation": self.equation, "chain": self.chain,
             "curvebar": self.curve_bar, "tabs": self.tabs, "status_line": self.status_line, **self.overlays,
         }
-        put_into(document, parts, self._plots, *_page())
+        put_into(document, parts, self._plots, *_template())
 
     @property
     def _plots(self) -> tuple[Plot, ...]:
@@ -92,7 +92,7 @@ class Views:
 
 
 @cache
-def _page() -> tuple[str, dict[str, Any]]:
+def _template() -> tuple[str, dict[str, Any]]:
     """Return the template of the page and its variables, the same for every session."""
     return (_HERE / "dashboard.html").read_text(encoding="utf-8"), {
         "dashboard_css": style_sheet() + text("dashboard.css") + text("skeleton.css"),

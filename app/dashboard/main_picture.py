@@ -61,7 +61,7 @@ class MainPicture:
         self._show_notice = show_notice
         self._picture_ready = picture_ready
         self._jobs = LatestWins(self._keep_newest, partial(host.next_tick, self._failed), self._session.cpu_time)
-        self._work = PictureWork(host, self._jobs.cpu_time, show_notice, self._begun_from)
+        self._work = PictureWork(host, self._jobs.cpu_time, show_notice, self._note_initial_state)
         self._pacer: PicturePacer[Settled | LiveStep] = PicturePacer(self._send, self.next_live_step)
         self._live: LiveRun | None = None
         self._lock = threading.Lock()
@@ -72,8 +72,8 @@ class MainPicture:
         #: The last request for a picture; None after a failure.
         self._request: _PictureRequest | None = None
         #: The stages of the last request until its computation is submitted, and of a picture until it is sent.
-        self._begun: PictureStages | None = None
-        self._unsent: PictureStages | None = None
+        self._pending_stages: PictureStages | None = None
+        self._unsent_stages: PictureStages | None = None
         #: The stages of pictures in flight, by their numbers.
         self._in_flight: dict[int, PictureStages] = {}
         self._numbers = itertools.count(1)
@@ -117,8 +117,8 @@ class MainPicture:
 
     def compute(self, initial_state: State | None = None) -> None:
         """Compute a picture for the present knobs, from `initial_state` or from the visitor's chosen start."""
-        self._begun = PictureStages()
-        self._request = _PictureRequest(next(self._numbers), self._begun)
+        self._pending_stages = PictureStages()
+        self._request = _PictureRequest(next(self._numbers), self._pending_stages)
         session, scene = self._session, self._session.scene
         if session.mode == "live":
             if self.live is not None:
@@ -139,7 +139,7 @@ class MainPicture:
 
     def _submit(self, work: _Work) -> None:
         """Compute `work` next; its pictures answer the last request."""
-        stages, self._begun = self._begun, None
+        stages, self._pending_stages = self._pending_stages, None
         if stages is not None:
             stages.end("pace")  # live mode requests no step while two pictures are in flight
         self._jobs.submit(partial(self._answers, work, self._request, stages))
@@ -150,7 +150,7 @@ class MainPicture:
             return self.live.window_run()
         return None if self._session.settled is None else self._session.settled.run
 
-    def _begun_from(self, initial_state: State | None) -> None:
+    def _note_initial_state(self, initial_state: State | None) -> None:
         """Note the state in which the motion begins, before the first picture arrives; document locked."""
         if initial_state is not self._session.initial_state:
             self._session.initial_state = initial_state
@@ -202,7 +202,7 @@ class MainPicture:
             return
         if stages is not None:
             stages.end("loop")
-            self._unsent = stages
+            self._unsent_stages = stages
         self._count_answer(request)
         if isinstance(result, Settled):
             self._session.settled = result
@@ -216,7 +216,7 @@ class MainPicture:
 
     def _failed(self, error: Exception) -> None:
         """Report a failure; after it, live steps answer no request."""
-        self._request = self._begun = None
+        self._request = self._pending_stages = None
         self._host.show_failure(error)
 
     def _count_answer(self, request: _PictureRequest | None) -> None:
@@ -230,7 +230,7 @@ class MainPicture:
 
     def _send(self, number: int, result: Settled | LiveStep) -> None:
         METRICS.count("pictures")
-        stages, self._unsent = self._unsent, None
+        stages, self._unsent_stages = self._unsent_stages, None
         if stages is not None:
             stages.end("pace")
             self._in_flight[number] = stages

@@ -80,16 +80,16 @@ def _refusing(scene: Scene) -> Iterator[None]:
 class PictureWork:
     """The work of threads for one session's pictures. It neither reads the session nor writes to the page.
 
-    `show_notice` is called with a sentence, `begun_from` with the state in which a settled motion begins (None for
-    rest); both are called with the document locked.
+    `show_notice` is called with a sentence, `note_initial_state` with the state in which a settled motion begins (None
+    for rest); both are called with the document locked.
     """
 
     def __init__(self, caller: Caller, cpu_time: CpuTime, show_notice: Callable[[str], None],
-                 begun_from: Callable[[State | None], None]) -> None:
+                 note_initial_state: Callable[[State | None], None]) -> None:
         self._caller = caller
         self._cpu_time = cpu_time
         self._show_notice = show_notice
-        self._begun_from = begun_from
+        self._note_initial_state = note_initial_state
 
     def settled_pictures(self, request: SettledRequest, stages: PictureStages, stop: TurnFlag) -> Iterator[Settled]:
         """Yield the pictures of a request; one that takes too long is refused."""
@@ -106,7 +106,7 @@ class PictureWork:
             check_first_picture(scene)
         self._await_first_kernels(scene, stop)
         stages.end("kernels")
-        self._caller.next_tick(self._begun_from, initial_state)
+        self._caller.next_tick(self._note_initial_state, initial_state)
         key = None if initial_state is not None or insisted else scene
         most = math.inf if insisted else WHOLE_PICTURE
         with closing(PICTURES_SHARED.follow(key, partial(_computed, scene, initial_state, most, stages), stop,

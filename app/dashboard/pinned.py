@@ -16,11 +16,11 @@ from ..serve.computing.cpu_time import CpuTime
 from ..serve.computing.worker_pools import ANALYSES, CURVES
 from ..session.budget import check_first_picture, curve_affordable
 from ..session.host import PageHost
+from ..session.initial_state import MOST_BEADS_IN_LINK
 from ..session.message_checks import check_index
 from ..session.page import Actions
 from ..session.pins import NAMES, Pin, compared_rows, setting_words
 from ..session.scene_facts import without_frequency
-from ..session.starts import MOST_BEADS
 from ..session.task import Job, Task, report_nothing
 from .layout import Views
 
@@ -163,5 +163,5 @@ class Pinned:
 
 def _key(pin: Pin) -> str:
     """Return the key of a pin: its link, plus the identity of an initial state that is too long for a link."""
-    short = pin.initial_state is None or len(pin.initial_state.displacement) <= MOST_BEADS
+    short = pin.initial_state is None or len(pin.initial_state.displacement) <= MOST_BEADS_IN_LINK
     return pin.text if short else f"{pin.text} {id(pin.initial_state)}"

@@ -6,9 +6,9 @@ from collections.abc import Callable
 from typing import Any
 
 from ..parts.header.header import Header
+from ..session.initial_state import MOST_BEADS_IN_LINK
 from ..session.page import Actions
 from ..session.session import Session
-from ..session.starts import MOST_BEADS
 from .main_picture import MainPicture
 
 
@@ -61,7 +61,7 @@ class Playback:
         scene, different = self._session.scene, []
         if self._session.mode == "live":
             different.append("the live run has started again")
-        elif scene.is_driven and scene.N > MOST_BEADS:  # the link has no room for its initial state
+        elif scene.is_driven and scene.N > MOST_BEADS_IN_LINK:  # the link has no room for its initial state
             different.append("the motion starts from rest")
         if message.get("uploaded"):
             different.append("your uploaded data are gone")

@@ -180,7 +180,7 @@ export function render({ model }) {
     });
   window.granchain.on("overlay", (name) => window.granchain.address.setPlace({ page: name ?? "" }));
   window.granchain.on("compare", () => {
-    window.granchain.closePage();
+    window.granchain.closeOverlay();
     tabs.choose("numbers");
   });
   // While a knob moves, numbers arrive faster than anyone can read, and drawing tables takes time from the pictures.
@@ -193,16 +193,16 @@ export function render({ model }) {
     }, READABLE);
   });
   // After a step back or forward.
-  window.granchain.on("place", ({ tab: name, page: over }) => {
+  window.granchain.on("place", ({ tab: name, page: overlay }) => {
     tabs.choose(tabs.rows.has(name) ? name : tabs.first);
-    window.granchain.openPage(over || null);
+    window.granchain.openOverlay(overlay || null);
   });
   window.granchain.on("bead", () => {
     if (tabs.chosen !== "probe" && !window.granchain.overlay) tabs.choose("probe");
   });
   const { tab = tabs.first, page } = model.state.place;
   tabs.choose(tab);
-  if (page) window.granchain.openPage(page);
+  if (page) window.granchain.openOverlay(page);
   else window.granchain.address.setPlace({ page: "" }); // an unknown page is dropped from the address
   return tabs.root;
 }

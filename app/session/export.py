@@ -26,7 +26,7 @@ _SAME_DIFFERENCE = 5e-6
 
 
 @dataclass(frozen=True, eq=False)
-class Screen:
+class ExportedPicture:
     """A settled picture with its initial state (None for rest), its complete curves by start, and its address."""
 
     run: Run
@@ -75,15 +75,15 @@ def curve_csv(curves: Mapping[str, Sequence[CurvePoint]]) -> str:
     return _csv(titles, (row(start, point, known) for (start, point), known in zip(all_points, rows, strict=True)))
 
 
-def script(screen: Screen) -> str:
+def script(picture: ExportedPicture) -> str:
     """Return a Python program that computes the picture and its curves again and says whether the results agree."""
-    return "\n\n".join(source for _, source in _pieces(screen)) + "\n"
+    return "\n\n".join(source for _, source in _pieces(picture)) + "\n"
 
 
-def notebook(screen: Screen) -> str:
+def notebook(picture: ExportedPicture) -> str:
     """Return a Jupyter notebook that computes the picture and its curves again, compares and draws the results."""
     cells: list[dict[str, Any]] = []
-    for words, source in [*_pieces(screen), *_drawings(screen)]:
+    for words, source in [*_pieces(picture), *_drawings(picture)]:
         if words:
             cells.append(_cell("markdown", words))
         cells.append(_cell("code", source))
@@ -99,15 +99,15 @@ def _cell(kind: str, source: str) -> dict[str, Any]:
     return {**cell, "execution_count": None, "outputs": []} if kind == "code" else cell
 
 
-def _pieces(screen: Screen) -> list[tuple[str, str]]:
+def _pieces(picture: ExportedPicture) -> list[tuple[str, str]]:
     """Return the words and source of each part of the program."""
-    shown = screen.scene
+    shown = picture.scene
     arguments = ", ".join(f"{name}={value!r}" for name, value in shown.differences().items())
     chain = f'scene("{shown.name}")' + (f".evolve({arguments})" if arguments else "")
     head = f'''"""What granchain {__version__} showed: {shown.title}, {shown.f:g} Hz.
 
 Install granchain, then run this with Python. It computes the picture again and compares the results.
-Address on the page: ?{screen.query}
+Address on the page: ?{picture.query}
 """
 
 import numpy as np
@@ -115,9 +115,9 @@ import numpy as np
 from granchain import State, resonance_curve, scene, settle
 
 chain = {chain}'''
-    picture = f"""{_start(screen.initial_state)}
-run = settle(chain, start=start, samples={screen.run.samples}).run"""
-    forces = {title: float(getattr(screen.run, field)) for title, field in _FORCES.items()}
+    motion = f"""{_start(picture.initial_state)}
+run = settle(chain, start=start, samples={picture.run.samples}).run"""
+    forces = {title: float(getattr(picture.run, field)) for title, field in _FORCES.items()}
     numbers = f"""# The values on the page, and the same values computed now.
 page = {pprint.pformat(forces, sort_dicts=False, width=100)}
 fields = {pprint.pformat(_FORCES, sort_dicts=False, width=100)}
@@ -126,9 +126,9 @@ print(run.regime.sentence)
 for name, value in here.items():
     same = abs(value - page[name]) <= {_SAME_DIFFERENCE:g} * abs(page[name])
     print(f"{{name:26}} {{value:.6g}}", "as on the page" if same else f"but the page had {{page[name]:.6g}}")"""
-    pieces = [("", head), ("The motion, settled.", picture), ("Its largest forces.", numbers)]
-    pieces += [(f"The resonance curve, {start}.", _curve(start, points, screen)) for start, points
-               in screen.curves.items()]
+    pieces = [("", head), ("The motion, settled.", motion), ("Its largest forces.", numbers)]
+    pieces += [(f"The resonance curve, {start}.", _curve(start, points, picture)) for start, points
+               in picture.curves.items()]
     return pieces
 
 
@@ -144,9 +144,9 @@ def _array(values: Sequence[float] | np.ndarray) -> str:
     return f"np.array({[float(value) for value in values]!r})"
 
 
-def _curve(start: str, points: Sequence[CurvePoint], screen: Screen) -> str:
+def _curve(start: str, points: Sequence[CurvePoint], picture: ExportedPicture) -> str:
     name = f"curve_{start}"
-    over = screen.scene.evolve(f=without_frequency(screen.scene).f)
+    over = picture.scene.evolve(f=without_frequency(picture.scene).f)
     return f"""# The page's curve, {start}: its frequencies [Hz], and the largest output forces it drew [N].
 frequencies = {_array([point.frequency for point in points])}
 drawn = {_array([point.max_output_force for point in points])}
@@ -156,14 +156,14 @@ apart = np.nanmax(np.abs(computed - drawn)) / np.nanmax(drawn)
 print(f"curve, {start}: {{len(frequencies)}} points, largest difference from the page {{apart:.1e}} of its peak")"""
 
 
-def _drawings(screen: Screen) -> list[tuple[str, str]]:
+def _drawings(picture: ExportedPicture) -> list[tuple[str, str]]:
     motion = """from bokeh.io import output_notebook, show
 
 import granchain
 
 output_notebook(hide_banner=True)
 show(granchain.figure(run))"""
-    curves = [(f"The curve, {start}.", f"show(granchain.figure(curve_{start}))") for start in screen.curves]
+    curves = [(f"The curve, {start}.", f"show(granchain.figure(curve_{start}))") for start in picture.curves]
     return [("The motion: drive and input force, every bead's energy, output force.", motion), *curves]
 
 
@@ -181,8 +181,8 @@ EXPORTS = {
     "script": "Python script that computes it again", "notebook": "Jupyter notebook that computes it again",
 }
 #: Exports that are texts: the end of the file name, and the function that writes the text.
-TEXTS: dict[str, tuple[str, Callable[[Screen], str]]] = {
-    "trains": ("-trains.csv", lambda screen: trains_csv(screen.run)),
-    "curve": ("-curve.csv", lambda screen: curve_csv(screen.curves)),
+TEXTS: dict[str, tuple[str, Callable[[ExportedPicture], str]]] = {
+    "trains": ("-trains.csv", lambda picture: trains_csv(picture.run)),
+    "curve": ("-curve.csv", lambda picture: curve_csv(picture.curves)),
     "script": (".py", script), "notebook": (".ipynb", notebook),
 }

@@ -9,8 +9,8 @@ from granchain_core import BadInput, Run, Scene, State
 from granchain_core.scene.quantities import QUANTITIES
 
 from ..format import figures_of, in_words, signed_in_words
-from .share import PINS, START, decode, encode
-from .starts import read_start, start_text
+from .initial_state import initial_state_text, read_initial_state
+from .share import INITIAL_STATE, PINS, decode, encode
 
 #: Names of the pins, in their order.
 NAMES = "ABC"
@@ -27,7 +27,7 @@ class Pin:
     @property
     def text(self) -> str:
         """The pin as a link without a view."""
-        return encode(self.scene, {}, {START: start_text(self.initial_state)})
+        return encode(self.scene, {}, {INITIAL_STATE: initial_state_text(self.initial_state)})
 
 
 def pin_texts(pins: Sequence[Pin]) -> dict[str, str]:
@@ -39,7 +39,7 @@ def read_pin(text: str) -> Pin:
     """Read the pin of a link's field. Raises `BadInput` for any bad value: a pin is read completely or not at all."""
     try:
         shown, fields, refused = decode(text)
-        start = read_start(fields[START], shown) if START in fields else None
+        start = read_initial_state(fields[INITIAL_STATE], shown) if INITIAL_STATE in fields else None
     except BadInput:
         refused = [text]
     if refused:

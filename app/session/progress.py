@@ -34,13 +34,13 @@ class StatusWords:
     """The words of one computation of a page.
 
     compiles, piece : words for its kernels, and the piece that takes longest to compile.
-    kept : words for the results that stay when the visitor stops it; empty if none stay.
+    remaining : words for the results that stay when the visitor stops it; empty if none stay.
     instead : words that replace those of `UNDER_WAY`.
     """
 
     compiles: str = "the kernels"
     piece: str = FIXED_STEP_KERNELS
-    kept: str = ""
+    remaining: str = ""
     instead: Mapping[Status, str] = field(default_factory=dict)
 
     def of(self, status: Status, failure: str = "") -> dict[str, Any]:
@@ -55,5 +55,5 @@ class StatusWords:
         if status == "compiling":
             return f"{compiling_words(self.compiles, self.piece)} …"
         if status == "stopped":
-            return f"stopped; {self.kept} are kept" if self.kept else "stopped"
+            return f"stopped; {self.remaining} are kept" if self.remaining else "stopped"
         return self.instead.get(status, UNDER_WAY.get(status, ""))

@@ -15,10 +15,10 @@ from granchain_core import BadInput, Scene, Settled, State, scene
 from granchain_core.experiment import Measured, Series
 
 from ..serve.computing.cpu_time import CpuTime
+from .initial_state import initial_state_text
 from .message_checks import is_number, quoted
 from .pins import Pin, pin_texts
-from .share import BROWSER_FIELDS, DEFAULT_SCENE, QUESTION, SPEEDS, START, VIEW, VIEW_VALUES, encode, pins_in
-from .starts import start_text
+from .share import BROWSER_FIELDS, DEFAULT_SCENE, INITIAL_STATE, QUESTION, SPEEDS, VIEW, VIEW_VALUES, encode, pins_in
 from .switches import ACCOUNT_SWITCH, changes
 
 MODES = VIEW_VALUES["mode"]
@@ -86,7 +86,8 @@ class Session:
         view = {name: setting.text(getattr(self, setting.attribute))
                 for name, setting in VIEW.items() if name not in BROWSER_FIELDS}
         began = self.initial_state if self.mode == "settled" else None
-        texts = {START: start_text(began), "story": self.story, QUESTION: self.question, **pin_texts(self.pins)}
+        texts = {INITIAL_STATE: initial_state_text(began), "story": self.story, QUESTION: self.question,
+                 **pin_texts(self.pins)}
         return encode(self.scene, view, texts)
 
     def apply_view(self, fields: Mapping[str, str]) -> None:

@@ -67,14 +67,14 @@ VIEW: dict[str, ViewField] = {
 BROWSER_FIELDS = ("tab", "page", "look", "embed")
 #: The values of the view settings; the first is the default.
 VIEW_VALUES: dict[str, tuple[str, ...]] = {name: field.values for name, field in VIEW.items()}
-#: Field for the state in which the motion began, a text that `starts.py` reads.
-START = "from"
+#: Field for the state in which the motion began, a text that `initial_state.py` reads.
+INITIAL_STATE = "from"
 #: Fields for the pinned pictures, texts that `pins.py` reads.
 PINS = ("pin", "pin2", "pin3")
 #: Field for the question of the Analysis page, a text that `pages/analysis/questions.py` reads.
 QUESTION = "question"
 #: Largest number of characters in a link.
-LONGEST = 4500
+LONGEST_LINK = 4500
 #: Number of characters reserved in a link for `BROWSER_FIELDS`; tests/dashboard/test_table.py compares it with the
 #: longest values.
 _ADDED_BY_BROWSER = 100
@@ -83,7 +83,7 @@ _ADDED_BY_BROWSER = 100
 def encode(shown: Scene, view: Mapping[str, str], texts: Mapping[str, str] | None = None) -> str:
     """Return the query string (without "?") that restores this scene and view.
 
-    `texts` has `START`, `PINS`, `QUESTION` and "story". If there is no room for all pins, the last pins are left out
+    `texts` has `INITIAL_STATE`, `PINS`, `QUESTION` and "story". If there is no room for all pins, the last are left out
     (`pins_in`).
     """
     fields: dict[str, Any] = {"v": VERSION, "scene": shown.name}
@@ -95,7 +95,7 @@ def encode(shown: Scene, view: Mapping[str, str], texts: Mapping[str, str] | Non
     fields.update({name: text for name, text in (texts or {}).items() if text})
     query = urlencode(fields)
     for name in reversed(PINS):
-        if len(query) + _ADDED_BY_BROWSER <= LONGEST:
+        if len(query) + _ADDED_BY_BROWSER <= LONGEST_LINK:
             break
         if fields.pop(name, None):
             query = urlencode(fields)
@@ -113,8 +113,8 @@ def decode(query: str, more: Mapping[str, Sequence[str]] | None = None) -> tuple
     `more` has further view settings with their values, which only the page knows.
     """
     known = {**VIEW_VALUES, **(more or {})}
-    if len(query) > LONGEST:
-        return scene(DEFAULT_SCENE), {}, [f"The link is longer than {LONGEST} characters and was not read."]
+    if len(query) > LONGEST_LINK:
+        return scene(DEFAULT_SCENE), {}, [f"The link is longer than {LONGEST_LINK} characters and was not read."]
     refused: list[str] = []
     fields = _fields(query, refused)
     if fields.pop("v", VERSION) != VERSION:
@@ -123,7 +123,7 @@ def decode(query: str, more: Mapping[str, Sequence[str]] | None = None) -> tuple
     view: dict[str, str] = {}
     # kappa comes last: it is converted with the A0 of the link, and replaces k only if it is valid
     for name, text in sorted(fields.items(), key=lambda field: field[0] == "kappa"):
-        if name in (START, QUESTION, *PINS):
+        if name in (INITIAL_STATE, QUESTION, *PINS):
             view[name] = text
             continue
         if name in known:
@@ -133,7 +133,7 @@ def decode(query: str, more: Mapping[str, Sequence[str]] | None = None) -> tuple
                 refused.append(f"{name} = {text[:40]!r} in the link is not one of {', '.join(known[name])}.")
             continue
         if name not in QUANTITIES:
-            fields_known = ("scene", *known, START, QUESTION, *PINS, *QUANTITIES)
+            fields_known = ("scene", *known, INITIAL_STATE, QUESTION, *PINS, *QUANTITIES)
             refused.append(f"In the link: {unknown_name('field', name, fields_known)}")
             continue
         try:
@@ -165,5 +165,5 @@ def _scene(name: str, refused: list[str]) -> Scene:
         return scene(DEFAULT_SCENE)
 
 
-if {*VIEW_VALUES, START, QUESTION, *PINS} & set(QUANTITIES):
+if {*VIEW_VALUES, INITIAL_STATE, QUESTION, *PINS} & set(QUANTITIES):
     raise RuntimeError("a view setting has the name of a knob")

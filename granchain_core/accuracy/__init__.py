@@ -2,8 +2,16 @@
 
 from .compared_methods import MeasuredMethod, compared_methods
 from .measurements import Row, WorkPrecision, cheapest
-from .naive import Lesson, Naive
+from .naive import NaiveComparison, NaiveLine
 from .work_precision import work_precision
 
-__all__ = ["Lesson", "MeasuredMethod", "Naive", "Row", "WorkPrecision", "cheapest", "compared_methods",
-           "work_precision"]
+__all__ = [
+           "MeasuredMethod",
+           "NaiveComparison",
+           "NaiveLine",
+           "Row",
+           "WorkPrecision",
+           "cheapest",
+           "compared_methods",
+           "work_precision",
+]

@@ -9,7 +9,7 @@ import numpy as np
 from ..scene import Scene
 from ..tables import Column, Labelled, Table, axis, provenance
 from ..tables.provenance import Attribute
-from .naive import Lesson
+from .naive import NaiveComparison
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class WorkPrecision(Labelled):
         Largest difference between the two over the largest displacement; NaN while it is unknown.
     rows : list of Row
         One for each method and setting: `method`, `setting`, `error`, `wall_s` [s], `rhs`, and `failure`, a sentence.
-    lesson : Lesson or None
+    lesson : NaiveComparison or None
         The force as naive methods compute it.
     disagreement : str
         Why the second method failed; empty if it did not.
@@ -60,7 +60,7 @@ class WorkPrecision(Labelled):
     second: str
     agreement: float = float("nan")
     rows: list[Row] = field(default_factory=list)
-    lesson: Lesson | None = None
+    lesson: NaiveComparison | None = None
     disagreement: str = ""
 
     def cheapest(self, error: float) -> Row | None:

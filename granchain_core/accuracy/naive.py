@@ -1,6 +1,6 @@
 """The output force from naive methods (plain steps in (u, v)), for comparison with the accurate force.
 
-This is the lesson of the accuracy page: the picture looks like a result, and nothing in it shows that it is wrong.
+The accuracy page shows them, because the picture looks like a result, and nothing in it shows that it is wrong.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ class PlainSteps(MethodSetting):
 
 
 @dataclass(frozen=True, eq=False)
-class Naive:
+class NaiveLine:
     """One naive method at one step: its output force [N], and the largest error over the run's largest force.
 
     `failure` says why there is no result.
@@ -53,21 +53,21 @@ class Naive:
 
 
 @dataclass(eq=False)
-class Lesson:
+class NaiveComparison:
     """The accurate output force [N] over time [s] at the end of a run from rest, and the naive methods' results."""
 
     time: np.ndarray
     force: np.ndarray
-    drawn: list[Naive] = field(default_factory=list)
+    lines: list[NaiveLine] = field(default_factory=list)
 
 
-def lesson(scene: Scene, stop: Stop) -> Lesson:
+def naive_comparison(scene: Scene, stop: Stop) -> NaiveComparison:
     """Run the naive methods at usual steps. Raises `ComputationError` where the reference fails, and `Cancelled`."""
     first = (_RUN - _SHOWN) * _SAMPLES if scene.is_driven else 0
     forces = output_force(scene, _TRUE, stop)
     true = forces[first:]
     time = (first + np.arange(len(true))) / _SAMPLES * scene.period
-    result = Lesson(time, true)
+    result = NaiveComparison(time, true)
     largest = float(np.abs(forces).max())
     for method in METHODS.values():
         if method.variables != "uv":
@@ -76,10 +76,10 @@ def lesson(scene: Scene, stop: Stop) -> Lesson:
             try:
                 force = output_force(scene, PlainSteps(method.name, steps=steps), stop)[first:]
             except ComputationError as problem:
-                result.drawn.append(Naive(method.name, steps, float("inf"), np.zeros(0), problem.sentence))
+                result.lines.append(NaiveLine(method.name, steps, float("inf"), np.zeros(0), problem.sentence))
                 continue
             error = float(np.abs(force - true).max()) / largest if largest > 0.0 else 0.0
-            result.drawn.append(Naive(method.name, steps, error, force))
+            result.lines.append(NaiveLine(method.name, steps, error, force))
     return result
 
 

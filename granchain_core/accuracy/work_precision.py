@@ -21,7 +21,7 @@ from ..scene import Scene
 from .compared_methods import SCIPY, MeasuredSetting, measured_settings
 from .limit import Limited
 from .measurements import Row, WorkPrecision
-from .naive import lesson
+from .naive import naive_comparison
 from .scipy_methods import solve
 
 #: Drive periods run from rest; without a drive, a single time 1/f.
@@ -116,13 +116,13 @@ def work_precision(scene: Scene, stop: Stop | None = None, progress: Callable[[f
 def _measured_parts(comparison: WorkPrecision, settings: Sequence[MeasuredSetting], stop: Stop) -> Iterator[None]:
     """Fill in the comparison, yielding after each part.
 
-    The parts are the reference, the lesson, each setting in two rounds, and the second reference.
+    The parts are the reference, the naive methods, each setting in two rounds, and the second reference.
     """
     scene = comparison.scene
     compile_methods(scene.evolve(f=max(scene.f, 1000.0)))  # otherwise a method's first row would include compiling
     exact = _within("The reference", stop, _REFERENCE_LIMIT, lambda stop: _ours(scene, _REFERENCE, stop)).displacement
     yield
-    comparison.lesson = lesson(scene, stop)
+    comparison.lesson = naive_comparison(scene, stop)
     yield
     for setting in settings:
         comparison.rows.append(_row(scene, setting, exact, stop))

@@ -43,7 +43,7 @@ def digest_of(described: dict[str, Any]) -> str:
     return hashlib.sha256(json.dumps(described, sort_keys=True).encode()).hexdigest()[:16]
 
 
-class Kept(Generic[Piece]):
+class CheckpointFolder(Generic[Piece]):
     """The folder of one computation, which grows as the computation proceeds. Any thread may add to it.
 
     `kind` names what is computed in one word, `digest` identifies it and `words` describe it to a person. `pack` turns
@@ -53,7 +53,7 @@ class Kept(Generic[Piece]):
 
     def __init__(self, out: str | Path, kind: str, digest: str, words: str,
                  pack: Callable[[list[Piece]], bytes], newest_only: bool = False) -> None:
-        self.folder = folder_of(out)
+        self.path = folder_of(out)
         self._kind, self._words, self._pack, self._newest_only = kind, words, pack, newest_only
         self._head = {"version": _VERSION, "digest": digest, "words": words}
         self._pieces: list[Piece] = []
@@ -69,22 +69,22 @@ class Kept(Generic[Piece]):
                 self._clear()  # without a head, blocks may be another computation's
                 return
             if not resume:
-                raise BadInput(f"{self.folder} holds an unfinished {self._kind}; continue with --resume, or delete it.")
+                raise BadInput(f"{self.path} holds an unfinished {self._kind}; continue with --resume, or delete it.")
             head = self._read(self._head_file.name)
         except OSError as problem:
             raise self._denied(problem) from None
         if head is None:
-            raise BadInput(f"{self._head_file} is damaged; delete {self.folder} to start again.")
+            raise BadInput(f"{self._head_file} is damaged; delete {self.path} to start again.")
         header = json.loads(head)
         if (header.get("version"), header.get("digest")) != (_VERSION, self._head["digest"]):
             words = header.get("words", "of another version")
-            raise BadInput(f"{self.folder} holds another {self._kind}, {words}, not {self._words} with these knobs; "
+            raise BadInput(f"{self.path} holds another {self._kind}, {words}, not {self._words} with these knobs; "
                            f"add --resume to the command line of that {self._kind}, give another --out, or delete the "
                            "folder.")
 
     def blocks(self) -> Iterator[bytes]:
         """Yield the contents of the intact blocks in the order in which they were written."""
-        for path in sorted(self.folder.glob(f"*{_SUFFIX}")):
+        for path in sorted(self.path.glob(f"*{_SUFFIX}")):
             content = self._read(path.name)
             if content is not None:
                 yield content
@@ -142,47 +142,47 @@ class Kept(Generic[Piece]):
                 self._pieces.clear()
                 self._clear()
             self._head_file.unlink(missing_ok=True)
-            if self.folder.exists():
-                self.folder.rmdir()
+            if self.path.exists():
+                self.path.rmdir()
         except OSError as problem:
-            raise BadInput(f"Cannot remove {self.folder}: {problem.strerror or problem}.") from None
+            raise BadInput(f"Cannot remove {self.path}: {problem.strerror or problem}.") from None
 
     @property
     def _head_file(self) -> Path:
-        return self.folder / f"{self._kind}.json"
+        return self.path / f"{self._kind}.json"
 
     def _begin(self) -> None:
-        self.folder.mkdir(exist_ok=True)
+        self.path.mkdir(exist_ok=True)
         if not self._head_file.exists():
             self._write(self._head_file.name, json.dumps(self._head).encode())
 
     def _clear(self, but: str = "") -> None:
         """Remove all blocks except `but`, and files that a killed process was writing."""
-        for path in [*self.folder.glob(f"*{_SUFFIX}"), *self.folder.glob(".*.tmp")]:
+        for path in [*self.path.glob(f"*{_SUFFIX}"), *self.path.glob(".*.tmp")]:
             if path.name != but:
                 path.unlink(missing_ok=True)
 
     def _write(self, name: str, content: bytes) -> None:
-        temporary = self.folder / f".{name}.{os.getpid()}.tmp"
+        temporary = self.path / f".{name}.{os.getpid()}.tmp"
         try:
             with temporary.open("wb") as file:
                 file.write(hashlib.sha256(content).digest() + content)
                 file.flush()
                 os.fsync(file.fileno())
-            os.replace(temporary, self.folder / name)
+            os.replace(temporary, self.path / name)
         except OSError:
             with suppress(OSError):
                 temporary.unlink()
             raise
-        folder = os.open(self.folder, os.O_RDONLY)
+        folder = os.open(self.path, os.O_RDONLY)
         os.fsync(folder)  # the new name is stored in the folder, which is synced separately
         os.close(folder)
 
     def _read(self, name: str) -> bytes | None:
         """Return the content of a file; None if its checksum does not match."""
-        stored = (self.folder / name).read_bytes()
+        stored = (self.path / name).read_bytes()
         digest, content = stored[:32], stored[32:]
         return content if hashlib.sha256(content).digest() == digest else None
 
     def _denied(self, problem: OSError) -> BadInput:
-        return BadInput(f"Cannot write {self.folder}: {problem.strerror or problem}.")
+        return BadInput(f"Cannot write {self.path}: {problem.strerror or problem}.")

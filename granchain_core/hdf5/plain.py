@@ -16,7 +16,7 @@ import json
 import math
 import os
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import asdict, dataclass
 from typing import Any, BinaryIO
 
@@ -107,22 +107,13 @@ class Plain:
 
     def names(self) -> list[str]:
         """Return the paths of all datasets reached by hard links only, in the order of their names."""
-        listed: list[str] = []
-        self._list(h5g.open(self._file.id, b"/"), "", listed, [0], 0)
-        return listed
-
-    def _list(self, group: h5g.GroupID, path: str, listed: list[str], seen: list[int], depth: int) -> None:
-        for name in group:
-            seen[0] += 1
-            if seen[0] > _MOST_OBJECTS or depth > _DEEPEST:
+        listed = []
+        for count, (path, item, depth) in enumerate(_links(h5g.open(self._file.id, b"/")), start=1):
+            if count > _MOST_OBJECTS or depth > _DEEPEST:
                 raise Refused(f"it has more than {_MOST_OBJECTS} objects, or groups deeper than {_DEEPEST}")
-            if group.links.get_info(name).type != h5l.TYPE_HARD:
-                continue
-            here, called = h5o.open(group, name), f"{path}/{name.decode('utf-8')}".lstrip("/")
-            if isinstance(here, h5g.GroupID):
-                self._list(here, called, listed, seen, depth + 1)
-            elif isinstance(here, h5d.DatasetID):
-                listed.append(called)
+            if isinstance(item, h5d.DatasetID):
+                listed.append(path)
+        return listed
 
     def numbers(self, path: str, rows: int | None = None) -> np.ndarray:
         """Return the numbers of a dataset, or of its first `rows` rows, in the stored type."""
@@ -186,6 +177,19 @@ class Plain:
         if needed and (offset is None or offset + needed > self._size):
             raise Refused(f"/{path} ends beyond the file")
         return tuple(int(n) for n in dataset.shape)
+
+
+def _links(group: h5g.GroupID, path: str = "", depth: int = 0) -> Iterator[tuple[str, h5o.ObjectID | None, int]]:
+    """Yield path, object and depth of each link in a group and its groups; of links that are not hard, no object."""
+    for name in group:
+        below = f"{path}/{name.decode('utf-8')}".lstrip("/")
+        if group.links.get_info(name).type != h5l.TYPE_HARD:
+            yield below, None, depth
+            continue
+        item = h5o.open(group, name)
+        yield below, item, depth
+        if isinstance(item, h5g.GroupID):
+            yield from _links(item, below, depth + 1)
 
 
 def _value(value: Any, called: str) -> float | int | str:

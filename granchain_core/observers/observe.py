@@ -46,9 +46,9 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
     scene : Scene
         The chain; its driver is left out.
     time : array_like, shape (T,), or ForceRecord
-        Times of the samples [s], ascending, or a record that was read from a file.
-    force : array_like, shape (T,)
-        Force on bead 1 [N].
+        Times of the samples [s], ascending, or a record that was read from a file, instead of all three arrays.
+    force : array_like, shape (T,), optional
+        Force on bead 1 [N]; required with times.
     output : array_like, shape (T,), optional
         Measured output force at the same times [N], for comparison.
     start : State, optional
@@ -89,7 +89,12 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
     >>> observed.displacement.shape, observed.residual.relative < 0.05
     ((1025, 2), True)
     """
-    record = time if isinstance(time, ForceRecord) else force_record(time, force, output)
+    if isinstance(time, ForceRecord):
+        if force is not None or output is not None:
+            raise BadInput("A record has its own forces; give either a record, or time, force and output.")
+        record = time
+    else:
+        record = force_record(time, force, output)
     sensors = Sensors(bandwidth=bandwidth)
     record = prepared(record, scene, offset, gap, sensors)
     if len(record.time) * scene.N > MOST_RECORDED:

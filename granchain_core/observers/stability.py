@@ -42,7 +42,7 @@ class ObserverPoint:
 
 
 @dataclass(frozen=True)
-class Threshold:
+class StabilityChange:
     """A change of the observer's stability between `low` and `high`; with `gains`, it becomes stable at larger values.
 
     Among the `jumps` of an `ObserverStability`, the orbits at the two values are on different branches, and nothing
@@ -64,8 +64,8 @@ class ObserverStability:
     scene: Scene
     knob: str
     points: tuple[ObserverPoint, ...]
-    thresholds: tuple[Threshold, ...]
-    jumps: tuple[Threshold, ...] = ()
+    thresholds: tuple[StabilityChange, ...]
+    jumps: tuple[StabilityChange, ...] = ()
 
     def column(self, name: str) -> np.ndarray:
         """One attribute of all points as an array."""
@@ -135,7 +135,7 @@ def _point(value: float, orbit: Orbit | None, failure: str) -> ObserverPoint:
 
 
 def _locate(scene: Scene, knob: str, a: ObserverPoint, b: ObserverPoint, orbit: Orbit,
-            stop: Stop | None) -> Threshold:
+            stop: Stop | None) -> StabilityChange:
     """Locate a crossing by bisection, continuing the orbit to every midpoint."""
     low, high, stable_at_low = a.value, b.value, a.observer_largest < 1.0
     while abs(high - low) > LOCATED * abs(b.value - a.value):
@@ -150,6 +150,6 @@ def _locate(scene: Scene, knob: str, a: ObserverPoint, b: ObserverPoint, orbit: 
     return _between(a, b, low, high)
 
 
-def _between(a: ObserverPoint, b: ObserverPoint, low: float, high: float) -> Threshold:
+def _between(a: ObserverPoint, b: ObserverPoint, low: float, high: float) -> StabilityChange:
     """The change of stability between two neighbours, known to lie between the values `low` and `high`."""
-    return Threshold(min(low, high), max(low, high), (a.observer_largest < 1.0) != (b.value > a.value))
+    return StabilityChange(min(low, high), max(low, high), (a.observer_largest < 1.0) != (b.value > a.value))

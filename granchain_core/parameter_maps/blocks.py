@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..execution.checkpoints import Kept
+from ..execution.checkpoints import CheckpointFolder
 from .cells import CELL, empty_cells
 from .grid import Axis, Grid
 
@@ -17,7 +17,7 @@ class Blocks:
 
     def __init__(self, grid: Grid, out: str | Path) -> None:
         self.grid = grid
-        self.kept: Kept[np.ndarray] = Kept(out, "map", grid.digest, _described(grid), _packed)
+        self.folder: CheckpointFolder[np.ndarray] = CheckpointFolder(out, "map", grid.digest, _described(grid), _packed)
 
     @classmethod
     def open(cls, grid: Grid, out: str | Path, resume: bool) -> Blocks:
@@ -26,18 +26,13 @@ class Blocks:
         Raises `BadInput`.
         """
         blocks = cls(grid, out)
-        blocks.kept.open(resume)
+        blocks.folder.open(resume)
         return blocks
-
-    @property
-    def folder(self) -> Path:
-        """The folder of the blocks."""
-        return self.kept.folder
 
     def cells(self) -> np.ndarray:
         """The table of all cells, filled from the intact blocks."""
         cells = empty_cells(self.grid)
-        for content in self.kept.blocks():
+        for content in self.folder.blocks():
             rows = np.load(io.BytesIO(content), allow_pickle=False)
             if rows.dtype == CELL and ((rows["number"] >= 0) & (rows["number"] < self.grid.size)).all():
                 cells[rows["number"]] = rows
@@ -46,7 +41,7 @@ class Blocks:
     def add(self, rows: np.ndarray) -> None:
         """Add finished cells (cells,)."""
         for row in np.atleast_1d(rows):
-            self.kept.add(row)
+            self.folder.add(row)
 
 
 def _packed(rows: list[np.ndarray]) -> bytes:

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ..execution.checkpoints import Kept, digest_of
+from ..execution.checkpoints import CheckpointFolder, digest_of
 from ..execution.stop import Stop
 from ..integrate import Engine
 from ..integrate.checkpoint import Checkpoint, checkpoint, resumed
@@ -40,17 +40,18 @@ class RunCheckpoints:
         self._scene = scene
         request = {"scene": scene.digest, "periods": periods, "record": record, "samples": samples, "method": method}
         words = f"{scene.name} with {periods} + {record} periods of {samples} samples"
-        self.kept: Kept[dict[str, Any]] = Kept(out, "run", digest_of(request), words, _packed, newest_only=True)
+        self.folder: CheckpointFolder[dict[str, Any]] = CheckpointFolder(
+            out, "run", digest_of(request), words, _packed, newest_only=True)
         self._there: dict[str, Any] = {}
         #: Number of the current computation, and how many of its discarded periods are finished.
         self.computation, self.done = 0, 0
 
     def open(self, resume: bool) -> None:
         """Open the folder and read the progress in it, to `resume` from there. Raises `BadInput`."""
-        self.kept.open(resume)
-        for content in self.kept.blocks():
-            with np.load(io.BytesIO(content), allow_pickle=False) as kept:
-                self._there = dict(kept)
+        self.folder.open(resume)
+        for content in self.folder.blocks():
+            with np.load(io.BytesIO(content), allow_pickle=False) as arrays:
+                self._there = dict(arrays)
 
     def begin(self, computation: int, engine: Engine) -> Reached | None:
         """Begin a computation; return its saved progress if it was made by such an engine, otherwise None."""
@@ -76,7 +77,7 @@ class RunCheckpoints:
         values = {"checkpoint": checkpoint(engine), "log": log, "counts": engine.counts.array.copy(),
                   "done": np.array(reached.done), "strobes": reached.strobes}
         self._there = {**self._there, **{f"{self.computation} {name}": value for name, value in values.items()}}
-        self.kept.add(self._there)
+        self.folder.add(self._there)
 
 
 def _with_log(scene: Scene, point: Checkpoint, stop: Stop, log: np.ndarray) -> Engine:

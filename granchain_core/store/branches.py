@@ -23,7 +23,7 @@ import numpy as np
 
 from ..former_names import EVENTS
 from ..hdf5 import File, opened
-from ..hdf5.border import entries, finite, one_of, within
+from ..hdf5.checked_file import entries, finite, one_of, within
 from ..hdf5.plain import Refused
 from ..orbits import Branch, BranchPoint, HalfBranch, KnobAxis, SpecialPoint
 from ..orbits.branch.normal_forms import CRITICALITIES, EARLIER_REASONS, NOT_DECIDED, REASONS, NormalForm

@@ -18,7 +18,7 @@ import numpy as np
 
 from ..errors import FAILURES
 from ..hdf5 import File, opened
-from ..hdf5.border import one_of, within
+from ..hdf5.checked_file import one_of, within
 from ..hdf5.plain import Refused
 from ..results.forces import ForceErrors
 from ..results.regime import FOUND_BY, NAMES, Regime

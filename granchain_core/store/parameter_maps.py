@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from ..hdf5 import File, opened
-from ..hdf5.border import one_of, within
+from ..hdf5.checked_file import one_of, within
 from ..hdf5.plain import Refused
 from ..parameter_maps import Axis, Grid, ParameterMap
 from ..parameter_maps.cells import CELL, CELL_REGIMES, empty_cells

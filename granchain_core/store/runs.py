@@ -16,7 +16,7 @@ import numpy as np
 
 from ..errors import BadInput
 from ..hdf5 import File, opened
-from ..hdf5.border import entries, finite, one_of, within
+from ..hdf5.checked_file import entries, finite, one_of, within
 from ..hdf5.plain import Refused
 from ..results.forces import RUN_ERRORS, ForceErrors
 from ..results.recorded_motion import motion_units

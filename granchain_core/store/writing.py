@@ -16,7 +16,7 @@ import numpy as np
 
 from ..errors import BadInput
 from ..hdf5 import VERSIONS, seal
-from ..hdf5.border import SCHEMA
+from ..hdf5.checked_file import SCHEMA
 from ..tables import Column, Labelled, Table
 
 #: File systems allow 255 bytes, of which the temporary name needs some.

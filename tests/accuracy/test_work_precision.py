@@ -20,7 +20,7 @@ from granchain_core.accuracy import Row, WorkPrecision, cheapest, compared_metho
 from granchain_core.accuracy import work_precision as entry
 from granchain_core.accuracy.compared_methods import measured_settings
 from granchain_core.accuracy.limit import Limited
-from granchain_core.accuracy.naive import NATURAL_STEPS, lesson
+from granchain_core.accuracy.naive import NATURAL_STEPS, naive_comparison
 from granchain_core.accuracy.scipy_methods import solve
 from granchain_core.execution.stop import Stop
 from granchain_core.integrate import METHODS
@@ -192,20 +192,20 @@ def wait_for(stop: Stop) -> None:
 
 def test_the_naive_force_is_wrong_and_names_where_it_blows_up() -> None:
     """At natural steps, the rig's naive force is wrong by a large fraction, or the motion fails."""
-    found = lesson(scene("rig"), Stop())
-    drawn = {(one.method, one.steps): one for one in found.drawn}
+    found = naive_comparison(scene("rig"), Stop())
+    drawn = {(one.method, one.steps): one for one in found.lines}
     assert set(drawn) == {(m.name, n) for m in METHODS.values() if m.variables == "uv" for n in NATURAL_STEPS}
     assert "stopped being a finite number" in drawn["rk4-naive", 100].failure
     assert drawn["rk4-naive", 200].error > 0.1  # 0.49 was measured
     assert drawn["rk4-naive", 2000].error < drawn["rk4-naive", 500].error < drawn["rk4-naive", 200].error
-    assert all(one.force.shape == found.force.shape for one in found.drawn if not one.failure)
+    assert all(one.force.shape == found.force.shape for one in found.lines if not one.failure)
 
 
 def test_an_error_of_the_force_is_told_of_the_largest_pulse_and_the_pulse_is_shown() -> None:
     """At 1130 Hz, the wall is pressed hard once in three drive periods."""
-    found, whole = lesson(scene("sec2").evolve(f=1130.0), Stop()), settle(scene("sec2").evolve(f=1130.0)).run
+    found, whole = naive_comparison(scene("sec2").evolve(f=1130.0), Stop()), settle(scene("sec2").evolve(f=1130.0)).run
     assert np.abs(found.force).max() == pytest.approx(whole.max_output_force, rel=0.1)  # ten periods from rest
-    for one in found.drawn:
+    for one in found.lines:
         if not one.failure:
             told = np.abs(one.force - found.force).max() / one.error
             assert told >= np.abs(found.force).max() * (1.0 - 1e-12)

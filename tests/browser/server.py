@@ -16,7 +16,7 @@ from typing import Any
 
 from playwright.sync_api import Browser, BrowserContext, Error, Page, Playwright
 
-from app.plots.chromium import installed_browser
+from app.headless.chromium import installed_browser
 
 #: A number for every call of `at_rest`, so that a call ignores values seen by earlier ones.
 _CALLS = count()

@@ -18,7 +18,7 @@ from typing import Any
 from server import CHROMIUM_OPTIONS
 from tornado.websocket import WebSocketClientConnection, websocket_connect
 
-from app.plots.chromium import installed_browser
+from app.headless.chromium import installed_browser
 
 #: Timeout of all waits [s].
 _PATIENCE = 120.0

@@ -49,12 +49,12 @@ def everywhere(page: Page) -> dict[str, dict[str, list[str]]]:
     page.evaluate("shown()")
     found = {"whole page": violations(page)}
     for name in page.evaluate("[...document.querySelectorAll('[data-overlay]')].map((one) => one.dataset.overlay)"):
-        page.evaluate("(name) => granchain.openPage(name)", name)
+        page.evaluate("(name) => granchain.openOverlay(name)", name)
         page.evaluate("shown()")
         found[f"page {name}"] = violations(page, "#overlay")
         if name in ("accuracy", "branches"):  # they continue when hidden, which occupies a processor
             page.locator("#overlay").get_by_role("button", name="stop").click()
-    page.evaluate("granchain.closePage()")
+    page.evaluate("granchain.closeOverlay()")
     for tab in page.get_by_role("tab").all():
         tab.click()
         page.evaluate("shown()")

@@ -39,7 +39,7 @@ def test_the_address_follows_the_page_and_a_reload_keeps_everything(visit: Visit
     page.get_by_role("button", name="Theme: ").click()
     page.get_by_role("tab", name="effects").click()
     addressed(page, "tab=effects&look=dark&curves=rest.down")
-    page.evaluate("granchain.openPage('accuracy')")
+    page.evaluate("granchain.openOverlay('accuracy')")
     addressed(page, "page=accuracy")
     page.reload()
     page.wait_for_function("window.painted.length > 0")

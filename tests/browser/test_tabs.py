@@ -41,7 +41,7 @@ def test_a_name_of_no_page_opens_none(at: Visit) -> None:
     """The tab "map" has no overlay; opening one by that name used to show an empty overlay."""
     page = at("?v=1&scene=sec2&page=probe")
     page.wait_for_function("granchain.overlay === 'probe'")
-    page.evaluate("granchain.openPage('map')")
+    page.evaluate("granchain.openOverlay('map')")
     assert page.evaluate("[granchain.overlay, document.getElementById('dashboard').classList.contains('overlaid')]") == [None, False]
     expect(page.locator("#tabs")).to_be_visible()
 

@@ -141,7 +141,7 @@ def test_a_second_signal_ends_at_once_what_does_not_listen(started: Callable[...
                                                                tmp_path: Path) -> None:
     """The sentence on stderr says where the finished part is kept."""
     (tmp_path / "out.h5.blocks").mkdir()
-    program = ("import time\nfrom app.cli import ending\nending.begin()\nending.keeps('out.h5.blocks')\n"
+    program = ("import time\nfrom app.cli import ending\nending.begin()\nending.note_checkpoints('out.h5.blocks')\n"
                "with ending.asking():\n    print('inside', flush=True)\n    time.sleep(1000)\n")
     command = started(program=("-c", program))
     assert command.process.stdout is not None and command.process.stdout.readline() == "inside\n"
@@ -156,7 +156,7 @@ def test_a_second_signal_ends_at_once_what_does_not_listen(started: Callable[...
 def test_a_signal_after_the_result_is_written_says_where_it_is(started: Callable[..., Command], tmp_path: Path) -> None:
     """By then its blocks have been removed, but the table has not been printed yet."""
     program = ("import time\nfrom app.cli import ending\nfrom app.cli.common import unbroken\nending.begin()\n"
-               "ending.keeps('out.h5.blocks')\nwith unbroken('out.h5'):\n    pass\nprint('written', flush=True)\n"
+               "ending.note_checkpoints('out.h5.blocks')\nwith unbroken('out.h5'):\n    pass\nprint('written', flush=True)\n"
                "time.sleep(1000)\n")
     command = started(program=("-c", program))
     assert command.process.stdout is not None and command.process.stdout.readline() == "written\n"

@@ -19,7 +19,7 @@ import pytest
 
 from app.cli import main
 from granchain_core import Amplitude, BadInput, resonance_curve, scene
-from granchain_core.execution.checkpoints import Kept, folder_of
+from granchain_core.execution.checkpoints import CheckpointFolder, folder_of
 from granchain_core.runs import to_accuracy
 from granchain_core.steady.curve import resonance_curve as curves
 from granchain_core.steady.curve.point_checkpoints import point_checkpoints, points_in
@@ -86,16 +86,16 @@ def finished(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFa
     """A command, its result, and the head of its folder of blocks, as an interrupted command leaves it."""
     name, out = request.param, tmp_path_factory.mktemp("finished") / "a.h5"
     kept: list[bytes] = []
-    remove = Kept.remove
+    remove = CheckpointFolder.remove
 
-    def read_and_remove(self: Kept[object]) -> None:
+    def read_and_remove(self: CheckpointFolder[object]) -> None:
         with self._lock:  # the timer's thread may be writing the last block
             self._begin()
         kept.append(self._head_file.read_bytes())
         remove(self)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(Kept, "remove", read_and_remove)
+        patch.setattr(CheckpointFolder, "remove", read_and_remove)
         assert main([*SHORT[name], "--out", str(out)]) == 0
     return name, out, kept[0]
 
@@ -198,13 +198,13 @@ def test_known_points_are_not_computed_again_and_the_others_are_the_same(start: 
         assert mine.max_output_force == pytest.approx(its.max_output_force, rel=1e-7)  # rounding in the batch
 
 
-def pieces(out: Path, resume: bool = False) -> Kept[int]:
-    kept: Kept[int] = Kept(out, "count", "digest", "numbers", lambda found: json.dumps(found).encode())
+def pieces(out: Path, resume: bool = False) -> CheckpointFolder[int]:
+    kept: CheckpointFolder[int] = CheckpointFolder(out, "count", "digest", "numbers", lambda found: json.dumps(found).encode())
     kept.open(resume)
     return kept
 
 
-def numbers(kept: Kept[int]) -> list[int]:
+def numbers(kept: CheckpointFolder[int]) -> list[int]:
     return [number for content in kept.blocks() for number in json.loads(content)]
 
 
@@ -221,10 +221,10 @@ def test_blocks_without_a_head_are_not_believed(tmp_path: Path) -> None:
     kept = pieces(tmp_path / "a")
     kept.add(1)
     kept.write()
-    (kept.folder / "count.json").unlink()
+    (kept.path / "count.json").unlink()
     assert numbers(pieces(tmp_path / "a", resume=True)) == []
     kept.remove()
-    assert not kept.folder.exists()
+    assert not kept.path.exists()
 
 
 def test_the_head_of_a_finished_checkpoint_is_removed_last(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -15,8 +15,8 @@ from app.dashboard.table import PAGES, watched_pages
 from app.pages.data import page as data_page
 from app.serve.compiling.compiler import COMPILER
 from app.serve.http.limits import LARGEST_UPLOAD
+from app.session.initial_state import MOST_BEADS_IN_LINK
 from app.session.page import all_actions
-from app.session.starts import MOST_BEADS
 
 
 @pytest.mark.parametrize(("message", "sentence"), [
@@ -105,9 +105,9 @@ def test_a_reconnected_page_has_its_pause_back_and_the_rest_from_its_link(dashbo
 
 
 @pytest.mark.parametrize(("query", "different"), [
-    ("", ""), (f"&N={MOST_BEADS}&start=previous", ""),
-    (f"&N={MOST_BEADS + 1}&start=previous", ", but the motion starts from rest"),
-    (f"&N={MOST_BEADS + 1}&drive=rest&strike=1", ""), ("&mode=live", ", but the live run has started again")])
+    ("", ""), (f"&N={MOST_BEADS_IN_LINK}&start=previous", ""),
+    (f"&N={MOST_BEADS_IN_LINK + 1}&start=previous", ", but the motion starts from rest"),
+    (f"&N={MOST_BEADS_IN_LINK + 1}&drive=rest&strike=1", ""), ("&mode=live", ", but the live run has started again")])
 def test_a_reconnected_page_says_what_its_link_does_not_bring_back(dashboard: Dashboard, query: str,
                                                                    different: str) -> None:
     """A settled motion starts from the same state as before, unless its chain is too long for a link."""

@@ -12,7 +12,7 @@ from documents import ROOT
 from app.dashboard.sentences import Sentences
 from app.serve.monitoring import faults
 from app.session.session import Session
-from app.session.share import BROWSER_FIELDS, PINS, QUESTION, START
+from app.session.share import BROWSER_FIELDS, INITIAL_STATE, PINS, QUESTION
 
 pytestmark = pytest.mark.quick
 
@@ -42,7 +42,7 @@ def test_the_fields_of_a_link_are_those_of_the_page() -> None:
     (row,) = re.findall(r"^\| address .*", STATE, re.MULTILINE)
     of_the_server, _, of_the_browser = row.partition("fields of the browser")
     assert tuple(re.findall(r"`(\w+)`", of_the_browser)) == BROWSER_FIELDS
-    assert {START, QUESTION, "story", "scene", "v"} <= set(re.findall(r"`(\w+)`", of_the_server)) and PINS[0] in of_the_server
+    assert {INITIAL_STATE, QUESTION, "story", "scene", "v"} <= set(re.findall(r"`(\w+)`", of_the_server)) and PINS[0] in of_the_server
 
 
 def test_loggers_and_messages_of_errors_are_those_of_the_code() -> None:

@@ -181,6 +181,12 @@ def test_an_offset_is_subtracted_only_if_asked() -> None:
         observe(CHAIN, time, force, offset="mean")
 
 
+def test_a_record_is_not_given_together_with_forces() -> None:
+    time, force = np.arange(400) * STEP, np.zeros(400)
+    with pytest.raises(BadInput, match="A record has its own forces"):
+        observe(CHAIN, force_record(time, force), force)
+
+
 def test_a_run_written_by_granchain_is_observed_and_comes_round(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     known, seen = tmp_path / "known.h5", tmp_path / "seen.h5"
     save(run(CHAIN, periods=60, record=2, samples=1000), known)

@@ -17,7 +17,7 @@ from app.plots.theme import THEMES
 from app.session.active_setting import locate, shown_setting
 from granchain_core import scene, settle
 from granchain_core.accuracy import Row, WorkPrecision, compared_methods
-from granchain_core.accuracy.naive import lesson
+from granchain_core.accuracy.naive import naive_comparison
 from granchain_core.execution.stop import Stop
 from granchain_core.integrate import METHODS, MethodSetting
 from granchain_core.steady.settling import advance, recording, refine_orbit
@@ -99,11 +99,11 @@ def test_the_reference_is_told_with_its_agreement() -> None:
 
 
 def test_the_forces_are_one_array_in_which_failures_have_no_row() -> None:
-    found = lesson(scene("rig"), Stop())
+    found = naive_comparison(scene("rig"), Stop())
     message = naive_message(found, THEMES["light"])
     rows = message["values"].reshape(-1, message["columns"])
     assert message["values"].dtype == np.float32
-    for told, one in zip(message["drawn"], found.drawn, strict=True):
+    for told, one in zip(message["drawn"], found.lines, strict=True):
         assert (told["row"] < 0) == bool(one.failure)
         if told["row"] > 0:
             assert rows[told["row"]].max() == pytest.approx(one.force.max() / (found.force.max() / rows[1].max()), rel=1e-5)

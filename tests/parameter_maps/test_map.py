@@ -181,15 +181,15 @@ def test_a_damaged_block_is_computed_again(tmp_path: Path) -> None:
     rows["regime"] = 0
     for one in rows:
         blocks.add(np.array([one]))
-        blocks.kept.write()
-    first, second = sorted(blocks.folder.glob("*.block"))
+        blocks.folder.write()
+    first, second = sorted(blocks.folder.path.glob("*.block"))
     content = bytearray(first.read_bytes())
     content[-1] ^= 1
     first.write_bytes(content)
     second.write_bytes(second.read_bytes()[:40])
     again = Blocks.open(grid, tmp_path / "map.h5", resume=True).cells()
     assert (again["regime"] == -1).all()
-    assert not [name for name in os.listdir(blocks.folder) if name.endswith(".tmp")]
+    assert not [name for name in os.listdir(blocks.folder.path) if name.endswith(".tmp")]
 
 
 @pytest.mark.parametrize(("option", "value", "said"), [

@@ -7,7 +7,7 @@ import math
 import pytest
 
 from app.cli import main
-from app.cli.foundation import kept_along, kept_spring
+from app.cli.foundation import kappa_changed_by_amplitude, kappa_changes_along
 from app.parts.knobs.foundation import beside_kappa
 from granchain_core import scene, settle
 
@@ -37,13 +37,13 @@ def test_nothing_is_said_where_kappa_did_not_follow_unasked(settings: tuple[str,
 
 def test_without_a_foundation_there_is_nothing_to_say() -> None:
     sec2 = scene("sec2")
-    assert kept_spring(sec2, sec2.evolve(A0=1e-6), {"A0"}) == ""
-    assert kept_along(sec2, "A0", "f") == beside_kappa(sec2.evolve(A0=1e-6)) == ""
+    assert kappa_changed_by_amplitude(sec2, sec2.evolve(A0=1e-6), {"A0"}) == ""
+    assert kappa_changes_along(sec2, "A0", "f") == beside_kappa(sec2.evolve(A0=1e-6)) == ""
 
 
 def test_a_branch_or_map_in_the_amplitude_is_said() -> None:
-    assert "constant k = 32435.6 N/m" in kept_along(RIG, "f", "A0")
-    assert kept_along(RIG, "f", "D") == kept_along(RIG, "kappa", "A0") == ""
+    assert "constant k = 32435.6 N/m" in kappa_changes_along(RIG, "f", "A0")
+    assert kappa_changes_along(RIG, "f", "D") == kappa_changes_along(RIG, "kappa", "A0") == ""
 
 
 def test_the_page_says_beside_kappa_what_it_was() -> None:

@@ -9,7 +9,7 @@ from bokeh.document import Document
 from bokeh.io.doc import patch_curdoc
 from bokeh.plotting import figure
 
-from app.plots.chromium import installed_browser
+from app.headless.chromium import installed_browser
 from app.plots.file import CAPTION_LINE, CAPTION_ROOM, caption_height, caption_lines, captioned_html, html_of
 from app.plots.theme import THEMES
 

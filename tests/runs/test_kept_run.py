@@ -48,7 +48,7 @@ def test_a_run_cut_anywhere_is_the_same_run(method: str | None, cut: int, tmp_pa
         add(self, reached)
         added[0] += 1
         if added[0] == cut:
-            self.kept.write()
+            self.folder.write()
             stop.set()
 
     monkeypatch.setattr(RunCheckpoints, "add", add_until)
@@ -67,14 +67,14 @@ def test_a_run_cut_anywhere_is_the_same_run(method: str | None, cut: int, tmp_pa
     monkeypatch.setattr(RunCheckpoints, "begin", noted)
     assert_same(computed(again, method), whole)
     assert begun[: (cut - 1) // 50 + 1] == [PERIODS] * ((cut - 1) // 50) + [2 * ((cut - 1) % 50 + 1)]
-    again.kept.remove()
+    again.folder.remove()
     assert not folder_of(tmp_path / "a.h5").exists()
 
 
 def test_another_run_is_refused(tmp_path: Path) -> None:
     kept = kept_in(tmp_path / "a.h5")
-    kept.kept.add({})
-    kept.kept.write()
+    kept.folder.add({})
+    kept.folder.write()
     with pytest.raises(BadInput, match="continue with --resume"):
         kept_in(tmp_path / "a.h5")
     with pytest.raises(BadInput, match="holds another run, sec2 with 100 \\+ 3 periods of 8 samples"):

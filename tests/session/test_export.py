@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from app.frames import samples_for
-from app.session.export import EXPORTS, TEXTS, Screen, curve_csv, notebook, script, trains_csv
+from app.session.export import EXPORTS, TEXTS, ExportedPicture, curve_csv, notebook, script, trains_csv
 from granchain_core import resonance_curve, scene, settle
 from granchain_core.experiment import Answers, Measured, read_data
 
@@ -24,12 +24,12 @@ SHOWN = scene("sec2").evolve(f=880.0)
 
 
 @pytest.fixture(scope="module")
-def screen() -> Screen:
+def screen() -> ExportedPicture:
     """A motion at 880 Hz, where it depends on the previous state, with three points of the curve."""
     start = settle(SHOWN.evolve(f=860.0)).state
     found = settle(SHOWN, start=start, samples=samples_for(SHOWN))
     points = resonance_curve(SHOWN.evolve(f=30.0), [340.0, 620.0, 1600.0]).points
-    return Screen(found.run, start, {"rest": points}, "v=1&scene=sec2&f=880.0")
+    return ExportedPicture(found.run, start, {"rest": points}, "v=1&scene=sec2&f=880.0")
 
 
 def run_again(program: str, tmp_path: Path) -> str:
@@ -42,7 +42,7 @@ def run_again(program: str, tmp_path: Path) -> str:
     return done.stdout
 
 
-def test_the_script_finds_what_the_page_showed_to_the_last_digit(screen: Screen, tmp_path: Path) -> None:
+def test_the_script_finds_what_the_page_showed_to_the_last_digit(screen: ExportedPicture, tmp_path: Path) -> None:
     printed = run_again(script(screen) + "\nprint(repr(run.max_output_force))\n", tmp_path)
     assert printed.count("as on the page") == 3 and "but the page" not in printed
     assert repr(screen.run.max_output_force) in printed  # not only to the digits shown
@@ -51,12 +51,12 @@ def test_the_script_finds_what_the_page_showed_to_the_last_digit(screen: Screen,
     assert settle(SHOWN).run.regime.period != screen.run.regime.period
 
 
-def test_a_script_says_where_it_found_something_else(screen: Screen, tmp_path: Path) -> None:
+def test_a_script_says_where_it_found_something_else(screen: ExportedPicture, tmp_path: Path) -> None:
     other = script(screen).replace("f=880.0)", "f=881.0)", 1)
     assert "but the page had" in run_again(other, tmp_path)
 
 
-def test_the_notebook_runs_and_finds_the_same(screen: Screen, tmp_path: Path) -> None:
+def test_the_notebook_runs_and_finds_the_same(screen: ExportedPicture, tmp_path: Path) -> None:
     """Its pictures are those of `granchain.figure`; the code that displays them in a notebook is replaced here."""
     content = json.loads(notebook(screen))
     assert (content["nbformat"], content["nbformat_minor"]) == (4, 5)
@@ -67,7 +67,7 @@ def test_the_notebook_runs_and_finds_the_same(screen: Screen, tmp_path: Path) ->
     assert printed.count("as on the page") == 3 and "2 pictures" in printed
 
 
-def test_the_curve_can_be_read_again(screen: Screen) -> None:
+def test_the_curve_can_be_read_again(screen: ExportedPicture) -> None:
     found = read_data(curve_csv(screen.curves).encode(), Answers(), ("curve",), "curve.csv", 2_000_000, 100_000)
     assert isinstance(found, Measured)
     points = screen.curves["rest"]
@@ -75,7 +75,7 @@ def test_the_curve_can_be_read_again(screen: Screen) -> None:
     assert list(found.force) == [point.max_output_force for point in points]
 
 
-def test_the_curve_has_the_evidence_for_its_regimes(screen: Screen) -> None:
+def test_the_curve_has_the_evidence_for_its_regimes(screen: ExportedPicture) -> None:
     rows = list(csv.DictReader(io.StringIO(curve_csv(screen.curves))))
     for row, point in zip(rows, screen.curves["rest"], strict=True):
         assert int(row["periods_run"]) == point.regime.periods_run
@@ -85,7 +85,7 @@ def test_the_curve_has_the_evidence_for_its_regimes(screen: Screen) -> None:
     assert curve_csv({}).splitlines()[0].endswith("largest_window_ratio,orbit_found_by")
 
 
-def test_the_trains_have_every_sample_and_every_jump(screen: Screen) -> None:
+def test_the_trains_have_every_sample_and_every_jump(screen: ExportedPicture) -> None:
     lines = trains_csv(screen.run).splitlines()
     comments = [line for line in lines if line.startswith("#")]
     rows = np.array([[float(cell) for cell in line.split(",")] for line in lines[len(comments) + 1:]])
@@ -96,6 +96,6 @@ def test_the_trains_have_every_sample_and_every_jump(screen: Screen) -> None:
     assert len(comments) == len(ends) >= 1
 
 
-def test_everything_that_is_offered_can_be_written(screen: Screen) -> None:
+def test_everything_that_is_offered_can_be_written(screen: ExportedPicture) -> None:
     assert all(write(screen) for _, write in TEXTS.values())
     assert {*EXPORTS} == {"hdf5", *TEXTS}  # the list on the page

@@ -9,10 +9,10 @@ import pytest
 
 from app.dashboard.addresses import apply_address
 from app.parts.time_figures.pinned_trains import DASHES, SIGNS
+from app.session.initial_state import MOST_BEADS_IN_LINK, initial_state_text, read_initial_state
 from app.session.pins import NAMES, Pin, compared_rows, read_pin, setting_words
 from app.session.session import Session
 from app.session.share import PINS
-from app.session.starts import MOST_BEADS, read_start, start_text
 from granchain_core import BadInput, State, run, scene
 
 SHOWN = scene("sec2").evolve(f=880.0)
@@ -21,24 +21,24 @@ START = State(1e-6 * RNG.standard_normal(11), 1e-2 * RNG.standard_normal(11))
 
 
 def test_a_start_comes_back_to_the_last_bit() -> None:
-    back = read_start(start_text(START), SHOWN)
+    back = read_initial_state(initial_state_text(START), SHOWN)
     assert np.array_equal(back.displacement, START.displacement) and np.array_equal(back.velocity, START.velocity)
-    assert back.phase == 0.0 and start_text(None) == ""
+    assert back.phase == 0.0 and initial_state_text(None) == ""
 
 
 def test_a_chain_that_is_too_long_begins_at_rest() -> None:
-    assert start_text(State(np.zeros(MOST_BEADS), np.zeros(MOST_BEADS))) != ""
-    assert start_text(State(np.zeros(MOST_BEADS + 1), np.zeros(MOST_BEADS + 1))) == ""
+    assert initial_state_text(State(np.zeros(MOST_BEADS_IN_LINK), np.zeros(MOST_BEADS_IN_LINK))) != ""
+    assert initial_state_text(State(np.zeros(MOST_BEADS_IN_LINK + 1), np.zeros(MOST_BEADS_IN_LINK + 1))) == ""
 
 
 @pytest.mark.parametrize(("text", "told"), [
-    ("!!", "damaged"), ("AAAA", "damaged"), ("", "damaged"), ("ä", "damaged"), (start_text(State(np.zeros(3), np.zeros(3))), "has 3 beads"),
-    (start_text(replace(START, displacement=np.full(11, np.nan))), "impossible for a chain"),
-    (start_text(replace(START, velocity=np.full(11, 1e6))), "impossible for a chain"),
-    (start_text(replace(START, phase=1.0)), "impossible for a chain")])
+    ("!!", "damaged"), ("AAAA", "damaged"), ("", "damaged"), ("ä", "damaged"), (initial_state_text(State(np.zeros(3), np.zeros(3))), "has 3 beads"),
+    (initial_state_text(replace(START, displacement=np.full(11, np.nan))), "impossible for a chain"),
+    (initial_state_text(replace(START, velocity=np.full(11, 1e6))), "impossible for a chain"),
+    (initial_state_text(replace(START, phase=1.0)), "impossible for a chain")])
 def test_what_is_no_state_is_refused(text: str, told: str) -> None:
     with pytest.raises(BadInput, match=told):
-        read_start(text, SHOWN)
+        read_initial_state(text, SHOWN)
 
 
 def test_an_address_brings_everything_back() -> None:

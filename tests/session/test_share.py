@@ -12,10 +12,10 @@ from hypothesis import strategies as st
 from app.dashboard.addresses import apply_address
 from app.dashboard.table import overlay_names
 from app.pages.stories.page import story_step
+from app.session.initial_state import MOST_BEADS_IN_LINK
 from app.session.pins import NAMES, Pin
 from app.session.session import Session
-from app.session.share import LONGEST, SPEEDS, VIEW, VIEW_VALUES, decode, encode, joined, pins_in
-from app.session.starts import MOST_BEADS
+from app.session.share import LONGEST_LINK, SPEEDS, VIEW, VIEW_VALUES, decode, encode, joined, pins_in
 from granchain_core import BadInput, State, scene, scene_names
 from tools.links import FILE, meaning
 
@@ -104,10 +104,10 @@ def test_no_query_string_breaks_the_page(query: str) -> None:
 
 
 def test_a_link_of_unreasonable_length_is_not_read() -> None:
-    assert "longer than" in decode("f=" + "1" * LONGEST)[2][0]
+    assert "longer than" in decode("f=" + "1" * LONGEST_LINK)[2][0]
 
 
-@given(name=st.sampled_from(scene_names()), beads=st.integers(1, MOST_BEADS), f=st.floats(0.1, 1e6),
+@given(name=st.sampled_from(scene_names()), beads=st.integers(1, MOST_BEADS_IN_LINK), f=st.floats(0.1, 1e6),
        amplitude=st.floats(1e-12, 1e-4), damping=st.floats(0.0, 1e6), stiffness=st.floats(0.0, 1e10),
        pins=st.integers(0, len(NAMES)), started=st.integers(0, 15), seed=st.integers(0, 1000))
 def test_every_link_that_is_made_can_be_read(name: str, beads: int, f: float, amplitude: float, damping: float,
@@ -153,8 +153,8 @@ def test_a_link_with_a_story_alone_shows_the_motion_of_its_step() -> None:
 
 def test_pins_without_room_are_left_out_with_a_sentence() -> None:
     rng = np.random.default_rng(3)
-    long = scene("sec2").evolve(N=MOST_BEADS)
-    start = State(rng.standard_normal(MOST_BEADS) * 1e-6, rng.standard_normal(MOST_BEADS) * 1e-2)
+    long = scene("sec2").evolve(N=MOST_BEADS_IN_LINK)
+    start = State(rng.standard_normal(MOST_BEADS_IN_LINK) * 1e-6, rng.standard_normal(MOST_BEADS_IN_LINK) * 1e-2)
     full = Session(long, initial_state=start, pins=(Pin(long, start),) * 3)
     knobs = {"f": 123.45678901234567, "A0": 1.2345678901234567e-7, "D": 12.345678901234567, "k": 12345.678901234567,
              "F0": 1.2345678901234567, "accuracy": 1.2345678901234567e-7, "taper": 1.0123456789012345,

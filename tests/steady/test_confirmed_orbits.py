@@ -31,7 +31,7 @@ def decided(monkeypatch: pytest.MonkeyPatch, **found: Any) -> tuple[Regime, Regi
     engine = Engine(chain, MethodSetting("rk4-split"), 1)
     engine.start_scaled(np.zeros(2 * chain.N))
     strobes = np.zeros((10, 2, chain.N))
-    settled = Decisions(chain, True).next(engine, strobes, CLAIM)
+    settled = Decisions(chain, True).decide(engine, strobes, CLAIM)
     assert settled.regime is not None
     return settled.regime, regime_without_continuing(engine, strobes, CLAIM), settled.state
 

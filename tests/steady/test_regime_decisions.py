@@ -24,7 +24,7 @@ def test_a_motion_that_settles_alternating_has_the_period_of_its_orbit() -> None
     engine.start_scaled(np.zeros(2 * shown.N))
     strobes = engine.periods(150)[0]
     claimed = replace(regime_criteria.find_period(strobes), name="periodic", period=2, observed_contraction=0.92**2)
-    for decided in (Decisions(shown, False).next(engine, strobes, claimed).regime,
+    for decided in (Decisions(shown, False).decide(engine, strobes, claimed).regime,
                     regime_without_continuing(engine, strobes, claimed)):
         assert decided is not None and (decided.name, decided.period) == ("periodic", 1)
         assert decided.multiplier == pytest.approx(0.92, abs=0.01)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import sys
 
-from app.plots.browser import png_of
+from app.headless.browser import png_of
 from app.plots.paper import paper_figure, size_of
 from app.plots.theme import THEMES
 from granchain_core.paper import FIGURES, compute, figure_of, statements

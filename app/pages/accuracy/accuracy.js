@@ -7,26 +7,26 @@ import { NaiveForces } from "./naive_forces.js";
 
 const STALE = "The knobs have moved: this was measured for another chain. Measure again for the present one.";
 
-function methodRow(way, failures) {
-  const restrictions = element("td", { className: "soft", textContent: way.restrictions });
+function methodRow(method, failures) {
+  const restrictions = element("td", { className: "soft", textContent: method.restrictions });
   for (const { setting, failure } of failures)
     restrictions.append(element("div", { className: "failed", textContent: `failed at ${setting}: ${failure}` }));
   return element(
     "tr",
     {},
-    element("td", { textContent: way.name.replace("scipy ", "SciPy ") }),
-    element("td", { textContent: way.title }),
-    element("td", { textContent: way.order }),
+    element("td", { textContent: method.name.replace("scipy ", "SciPy ") }),
+    element("td", { textContent: method.title }),
+    element("td", { textContent: method.order }),
     restrictions,
-    element("td", { className: "soft", textContent: way.reference }),
+    element("td", { className: "soft", textContent: method.reference }),
   );
 }
 
-function methodTable(ways, failures) {
-  const rows = ways.map((way) =>
+function methodTable(methods, failures) {
+  const rows = methods.map((method) =>
     methodRow(
-      way,
-      failures.filter((failure) => failure.way === way.name),
+      method,
+      failures.filter((failure) => failure.way === method.name),
     ),
   );
   return table(["method", "what it is", "order", "restrictions", "reference"], element("tbody", {}, ...rows));

@@ -51,15 +51,15 @@ export class NaiveForces {
 
   // Fills both lists and keeps the visitor's choices. The first time, it chooses the usual steps and the method with the
   // largest error.
-  offer(drawn) {
+  offer(lines) {
     const before = [this.methods.value, this.steps.value];
-    const names = [...new Set(drawn.map((drawing) => drawing.method))];
-    const counts = [...new Set(drawn.map((drawing) => drawing.steps))];
+    const names = [...new Set(lines.map((line) => line.method))];
+    const counts = [...new Set(lines.map((line) => line.steps))];
     this.methods.replaceChildren(...names.map((name) => new Option(name, name)));
     this.steps.replaceChildren(...counts.map((n) => new Option(`${n} steps per period`, n)));
     if (this.known) [this.methods.value, this.steps.value] = before;
     else {
-      const usual = drawn.filter((drawing) => drawing.steps === USUAL_STEPS && drawing.row >= 0);
+      const usual = lines.filter((line) => line.steps === USUAL_STEPS && line.row >= 0);
       this.methods.value = usual.sort((a, b) => b.error - a.error)[0]?.method ?? names[0];
       this.steps.value = String(USUAL_STEPS);
     }
@@ -76,7 +76,7 @@ export class NaiveForces {
     this.root.hidden = !this.data;
     if (!this.data) return;
     const [method, steps] = [this.methods.value, this.steps.value];
-    const chosen = this.data.drawn.find((drawing) => drawing.method === method && String(drawing.steps) === steps);
+    const chosen = this.data.drawn.find((line) => line.method === method && String(line.steps) === steps);
     this.line.textContent = verdict(chosen);
     this.fill(chosen);
   }

@@ -7,7 +7,7 @@ from functools import partial
 from typing import Any
 
 from granchain_core import Scene, Settled
-from granchain_core.accuracy import Lesson, Row, WorkPrecision, cheapest, work_precision
+from granchain_core.accuracy import NaiveComparison, Row, WorkPrecision, cheapest, work_precision
 from granchain_core.kernels.batch_size import machine
 from granchain_core.precompile.pieces import ACCURACY_KERNELS, DOP853_KERNELS, FIXED_STEP_KERNELS
 
@@ -22,7 +22,7 @@ from ...session.progress import COMPUTING, OFF, READY, Status, StatusWords
 from ...session.task import Job, Task
 from .view import Accuracy, described_methods, described_reference
 
-WORDS = StatusWords("the kernels of all methods", ACCURACY_KERNELS, kept="the measurements so far")
+WORDS = StatusWords("the kernels of all methods", ACCURACY_KERNELS, remaining="the measurements so far")
 
 
 def measured_for(scene: Scene) -> str:
@@ -38,7 +38,7 @@ class AccuracyPage(Page):
         self._view = view
         self._task = Task(host, MEASUREMENTS, self._show_status, "The measurement")
         self._measured = ""
-        self._naive: Lesson | None = None
+        self._naive: NaiveComparison | None = None
         self._agreement: float | None = None
         self.rows: list[Row] = []
         self.status: Status = "none"
@@ -114,7 +114,8 @@ class AccuracyPage(Page):
         work_precision(scene, job.stop, report=report, pause=job.give_way,
                        progress=lambda done: job.next_tick(self._progress, done))
 
-    def _show(self, rows: list[Row], naive: Lesson | None, reference: dict[str, Any], agreement: float) -> None:
+    def _show(self, rows: list[Row], naive: NaiveComparison | None, reference: dict[str, Any],
+              agreement: float) -> None:
         self.rows = rows
         self._agreement = agreement if math.isfinite(agreement) else None
         self._view.measured(rows, reference)

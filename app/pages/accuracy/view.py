@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from granchain_core.accuracy import Lesson, Row, WorkPrecision, compared_methods
+from granchain_core.accuracy import NaiveComparison, Row, WorkPrecision, compared_methods
 
 from ...format import prefixed, short_error
 from ...parts.figures.streamed_figure import StreamedFigure, page_and_small
@@ -39,7 +39,7 @@ class Accuracy(StreamedFigure):
 
     def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
         super().__init__(received, **params)
-        self._naive: Lesson | None = None
+        self._naive: NaiveComparison | None = None
 
     def apply_theme(self, theme: Theme) -> None:
         """Draw the figures, including that of the forces, in another theme."""
@@ -59,7 +59,7 @@ class Accuracy(StreamedFigure):
         """
         self.send(type="asked", marks=marks(annotations, rows), stale=stale, sentence=sentence, used=used)
 
-    def show_naive(self, shown: Lesson) -> None:
+    def show_naive(self, shown: NaiveComparison) -> None:
         """Show the forces that naive steps would have drawn."""
         self._naive = shown
         self.send(**naive_message(shown, self.theme))
@@ -73,8 +73,9 @@ class Accuracy(StreamedFigure):
 
 def described_methods() -> list[dict[str, Any]]:
     """Return the table of methods."""
-    return [{"name": way.name, "title": way.title, "order": f"{way.order:g}", "restrictions": way.restrictions,
-             "reference": way.reference} for way in compared_methods().values()]
+    return [{"name": method.name, "title": method.title, "order": f"{method.order:g}",
+             "restrictions": method.restrictions, "reference": method.reference}
+            for method in compared_methods().values()]
 
 
 def described_rows(rows: list[Row]) -> list[dict[str, Any]]:
@@ -99,19 +100,19 @@ def described_reference(result: WorkPrecision) -> dict[str, Any]:
     return {"reference": result.reference, "second": result.second, "agreement_words": words}
 
 
-def naive_message(shown: Lesson, theme: Theme) -> dict[str, Any]:
+def naive_message(shown: NaiveComparison, theme: Theme) -> dict[str, Any]:
     """Return the accurate and the naive output forces as one array of rows; a naive force that failed has no row."""
     largest = float(np.abs(shown.force).max())
     factor, letter = prefixed(largest)
     seconds, unit = prefixed(float(shown.time[-1]))
-    drawn = [drawing for drawing in shown.drawn if not drawing.failure]
-    rows = np.array([shown.time / seconds, shown.force / factor, *(drawing.force / factor for drawing in drawn)],
+    lines = [line for line in shown.lines if not line.failure]
+    rows = np.array([shown.time / seconds, shown.force / factor, *(line.force / factor for line in lines)],
                     dtype=np.float32)
     return {
         "type": "naive", "columns": len(shown.time),
         "figure": figure_item(naive_forces(rows[0], rows[1], None, f"{unit}s", f"{letter}N", theme)),
-        "drawn": [{"method": drawing.method, "steps": drawing.steps, "failure": drawing.failure,
-                   "error": None if drawing.failure else drawing.error,
-                   "row": -1 if drawing.failure else 2 + drawn.index(drawing)} for drawing in shown.drawn],
+        "drawn": [{"method": line.method, "steps": line.steps, "failure": line.failure,
+                   "error": None if line.failure else line.error,
+                   "row": -1 if line.failure else 2 + lines.index(line)} for line in shown.lines],
         "values": rows.ravel(),
     }

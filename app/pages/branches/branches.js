@@ -52,7 +52,7 @@ class Choice {
       `, ${columns.motion[row]}: elastic ${columns.elastic[row]}, output ${columns.output[row]}, input ${columns.input[row]}`,
       stable ? " — shown settled on the main page" : " — running live on the main page: watch it leave this orbit",
       " ",
-      button("show", () => window.granchain.closePage()),
+      button("show", () => window.granchain.closeOverlay()),
     );
   }
 

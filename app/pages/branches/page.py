@@ -26,7 +26,7 @@ from .view import LONGEST_BRANCH_PERIOD, Branches
 #: Time between two messages while a branch grows [s].
 _MESSAGE_EVERY = 0.08
 
-WORDS = StatusWords("the kernels for branches", BRANCH_KERNELS, kept="the orbits found so far")
+WORDS = StatusWords("the kernels for branches", BRANCH_KERNELS, remaining="the orbits found so far")
 NOT_PERIODIC = ("The motion on the screen does not repeat, so it is on no branch. Choose a period to follow an orbit "
                 "of that period near it.")
 

@@ -43,7 +43,7 @@ _RANDOM_STATES = 64
 #: Number of random states for a scene that cannot be computed in batches.
 _FEW_RANDOM_STATES = 12
 
-WORDS = StatusWords(kept="the cells computed so far")
+WORDS = StatusWords(remaining="the cells computed so far")
 SEARCH_WORDS = StatusWords(
     piece=ORBIT_KERNELS, instead={"searching": "searching from rest, from both sweeps and from random states …"})
 

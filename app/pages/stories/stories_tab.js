@@ -50,7 +50,7 @@ function shownStory(model, story) {
   const leave = button("✕", () => model.send_msg({ do: "story-close" }), { title: leaving, ariaLabel: leaving });
   const count = element("span", { textContent: `${step} of ${steps}` });
   const row = element("div", { className: "row steps" }, before, count, next, reveal, leave);
-  const open = page ? [button(`open the page “${page}”`, () => window.granchain.openPage(page))] : [];
+  const open = page ? [button(`open the page “${page}”`, () => window.granchain.openOverlay(page))] : [];
   return [row, element("h3", { textContent: title }), paragraph(say), paragraph(ask, "ask"), ...open, answered];
 }
 

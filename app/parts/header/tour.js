@@ -68,7 +68,7 @@ export class Tour {
     this.count.textContent = `${number + 1} of ${STEPS.length}`;
     this.before.hidden = number === 0;
     this.next.textContent = last ? "to the stories" : "next ▶";
-    window.granchain.closePage();
+    window.granchain.closeOverlay();
     window.granchain.drawer(false);
     this.root.hidden = false;
     this.mark();

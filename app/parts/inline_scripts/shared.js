@@ -162,7 +162,7 @@ window.granchain = (() => {
       super();
       document.documentElement.classList.toggle("embed", this.embedded);
       document.addEventListener("keydown", (event) => {
-        if (event.key === "Escape" && this.overlay) this.closePage();
+        if (event.key === "Escape" && this.overlay) this.closeOverlay();
       });
     }
 
@@ -191,25 +191,25 @@ window.granchain = (() => {
      * Opens the overlay of this name; an unknown name closes the open one. The focus moves to the heading of the
      * overlay and, when it is closed, back to the element that had it.
      */
-    openPage(wanted) {
-      const sheets = [...document.querySelectorAll("[data-overlay]")];
-      const name = sheets.some((sheet) => sheet.dataset.overlay === wanted) ? wanted : null;
+    openOverlay(wanted) {
+      const overlays = [...document.querySelectorAll("[data-overlay]")];
+      const name = overlays.some((overlay) => overlay.dataset.overlay === wanted) ? wanted : null;
       if (name === this.#overlay) return;
       const over = document.getElementById("overlay");
       const inside = over.contains(document.activeElement);
       if (this.#overlay === null) this.#opener = this.focused;
       this.#overlay = name;
       document.getElementById("dashboard").classList.toggle("overlaid", name !== null);
-      for (const sheet of sheets) sheet.hidden = sheet.dataset.overlay !== name;
+      for (const overlay of overlays) overlay.hidden = overlay.dataset.overlay !== name;
       // The visible part is the main landmark, of which a web page may have only one.
       over.setAttribute("role", name === null ? "none" : "main");
       this.emit("overlay", name);
-      if (name !== null) this.#focusHeading(sheets.find((sheet) => !sheet.hidden));
+      if (name !== null) this.#focusHeading(overlays.find((overlay) => !overlay.hidden));
       else if (inside) this.#focusOpener();
     }
 
-    #focusHeading(sheet) {
-      const heading = find(sheet, "h2");
+    #focusHeading(overlay) {
+      const heading = find(overlay, "h2");
       if (heading === null) return; // a link has opened the overlay before it was drawn
       heading.tabIndex = -1; // the focus can be moved here, but Tab skips it
       heading.focus();
@@ -224,8 +224,8 @@ window.granchain = (() => {
       (opener ?? again(name && `[data-name="${name}"]`) ?? again("[role=tab][aria-selected=true]"))?.focus();
     }
 
-    closePage() {
-      this.openPage(null);
+    closeOverlay() {
+      this.openOverlay(null);
     }
 
     /** On a phone: shows all knobs in the lower half of the screen, or only the first. */

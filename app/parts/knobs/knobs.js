@@ -40,12 +40,12 @@ class Knobs {
     this.model = model;
     this.sender = new Sender(model);
     this.knobs = new Map();
-    this.kept = element("div", { className: "kept", title: KEPT });
+    this.kappaNote = element("div", { className: "kept", title: KEPT });
     this.foundation = element("span");
     this.aside = element(
       "div",
       { className: "aside" },
-      this.kept,
+      this.kappaNote,
       element("div", { title: FREQUENCY }, "foundation alone: ", this.foundation),
     );
     this.root = element("div", { className: "part" });
@@ -74,7 +74,7 @@ class Knobs {
       knob.say(idle?.[name] ?? "");
     }
     this.foundation.textContent = foundation;
-    this.kept.textContent = kept ?? "";
+    this.kappaNote.textContent = kept ?? "";
   }
 
   receive(message) {

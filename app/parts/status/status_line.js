@@ -26,7 +26,7 @@ const NOT_ON_PHONE = ["force", "method", "start", "effects"];
 function costButton() {
   const open = () => {
     hideMeaning();
-    window.granchain.openPage("accuracy");
+    window.granchain.openOverlay("accuracy");
   };
   return element("div", { className: "row" }, button("What accuracy costs in time", open));
 }

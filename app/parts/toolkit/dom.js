@@ -44,7 +44,7 @@ export const table = (titles, body, properties = {}) => {
 
 // The button in a tab that opens the tab's page. By its `data-name`, the focus finds it again in a redrawn tab.
 export const openButton = (name) => {
-  const opener = button("open the page", () => window.granchain.openPage(name), { className: "open" });
+  const opener = button("open the page", () => window.granchain.openOverlay(name), { className: "open" });
   opener.dataset.name = "open";
   return opener;
 };
@@ -57,7 +57,7 @@ export const pageHead = (title, ...controls) =>
     element("h2", { textContent: title }),
     ...controls,
     element("span", { className: "grow" }),
-    button("✕", () => window.granchain.closePage(), { title: "Back to the chain", className: "close" }),
+    button("✕", () => window.granchain.closeOverlay(), { title: "Back to the chain", className: "close" }),
   );
 
 // Makes the browser save a file under this name.

@@ -48,8 +48,8 @@ class GuardedSocket(Guard):
     _left = False
     #: The stream, once frames are exchanged.
     _stream: IOStream | None = None
-    #: The session whose token was in the request, and the same session once it has its connection.
-    _offered = _session_id = ""
+    #: The id of the session whose token was in the request, and the same id once the session has its connection.
+    _offered_id = _session_id = ""
     _has_connection = False
 
     def check_request(self) -> None:
@@ -61,17 +61,17 @@ class GuardedSocket(Guard):
         offered = [word.strip() for word in self.request.headers.get("Sec-WebSocket-Protocol", "").split(",")]
         try:
             token, secret = offered[1], self.rules.secret
-            session = get_session_id(token) if check_token_signature(token, secret, signed=True) else None
+            session_id = get_session_id(token) if check_token_signature(token, secret, signed=True) else None
         except Exception:  # a stranger may have sent anything
-            session = None
-        if session is None:
+            session_id = None
+        if session_id is None:
             raise HTTPError(403, "no token of this server")
-        self._offered = session
+        self._offered_id = session_id
 
     def admit(self) -> None:
         """Refuse a connection whose session was dropped if there is no place for a new one."""
         super().admit()
-        if not self.rules.sessions.has_place(self._offered):
+        if not self.rules.sessions.has_place(self._offered_id):
             self.refuse_session()
 
     def select_subprotocol(self, subprotocols: list[str]) -> str | None:
@@ -80,9 +80,9 @@ class GuardedSocket(Guard):
         Tornado has checked the origin and headers of the handshake by now. If this came earlier, a failing request
         would use up the page's connection.
         """
-        if not self.rules.sessions.claim_connection(self._offered):
+        if not self.rules.sessions.claim_connection(self._offered_id):
             raise HTTPError(403, "a second connection to one session, or a page that has lost its place")
-        self._session_id, self._has_connection = self._offered, True
+        self._session_id, self._has_connection = self._offered_id, True
         return super().select_subprotocol(subprotocols)  # type: ignore[misc]
 
     def check_origin(self, origin: str) -> bool:

@@ -20,8 +20,8 @@ TYPES = ("number", "array", "set", "map", "event")
 #: Properties that BokehJS reports for the figures of our page: their sizes in pixels (the browser tests collect them).
 #: The figures have no tool that moves a range or selects points, and the parts of Panel change no property.
 REPORTED_PROPERTIES = frozenset({"inner_width", "inner_height", "outer_width", "outer_height"})
-#: Largest number of characters in a content without a file. A page's longest content has a link of at most `LONGEST`
-#: characters (app/session/share.py).
+#: Largest number of characters in a content without a file. A page's longest content has a link of at most
+#: `LONGEST_LINK` characters (app/session/share.py).
 LARGEST_PLAIN_CONTENT = 100_000
 #: Largest number of characters in a header or metadata; BokehJS writes an id and a kind.
 LARGEST_HEADER = 1000

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ...execution.checkpoints import Kept, digest_of
+from ...execution.checkpoints import CheckpointFolder, digest_of
 from ...former_names import EVENTS
 from .axis import STATIC_OVERLAP, KnobAxis
 from .branch import Branch
@@ -42,7 +42,8 @@ class OrbitCheckpoints:
     def __init__(self, axis: KnobAxis, both: bool, out: str | Path) -> None:
         self._axis, self._directions = axis, 1 + both
         words = f"{axis.scene.name} over {axis.knob} = {axis.start:g} … {axis.end:g}{', both ways' if both else ''}"
-        self.kept: Kept[dict[str, Any]] = Kept(out, "branch", asked_digest(axis, both), words, _packed)
+        self.folder: CheckpointFolder[dict[str, Any]] = CheckpointFolder(
+            out, "branch", asked_digest(axis, both), words, _packed)
         self._written: dict[int, tuple[int, int]] = {}
 
     def asks_for(self, branch: Branch) -> bool:
@@ -54,7 +55,7 @@ class OrbitCheckpoints:
         """Add the orbits and special points that a half-branch has gained since the last call."""
         points, special = self._written.get(half.direction, (0, 0))
         self._written[half.direction] = len(half.points), len(half.special)
-        self.kept.add({"period": period, "direction": half.direction, "first": [points, special],
+        self.folder.add({"period": period, "direction": half.direction, "first": [points, special],
                        "points": [_as_json(point) for point in half.points[points:]],
                        "special": [special_as_json(point) for point in half.special[special:]],
                        "step": half.step.hex(), "ended": half.ended, "reason": half.reason})
@@ -69,7 +70,7 @@ class OrbitCheckpoints:
         """The branch in the blocks, each half-branch up to its first missing orbit; None if a start is missing."""
         halves: dict[int, HalfBranch] = {}
         period = 0
-        for content in self.kept.blocks():
+        for content in self.folder.blocks():
             for record in json.loads(content):
                 half = halves.setdefault(record["direction"], HalfBranch(record["direction"], []))
                 if record["first"] == [len(half.points), len(half.special)]:
@@ -98,8 +99,8 @@ def _as_json(point: BranchPoint) -> dict[str, Any]:
             for name, value in record.items()}
 
 
-def _point(kept: dict[str, Any]) -> BranchPoint:
-    record = {entry.name: kept[_FORMER.get(entry.name, entry.name)] for entry in fields(BranchPoint)}
+def _point(entries: dict[str, Any]) -> BranchPoint:
+    record = {entry.name: entries[_FORMER.get(entry.name, entry.name)] for entry in fields(BranchPoint)}
     arrays: dict[str, Any] = {name: np.array(record[name], dtype=int if name == "closings" else float)
                               for name in _ARRAYS if name != "multipliers"}
     real, imaginary = np.array(record["multipliers"])

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ...execution.checkpoints import Kept
+from ...execution.checkpoints import CheckpointFolder
 from ...results.forces import ForceErrors
 from ...scene.state import State
 from ..regime_criteria import Regime
@@ -19,17 +19,17 @@ from .request import CurveRequest
 _NUMBERS = ("frequency", "max_output_force", "max_output_force_elastic", "max_input_force")
 
 
-def point_checkpoints(request: CurveRequest, out: str | Path) -> Kept[CurvePoint]:
+def point_checkpoints(request: CurveRequest, out: str | Path) -> CheckpointFolder[CurvePoint]:
     """The checkpoint folder for the points of the curve that will be written to `out`."""
     frequencies = request.frequencies
     words = (f"{request.scene.name} from {frequencies[0]:g} to {frequencies[-1]:g} Hz ({len(frequencies)}, "
              f"{request.start})")
-    return Kept(out, "curve", request.digest, words, _packed)
+    return CheckpointFolder(out, "curve", request.digest, words, _packed)
 
 
-def points_in(kept: Kept[CurvePoint]) -> list[CurvePoint]:
+def points_in(folder: CheckpointFolder[CurvePoint]) -> list[CurvePoint]:
     """The points in the complete blocks, in the order in which they were finished."""
-    return [_point(record) for content in kept.blocks() for record in json.loads(content)]
+    return [_point(record) for content in folder.blocks() for record in json.loads(content)]
 
 
 def _packed(points: list[CurvePoint]) -> bytes:

@@ -118,7 +118,7 @@ class SettlingRun:
         if self._steps_left() <= 0 and self.regime.name != "periodic":
             self.decided = True
             return
-        decision = self.decisions.next(self.engine, self.strobes[-REMEMBERED:], self.regime)
+        decision = self.decisions.decide(self.engine, self.strobes[-REMEMBERED:], self.regime)
         if decision.state is not None:
             self.engine.start_scaled(decision.state)
         if decision.regime is not None:

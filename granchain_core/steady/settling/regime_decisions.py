@@ -66,12 +66,12 @@ class Decisions:
         self._departures, self._leaves = 0, False
         self._measurements = ExponentMeasurements()
 
-    def next(self, engine: Engine, strobes: np.ndarray, regime: Regime) -> Decision:
+    def decide(self, engine: Engine, strobes: np.ndarray, regime: Regime) -> Decision:
         """Make the next decision from the last strobes (P, 2, N) of `engine` and the regime that they show."""
         if regime.name == "periodic":
-            return self._confirmed(engine, strobes, regime)
-        for orbit in _orbits_beside(engine, strobes):
-            decision = self._beside(orbit, regime)
+            return self._confirm_period(engine, strobes, regime)
+        for orbit in _orbits_near_motion(engine, strobes):
+            decision = self._decision_by_orbit(orbit, regime)
             if decision is not None:
                 return decision
         leaves = self._leaves and self._measurements.approach_rate == 0.0
@@ -81,7 +81,7 @@ class Decisions:
             return Decision()
         return self._measure(engine, strobes, regime)
 
-    def _confirmed(self, engine: Engine, strobes: np.ndarray, regime: Regime) -> Decision:
+    def _confirm_period(self, engine: Engine, strobes: np.ndarray, regime: Regime) -> Decision:
         """The decision on a motion that seems settled: on a stable orbit, or near one that it will leave.
 
         A motion that alternates about an orbit while it settles is nearer to itself after two of its periods than after
@@ -102,11 +102,11 @@ class Decisions:
         if orbit is None or orbit.distance_of_motion > NEAR_AN_ORBIT:
             return Decision(replace(regime, name="unsettled", period=None, distance=None) if unconfirmed else regime)
         if orbit.stable:
-            return Decision(_on(orbit, regime), orbit.point.x if unconfirmed else None)
-        return self._beside(orbit, regime) or Decision(
+            return Decision(_regime_on_orbit(orbit, regime), orbit.point.x if unconfirmed else None)
+        return self._decision_by_orbit(orbit, regime) or Decision(
             replace(regime, name="unsettled", period=None, distance=None, observed_contraction=None))
 
-    def _beside(self, orbit: NearbyOrbit, regime: Regime) -> Decision | None:
+    def _decision_by_orbit(self, orbit: NearbyOrbit, regime: Regime) -> Decision | None:
         """The decision based on an orbit near the motion, or None if it does not decide."""
         if orbit.approached():
             return Decision(replace(regime, name="periodic", period=orbit.period, multiplier=orbit.modulus,
@@ -140,14 +140,14 @@ def _decays_clearly(regime: Regime) -> bool:
     return (regime.observed_contraction or 0.0) ** (1.0 / regime.period) <= CLEAR_CONTRACTION
 
 
-def _on(orbit: NearbyOrbit, regime: Regime) -> Regime:
+def _regime_on_orbit(orbit: NearbyOrbit, regime: Regime) -> Regime:
     """The periodic regime of a motion on a stable orbit that Newton's method has found from it."""
     # the contraction over a longer period says nothing about a shorter one
     seen = regime.observed_contraction if orbit.period == regime.period else None
     return replace(regime, period=orbit.period, multiplier=orbit.modulus, observed_contraction=seen)
 
 
-def _orbits_beside(engine: Engine, strobes: np.ndarray) -> Iterator[NearbyOrbit]:
+def _orbits_near_motion(engine: Engine, strobes: np.ndarray) -> Iterator[NearbyOrbit]:
     """Yield orbits near the motion of `engine` with these last strobes (P, 2, N); none for long chains."""
     scene = engine.scaled.scene
     if scene.N <= MOST_BEADS_WITH_MULTIPLIERS:
@@ -166,8 +166,8 @@ def regime_without_continuing(engine: Engine, strobes: np.ndarray, regime: Regim
         orbit = orbit_of(scene, regime.period, _state_of(engine), engine.stop)
         if orbit is None or not orbit.stable or orbit.distance_of_motion > NEAR_AN_ORBIT:
             return Regime.unsettled(regime.periods_run)
-        return _on(orbit, regime)
-    for orbit in _orbits_beside(engine, strobes):
+        return _regime_on_orbit(orbit, regime)
+    for orbit in _orbits_near_motion(engine, strobes):
         if orbit.approached():
             return replace(regime, approaches=orbit.period, multiplier=orbit.modulus)
         if orbit.unstable and orbit.amplified_departure() is not None:

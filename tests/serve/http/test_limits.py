@@ -30,9 +30,9 @@ from app.serve.http.message_rules import LARGEST_PLAIN_CONTENT, UPLOAD
 from app.serve.http.unsent import UnsentBytes
 from app.serve.monitoring.metrics import METRICS
 from app.server import Access
-from app.session import starts
 from app.session.budget import FIRST_PICTURE, UNASKED_CURVE, WHOLE_PICTURE
-from app.session.share import LONGEST, PINS
+from app.session.initial_state import MOST_BEADS_IN_LINK
+from app.session.share import LONGEST_LINK, PINS
 from granchain_core.orbits.branch.branch import MOST_POINTS
 from granchain_core.scene.quantities import QUANTITIES
 
@@ -67,7 +67,7 @@ def test_the_limits_of_the_document_are_those_of_the_code() -> None:
         "bytes that wait to be sent to all pages": f"{guarded_socket.MOST_UNSENT_TOGETHER // 1_000_000} MB together; beyond "
                                                    "that the connection with the most is closed",
         "a page that is being loaded": f"{server.UNCONNECTED_MS // 1000} s; at most half of the sessions",
-        "a link": f"{LONGEST} characters",
+        "a link": f"{LONGEST_LINK} characters",
         "sessions at once": f"{Access().max_sessions}",
         "long computations of a session at once": f"{LONG.per_owner_limit} ({LONG.purpose}); more wait",
         "first picture, steady state": f"{FIRST_PICTURE:g} s (estimated), {WHOLE_PICTURE:g} s of processor time",
@@ -78,7 +78,7 @@ def test_the_limits_of_the_document_are_those_of_the_code() -> None:
 
 def test_what_pages_may_be_asked_is_what_the_document_says() -> None:
     assert {
-        "beads of a chain": QUANTITIES["N"].high, "pins": len(PINS), "beads whose state a link contains": starts.MOST_BEADS,
+        "beads of a chain": QUANTITIES["N"].high, "pins": len(PINS), "beads whose state a link contains": MOST_BEADS_IN_LINK,
         "points of a measurement": MOST_UPLOADED_POINTS, "points of a branch, each way": MOST_POINTS,
         "Analysis: beads": questions.MOST_BEADS, "Analysis: values of a knob": questions.MOST_VALUES,
         "Analysis: starts of each of two knobs": questions.MOST_STARTS, "Analysis: drive periods": questions.MOST_PERIODS,

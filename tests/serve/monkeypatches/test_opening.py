@@ -23,7 +23,7 @@ def content() -> str:
     """Return the JSON of a new page, with its ids renumbered in order."""
     document = Document()
     with set_curdoc(document):
-        entry.page()
+        entry.open_web_page()
     numbers: dict[str, int] = {}
     text = json.dumps(document.to_json(deferred=False)["roots"], default=str)
     text = re.sub(r"\bp\d+\b", lambda found: f"p{numbers.setdefault(found[0], len(numbers))}", text)

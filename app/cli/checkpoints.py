@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from granchain_core import BadInput, Cancelled
-from granchain_core.execution.checkpoints import Kept, folder_of
+from granchain_core.execution.checkpoints import CheckpointFolder, folder_of
 
 from . import ending
 from .common import say
@@ -31,7 +31,7 @@ def finished(arguments: argparse.Namespace, what: str, load: Callable[[str], Res
     for --resume without --out, and for a file with another result if there are no blocks to continue from.
     """
     if arguments.out:
-        ending.keeps(str(folder_of(arguments.out)))
+        ending.note_checkpoints(str(folder_of(arguments.out)))
     if not arguments.resume:
         return None
     if not arguments.out:
@@ -55,7 +55,7 @@ def finished(arguments: argparse.Namespace, what: str, load: Callable[[str], Res
 
 
 @contextmanager
-def keeping(kept: Kept[Any] | None, done: Callable[[], str]) -> Iterator[None]:
+def writing_checkpoints(folder: CheckpointFolder[Any] | None, done: Callable[[], str]) -> Iterator[None]:
     """Compute in this block and write the pieces finished so far, however the block ends.
 
     After a signal, the command's last message is the sentence of `done`, which says how many pieces there are.
@@ -63,13 +63,13 @@ def keeping(kept: Kept[Any] | None, done: Callable[[], str]) -> Iterator[None]:
     try:
         yield
     except (Cancelled, KeyboardInterrupt):
-        if kept is None:
+        if folder is None:
             raise
-        kept.write()
-        if not kept.folder.exists():
+        folder.write()
+        if not folder.path.exists():
             raise
-        raise Cancelled(f"{done()} are kept in {kept.folder}; continue with --resume") from None
+        raise Cancelled(f"{done()} are kept in {folder.path}; continue with --resume") from None
     except BaseException:
-        if kept is not None:
-            kept.write()
+        if folder is not None:
+            folder.write()
         raise

@@ -1,7 +1,7 @@
 """The browser that draws files and runs the tests: the names of its program.
 
 This module imports only the standard library, because `.ci/run` and the test command of README.md call it (`python -m
-app.plots.chromium`) before anything is installed. It prints the path, and fails if there is none.
+app.headless.chromium`) before anything is installed. It prints the path, and fails if there is none.
 """
 
 from __future__ import annotations

@@ -15,18 +15,18 @@ from granchain_core import BadInput, Scene, State
 from granchain_core.integrate.start import nearest_fraction
 
 #: Beads of the longest chain whose state fits into a link.
-MOST_BEADS = 40
+MOST_BEADS_IN_LINK = 40
 
 
-def start_text(start: State | None) -> str:
+def initial_state_text(start: State | None) -> str:
     """Return the state as text; empty for rest, and for a chain that is too long for a link."""
-    if start is None or len(start.displacement) > MOST_BEADS:
+    if start is None or len(start.displacement) > MOST_BEADS_IN_LINK:
         return ""
     values = np.concatenate([[start.phase], start.displacement, start.velocity]).astype("<f8")
     return base64.urlsafe_b64encode(values.tobytes()).decode().rstrip("=")
 
 
-def read_start(text: str, scene: Scene) -> State:
+def read_initial_state(text: str, scene: Scene) -> State:
     """Read the state of a scene's chain from its text. Raises `BadInput`."""
     try:
         content = base64.b64decode(text + "=" * (-len(text) % 4), altchars=b"-_", validate=True)

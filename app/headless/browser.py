@@ -19,9 +19,18 @@ from PIL import Image
 
 from granchain_core import BadInput
 
+from ..plots.file import (
+    CAPTION_LINE,
+    CAPTION_ROOM,
+    CAPTION_SIZE,
+    FONT,
+    caption_height,
+    caption_lines,
+    captioned_html,
+    html_of,
+)
+from ..plots.theme import Theme
 from .chromium import installed_browser
-from .file import CAPTION_LINE, CAPTION_ROOM, CAPTION_SIZE, FONT, caption_height, caption_lines, captioned_html, html_of
-from .theme import Theme
 
 #: Chromium's sandbox does not start for root, the user in many containers; for any other user the sandbox is kept.
 _FOR_ROOT = ["--no-sandbox"] if os.geteuid() == 0 else []

@@ -1,4 +1,4 @@
-"""The file border: the seal, links and data that are not followed, limits of the child, and one sentence per error."""
+"""Checked access to a file: the seal, links and data that are not followed, limits of the child, and sentences."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ import xarray
 
 from app.cli import main
 from granchain_core import BadInput
-from granchain_core.hdf5 import border, child, plain, seal
+from granchain_core.hdf5 import checked_file, child, plain, seal
 from granchain_core.store import load
 from granchain_core.tables import MAXIMA
 from tools.damage.harms import FORGERIES, LEADING
@@ -86,10 +86,10 @@ def test_a_file_without_a_seal_is_read_by_a_child_and_gives_the_same(kind: str, 
                                                                      monkeypatch: pytest.MonkeyPatch) -> None:
     sealed, old = files[kind]
     true = told(KINDS[kind].read(sealed))
-    monkeypatch.delattr(border, "Plain")
+    monkeypatch.delattr(checked_file, "Plain")
     assert told(KINDS[kind].read(old)) == true
     monkeypatch.undo()
-    monkeypatch.delattr(border, "Child")
+    monkeypatch.delattr(checked_file, "Child")
     assert told(KINDS[kind].read(sealed)) == true
 
 
