@@ -1,14 +1,17 @@
-"""Fixture for pages of the table, without a browser."""
+"""Fixtures for pages without a browser: one page on a host of its own, and one of a whole dashboard."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
 import pytest
+from headless_dashboard import dashboard
 from page_host import PageUnderTest, picture
 
 from app.dashboard.table import PAGES
 from app.pages.map import page as map_page
+
+__all__ = ["dashboard"]
 
 OpenPage = Callable[[str], PageUnderTest]
 
