@@ -59,7 +59,7 @@ def tested(request: pytest.FixtureRequest, page_of: Callable[[str], PageUnderTes
 
 def only(selected: Callable[[PageSpec], bool]) -> pytest.MarkDecorator:
     """Restrict the fixture `tested` to the pages that are selected."""
-    return pytest.mark.parametrize("tested", list(filter(selected, PAGES)), indirect=True, ids=lambda row: row.name)
+    return pytest.mark.parametrize("tested", [row for row in PAGES if selected(row)], indirect=True, ids=lambda row: row.name)
 
 
 with_work = only(has_work)
