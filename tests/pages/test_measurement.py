@@ -159,10 +159,10 @@ def test_the_misfit_is_in_newtons_and_comes_with_the_whole_curve(dashboard: Dash
     figure.add("rest", [point(30.0, 4.0), point(50.0, 6.0), point(70.0, 16.0)], covers=True)
     figure.finished("rest")
     data_page(dashboard).curve_compared(figure.difference)
-    misfit = dashboard.views.tabs.state["misfit"]
+    misfit: Any = dashboard.views.tabs.state["misfit"]
     # the model has 5 N at 40 Hz and 11 N at 60 Hz: −0.5 and −1.1 N
-    assert "rms 0.854 N" in misfit["sentence"] and "largest -1.1 N at 60 Hz" in misfit["sentence"]  # type: ignore[index]
-    assert misfit["rows"][0] == ["40 Hz", "5.5 N", "5.000 N", "−500 mN"]  # type: ignore[index]
+    assert "rms 0.854 N" in misfit["sentence"] and "largest -1.1 N at 60 Hz" in misfit["sentence"]
+    assert misfit["rows"][0] == ["40 Hz", "5.5 N", "5.000 N", "−500 mN"]
     figure.begin(["rest"])
     assert figure.difference is None
 
@@ -219,10 +219,12 @@ def test_a_series_goes_over_the_force_trains_and_moves_with_the_picture(dashboar
     lines = [[drawn for drawn in plot.renderers if drawn.level == "overlay"] for plot in (trains.left, trains.right)]
     assert [len(overlays) for overlays in lines] == [1, 1]
     assert all(len(overlays[0].data_source.data["time"]) > 1000 for overlays in lines)
-    preview = replace(dashboard.session.settled, final=False)  # for knobs that have moved  # type: ignore[type-var]
-    data_page(dashboard).picture_ready(preview)  # type: ignore[arg-type]
+    settled = dashboard.session.settled
+    assert settled is not None
+    preview = replace(settled, final=False)  # for knobs that have moved
+    data_page(dashboard).picture_ready(preview)
     assert dashboard.views.tabs.state["misfit"] is None
-    data_page(dashboard).picture_ready(dashboard.session.settled)  # type: ignore[arg-type]
+    data_page(dashboard).picture_ready(settled)
     dashboard.run_callbacks_until(lambda: "rms" in str(dashboard.views.tabs.state["misfit"]))
     dashboard.received({"do": "measurement-remove"})
     assert all(len(overlays[0].data_source.data["time"]) == 0 for overlays in lines)
