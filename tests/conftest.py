@@ -31,7 +31,7 @@ HERE = Path(__file__).parent
 #: wrong. Orders of convergence, random scenes and browsers are left to the whole suite.
 QUICK = (
     "architecture", "public", "scene", "experiment", "dashboard", "session", "integrate", "kernels/equations",
-    "kernels/effects", "kernels/rk4", "kernels/dop853", "kernels/error_control", "parts", "pages", "curve",
+    "kernels/effects", "kernels/rk4", "kernels/dop853", "kernels/dop853_root", "kernels/error_control", "parts", "pages", "curve",
 )
 #: Files in these folders that are left to the whole suite: they build a wheel, start servers and notebooks, or settle a
 #: scene at hundreds of frequencies. Together they would take a fifth of the time.

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.format import duration, figures_of, in_words, prefixed, with_decimals, with_figures
+from app.format import duration, figures_of, in_words, prefixed, short_error, with_decimals, with_figures
 
 pytestmark = pytest.mark.quick
 
@@ -42,3 +42,13 @@ def test_an_error_says_how_many_figures_there_are() -> None:
     assert [figures_of(error) for error in (None, 0.3, 1e-2, 4e-3, 1e-9)] == [2, 2, 2, 3, 4]
     assert in_words(13.0062, "N", figures_of(1e-2)) == "13 N"
     assert in_words(5.04, "N") == "5.040 N"
+
+
+@pytest.mark.parametrize(("value", "words"), [(1e-6, "1e-6"), (3.16e-7, "3e-7"), (1e-10, "1e-10"), (0.1, "1e-1")])
+def test_errors_have_one_figure(value: float, words: str) -> None:
+    assert short_error(value) == words
+
+
+@pytest.mark.parametrize(("value", "words"), [(0.0021, "2.1 ms"), (1.234, "1.23 s"), (4.2e-4, "420 µs"), (0.5, "500 ms")])
+def test_durations_have_three_figures(value: float, words: str) -> None:
+    assert duration(value) == words

@@ -7,6 +7,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from importlib import import_module
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -23,7 +24,7 @@ from granchain_core.accuracy.limit import Limited
 from granchain_core.accuracy.naive import NATURAL_STEPS, naive_comparison
 from granchain_core.accuracy.scipy_methods import solve
 from granchain_core.execution.stop import Stop
-from granchain_core.integrate import METHODS
+from granchain_core.integrate import METHODS, MethodSetting
 from granchain_core.precompile.pieces import ACCURACY_KERNELS
 from granchain_core.precompile.warm import compile_piece
 
@@ -217,3 +218,12 @@ def test_a_second_reference_without_preload_or_damping_is_one_too() -> None:
         plain, _ = solve(shown, "DOP853", 1e-12, 2, 16)
         located, _ = solve(shown, "DOP853", 1e-13, 2, 16, located=True)
         assert np.abs(plain - located).max() < 1e-6 * np.abs(located).max()  # each is more accurate than 1e-8
+
+
+def test_what_a_method_costs_is_the_time_of_its_own_thread(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A visitor who computes at the same time does not make a method appear slower."""
+    times = iter((1.0, 1.25))
+    monkeypatch.setattr(MEASURING.time, "thread_time", lambda: next(times))
+    monkeypatch.setattr(MEASURING, "Engine", lambda *_, **__: SimpleNamespace(
+        record=lambda rows: SimpleNamespace(displacement=np.zeros((rows, 1))), counts=SimpleNamespace(rhs=5)))
+    assert MEASURING._ours(scene("sec2"), MethodSetting("rk4"), Stop()).seconds == 0.25

@@ -43,6 +43,11 @@ class Answer:
     whole_evaluations: int | None
     runs: int
 
+    @property
+    def is_equal(self) -> bool:
+        """Whether all compared peaks agree with the accurate ones."""
+        return self.worst <= EQUAL
+
 
 def work(frequencies: np.ndarray) -> float:
     """Return the scaled time to be integrated for these points; a part is scaled to the whole in this proportion."""
@@ -70,7 +75,7 @@ def answer(case: Case, frequencies: np.ndarray, accurate: np.ndarray, periodic: 
     runs = [peaks]
     if case.stride == 1:
         runs += [case.peaks(mine, setting) for _ in range(2 if quick else 4)]
-        peaks = sorted(runs, key=lambda one: one.seconds)[len(runs) // 2]
+        peaks = sorted(runs, key=lambda run: run.seconds)[len(runs) // 2]
     part = work(frequencies) / work(mine)
     evaluations = None if peaks.evaluations is None else round(part * peaks.evaluations)
     return Answer(case, setting, peaks, mine.size, int(compare.sum()), worst, part * peaks.seconds, evaluations,
@@ -89,7 +94,7 @@ def report(cases: list[Case], quick: bool, tell: Callable[[str], None]) -> str:
         if case.peaks is not None and not (quick and case.stride >= 60):
             tell(f"{case.label} ({case.form})")
             found.append(answer(case, frequencies, accurate, periodic, quick))
-    found.sort(key=lambda one: one.whole)
+    found.sort(key=lambda row: row.whole)
     notes = [
         f"{periodic.sum()} of {periodic.size} points are periodic after {problem.PASSED + problem.WATCHED} periods; only "
         "their peaks are compared, since two methods cannot agree on an irregular motion.",
@@ -107,17 +112,23 @@ def report(cases: list[Case], quick: bool, tell: Callable[[str], None]) -> str:
     return "\n".join([_table(found, frequencies.size, notes), product(grids, tell)])
 
 
+def fastest_of_ours(found: list[Answer]) -> float:
+    """Return the shortest time of a granchain row with equal answers, the unit of "× granchain"; NaN if none is."""
+    return min((row.whole for row in found if row.case.label.startswith("granchain") and row.is_equal),
+               default=float("nan"))
+
+
 def _table(found: list[Answer], points: int, notes: list[str]) -> str:
-    ours = [one.whole for one in found if one.case.label.startswith("granchain")]
-    base = min(ours) if ours else float("nan")
+    base = fastest_of_ours(found)
     rows = []
-    for one in found:
-        each = "–" if one.whole_evaluations is None else f"{1e9 * one.whole / one.whole_evaluations / 12:.2f}"
-        mark = "" if one.worst <= EQUAL else " !"
-        rows.append([one.case.label, one.case.form, f"{one.case.unit} {one.setting:.3g}", f"{one.points}",
-                     f"{one.compared}", f"{one.worst:.0e}{mark}", seconds(one.whole) + (" n = 1" if one.runs == 1 else ""),
-                     count(one.whole_evaluations), each, ratio(one.whole / base)])
-    return table(f"Curve of {points} points, 100 + 20 periods each, one core",
+    for row in found:
+        contacts = problem.BEADS + 1
+        each = "–" if row.whole_evaluations is None else f"{1e9 * row.whole / row.whole_evaluations / contacts:.2f}"
+        mark = "" if row.is_equal else " !"
+        rows.append([row.case.label, row.case.form, f"{row.case.unit} {row.setting:.3g}", f"{row.points}",
+                     f"{row.compared}", f"{row.worst:.0e}{mark}", seconds(row.whole) + (" n = 1" if row.runs == 1 else ""),
+                     count(row.whole_evaluations), each, ratio(row.whole / base)])
+    return table(f"Curve of {points} points, {problem.PASSED} + {problem.WATCHED} periods each, one core",
                  ["solver", "form", "setting", "points", "compared", "worst", "whole curve", "evaluations",
                   "ns/contact", "× granchain"], rows, notes)
 
@@ -133,7 +144,7 @@ def product(grids: list[tuple[np.ndarray, np.ndarray, np.ndarray]], tell: Callab
         tell(f"resonance_curve of {frequencies.size} points, {_TURNS} turns")
         rows += _product_rows(frequencies, accurate, periodic)
     machine.pin()
-    return table("The product: settled or shown irregular at every point, not 120 periods",
+    return table(f"The product: settled or shown irregular at every point, not {problem.PASSED + problem.WATCHED} periods",
                  ["call", "points", "cores", "median", "least", "periodic", "compared", "worst", "median error"], rows,
                  [f"In a separate process. Median and least of {_TURNS}, on all cores and on one alternately."])
 

@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import os
+from typing import Any
 
 import numpy as np
 import pytest
 
-from tests.benchmarks import compiled, machine, page, problem
-from tests.benchmarks.peers import c_program, granchain, peer, scipy
+from tests.benchmarks import compiled, curve, machine, page, problem, trajectory
+from tests.benchmarks.case import Case, Peaks
+from tests.benchmarks.peers import PEERS, c_program, granchain, peer
 from tests.benchmarks.trajectory import error_of
 
 #: Frequencies at which the motion is periodic after 120 periods, so that rounding errors do not grow.
 PERIODIC = np.array([340.0, 470.0, 1130.0, 1600.0])
+#: The settings of rows whose ladder is not one of tolerances, by its unit.
+SETTINGS = {"steps a period": 1920, "refine": 12.0}
 
 
 @pytest.fixture(scope="module")
@@ -44,30 +48,47 @@ def test_both_forms_are_one_motion() -> None:
     assert np.allclose((v[2] - v[0]) / (2.0 * step), uv[n:], rtol=0.0, atol=1e-7)
 
 
-@pytest.mark.parametrize("form", problem.FORMS)
-def test_scipy_and_granchain_find_the_same_motion(form: str, reference: np.ndarray) -> None:
-    slope = {"uv": compiled.slope_uv, "w": compiled.slope_w}[form]
-    solved = scipy.ode(slope, 1e-10)(problem.beta_of(problem.FREQUENCY), problem.trajectory_times())
-    assert error_of(solved.states, reference) < 1e-6
+def rows() -> list[Any]:
+    """Return every row with a trajectory of every peer; a peer that cannot run here is skipped with its reason."""
+    found = []
+    for name in PEERS:
+        if why := peer(name).missing():
+            found.append(pytest.param(None, id=name, marks=pytest.mark.skip(reason=why)))
+        else:
+            found += [pytest.param(case, id=f"{name}-{case.label}-{case.form}") for case in peer(name).cases() if case.prepare]
+    return found
 
 
-@pytest.mark.parametrize("name", ["numbalsoda", "heyoka", "diffrax"])
-def test_a_peer_finds_the_same_motion(name: str, reference: np.ndarray) -> None:
-    if why := peer(name).missing():
-        pytest.skip(why)
-    case = next(c for c in peer(name).cases() if c.form == "w")
+@pytest.mark.parametrize("case", rows())
+def test_every_row_of_every_peer_finds_the_same_motion(case: Case, reference: np.ndarray) -> None:
     assert case.prepare is not None
-    assert error_of(case.prepare(1e-9)().states, reference) < 1e-6
+    # fixed steps have order 2 at contact changes: 7.5e-7 was measured for the C program; the force of the (u, v) form
+    # jumps there: 7e-6 for SciPy's RK45
+    assert error_of(case.prepare(SETTINGS.get(case.unit, 1e-9))().states, reference) < {"uv": 1e-4, "w": 1e-6}[case.form]
+
+
+def test_a_wrong_reference_stops_the_benchmark(reference: np.ndarray) -> None:
+    distances = trajectory.second_opinion(reference)
+    assert "scipy DOP853 in w at 1e-13" in trajectory.confirmation(distances)
+    wrong = {name: error_of(1.000001 * reference, reference) for name in distances}
+    with pytest.raises(SystemExit, match="No other integrator confirms the reference to 1e-09: scipy"):
+        trajectory.confirmation(wrong)
+    assert trajectory.confirmation({"a": 2.5e-10}) == "a: 2.5e-10 (!: not confirmed to 1e-10)"
+    assert trajectory.confirmation({"a": 2.5e-10, "b": 8e-13}) == "a: 2.5e-10; b: 8.0e-13"
+
+
+def test_the_unit_of_the_curve_is_a_row_with_equal_answers() -> None:
+    def answer(label: str, worst: float, seconds: float) -> curve.Answer:
+        return curve.Answer(Case(label, "w"), 1.0, Peaks(np.zeros(1), seconds), 1, 1, worst, seconds, None, 1)
+
+    answers = [answer("granchain, given up", 1e-3, 1.0), answer("granchain batches", 1e-5, 2.0), answer("C", 1e-5, 0.5)]
+    assert curve.fastest_of_ours(answers) == 2.0
+    assert np.isnan(curve.fastest_of_ours(answers[::2]))
 
 
 @pytest.mark.skipif(bool(c_program.missing()), reason=c_program.missing())
 class TestC:
     """The C program, where it can be compiled."""
-
-    @pytest.mark.parametrize("case", [case for case in c_program.cases() if case.prepare], ids=lambda case: case.label)
-    def test_the_program_in_c_follows_the_reference(self, case, reference: np.ndarray) -> None:
-        # order 2 at contact changes: measured 7.5e-7 at 1920 steps a period
-        assert error_of(case.prepare(1920)().states, reference) < 1e-6
 
     @pytest.mark.parametrize("shape", [c_program.SHAPES[0], (2, 3), (1, 12)])
     def test_the_peaks_are_those_of_the_lanes(self, shape: tuple[int, int]) -> None:

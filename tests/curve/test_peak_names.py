@@ -27,14 +27,17 @@ def test_the_peaks_of_section_2_and_what_lies_between(curve: list[CurvePoint]) -
     names = PeakNames(host, shown.append)
     names.name(curve, SEC2)
     host.run_callbacks_until(lambda: bool(shown), 60.0)
-    found = {one["name"]: one["f"] for one in shown[0] if one["kind"] == "peak"}
+    found = {extreme["name"]: extreme["f"] for extreme in shown[0] if extreme["kind"] == "peak"}
     assert [f"1:{n}" for n in range(1, 5)] == [name for name in found if name != "1:5"]
     assert (found["1:1"], found["1:2"], found["1:3"]) == pytest.approx((340.0, 620.0, 1130.0), abs=30.0)
-    for one in shown[0]:
-        if one["kind"] != "band":
-            pushed = pushes(settle(SEC2.evolve(f=one["f"])).run)
-            assert pushed == (1, 1) if one["kind"] == "valley" else f"{pushed[0]}:{pushed[1]}" == one["name"]
-    assert "anti-resonance" in {one["name"] for one in shown[0]}
+    for extreme in shown[0]:
+        if extreme["kind"] != "band":
+            pushed = pushes(settle(SEC2.evolve(f=extreme["f"])).run)
+            if extreme["kind"] == "valley":
+                assert pushed == (1, 1)
+            else:
+                assert extreme["name"] == f"{pushed[0]}:{pushed[1]}"
+    assert "anti-resonance" in {extreme["name"] for extreme in shown[0]}
     names.forget()
     assert shown[-1] == []
 
@@ -75,5 +78,5 @@ def test_what_one_visitor_has_named_is_not_computed_for_the_next(curve: list[Cur
         names = PeakNames(host, shown.append)
         names.name(curve, scene_of_its_own)
         host.run_callbacks_until(lambda shown=shown: bool(shown), 60.0)
-        assert [one["kind"] for one in shown[0]] == ["band"]  # nothing else has a name here
+        assert [extreme["kind"] for extreme in shown[0]] == ["band"]  # nothing else has a name here
     assert settled_at == [point.frequency for _, point in extreme_points(curve)]

@@ -133,4 +133,4 @@ def test_a_step_of_the_history_ends_in_the_browser_even_if_a_page_fails(dashboar
     monkeypatch.setattr(dashboard.pages[-1], "address_applied", fail)
     dashboard.received({"do": "go", "query": "scene=sec2&f=2000"})
     dashboard.run_callbacks_until(lambda: not dashboard.callbacks)
-    assert [message["query"] for message in dashboard.told if message["type"] == "address-applied"] == [dashboard.session.link]
+    assert [message["query"] for message in dashboard.sent if message["type"] == "address-applied"] == [dashboard.session.link]

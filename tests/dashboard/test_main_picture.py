@@ -31,8 +31,8 @@ def test_a_picture_is_saved_in_the_background(dashboard: Dashboard, monkeypatch:
     shown = run(scene("sec2"), periods=0, record=1, samples=24)
     monkeypatch.setattr(dashboard.pictures, "shown_run", lambda: shown)
     dashboard.received({"do": "export"})
-    dashboard.run_callbacks_until(lambda: any(message["type"] == "file" for message in dashboard.told))
-    (file,) = [message for message in dashboard.told if message["type"] == "file"]
+    dashboard.run_callbacks_until(lambda: any(message["type"] == "file" for message in dashboard.sent))
+    (file,) = [message for message in dashboard.sent if message["type"] == "file"]
     assert file["name"] == "sec2-340Hz.h5" and file["content"][1:4] == b"HDF"
     assert threads[0].startswith("files")
 

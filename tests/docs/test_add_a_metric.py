@@ -15,8 +15,8 @@ PAGE = ROOT / "docs" / "add-a-metric.md"
 def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A copy of the repository with the page's edits made."""
     copy = tmp_path_factory.mktemp("metric") / "tree"
-    for part in ("granchain", "granchain_start", "tools", "docs", "tests/serve/monitoring", "tests/dashboard",
-                 "tests/waiting.py", "tests/host.py"):
+    for part in ("granchain", "granchain_start", "tools", "docs", "tests/serve/monitoring", "tests/pages/test_measurement.py",
+                 "tests/headless_dashboard.py", "tests/waiting.py", "tests/host.py"):
         copied(part, copy)
     return edited_copy(PAGE, copy)
 
@@ -29,7 +29,7 @@ def test_the_page_edits_two_files_and_writes_none() -> None:
 def test_the_new_metric_is_counted_answered_and_in_the_docs(tree: Path) -> None:
     printed = follow(tree, "-c", """
 import sys
-sys.path[:0] = ["tests", "tests/dashboard"]
+sys.path[:0] = ["tests", "tests/pages"]
 from headless_dashboard import Dashboard
 from app.serve.monitoring.metrics import METRICS
 from test_measurement import FILE, sent

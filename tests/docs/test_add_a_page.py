@@ -19,7 +19,7 @@ def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A copy of the repository with the page's edits made, including the tests of the architecture."""
     copy = tmp_path_factory.mktemp("page") / "tree"
     for part in ("docs", "granchain", "granchain_start", "tools", "tests/session/links.json", "tests/architecture", "tests/browser",
-                 "tests/dashboard/test_messages.py", "tests/dashboard/test_table.py", "tests/host.py", "tests/waiting.py",
+                 "tests/dashboard/test_messages.py", "tests/dashboard/test_table.py", "tests/host.py", "tests/headless_dashboard.py", "tests/waiting.py",
                  *(f"tests/pages/{name}.py" for name in ("conftest", "page_host", "test_every_page"))):
         copied(part, copy)
     edited_copy(PAGE, copy)

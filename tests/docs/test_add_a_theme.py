@@ -9,14 +9,14 @@ from documents import ROOT
 from edited_tree import copied, edited_copy, files_of, follow
 
 PAGE = ROOT / "docs" / "add-a-theme.md"
-_TESTS = ("-m", "pytest", "-p", "no:cacheprovider", str(Path("tests", "dashboard", "test_theme.py")))
+_TESTS = ("-m", "pytest", "-p", "no:cacheprovider", str(Path("tests", "plots", "test_theme.py")))
 
 
 @pytest.fixture(scope="module")
 def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A copy of the repository with the page's edits made."""
     copy = tmp_path_factory.mktemp("theme") / "tree"
-    for part in ("docs/glossary.md", "granchain", "tests/dashboard/test_theme.py"):
+    for part in ("docs/glossary.md", "granchain", "tests/plots/test_theme.py"):
         copied(part, copy)
     return edited_copy(PAGE, copy)
 

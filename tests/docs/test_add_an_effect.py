@@ -66,7 +66,7 @@ def test_the_new_effect_passes_the_tests_the_page_writes(tree: Path) -> None:
 def test_the_tests_that_know_every_scene_and_knob_know_the_new_ones(made: str, request: pytest.FixtureRequest) -> None:
     """The tests of README, model page, share links, scales and gallery pass once the tool has been run."""
     tree = request.getfixturevalue(made)
-    for part in ("tests/docs", "tests/session", "tests/dashboard", "tests/host.py", "tests/waiting.py", "docs", "tools", "CHANGELOG.md", "CONTRIBUTING.md"):
+    for part in ("tests/docs", "tests/session", "tests/dashboard", "tests/host.py", "tests/headless_dashboard.py", "tests/waiting.py", "docs", "tools", "CHANGELOG.md", "CONTRIBUTING.md"):
         copied(part, tree)
     written = follow(tree, "-m", "tools.update")
     assert all(file in written for file in ("README.md", "docs/model.md", "links.json", "[drag]", "drag.svg"))

@@ -8,8 +8,9 @@ would reflect the compiler's choices instead of the effects.
 
 The counts are those of one version of LLVM. Another version may choose differently, and the exact counts then need to
 be reviewed. They are kept in the folder of compiled kernels: nothing is compiled again until the kernels, the counting
-program or the compiler change. Long chains and dop853-root are not examined, since they call the same functions of the
-effects.
+program or the compiler change. Not examined are the scalar steps of RK4 and dop853, with which `granchain run` computes
+(it keeps an energy account), long chains, and dop853-root. They call the same functions of the effects through the same
+slots.
 """
 
 from __future__ import annotations

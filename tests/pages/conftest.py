@@ -1,16 +1,19 @@
-"""Fixture for pages of the table, without a browser."""
+"""Fixtures for pages without a browser: one page on a host of its own, and one of a whole dashboard."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
 import pytest
-from page_host import Trial, picture
+from headless_dashboard import dashboard
+from page_host import PageUnderTest, picture
 
 from app.dashboard.table import PAGES
 from app.pages.map import page as map_page
 
-OpenPage = Callable[[str], Trial]
+__all__ = ["dashboard"]
+
+OpenPage = Callable[[str], PageUnderTest]
 
 
 @pytest.fixture
@@ -19,8 +22,8 @@ def page_of(monkeypatch: pytest.MonkeyPatch) -> OpenPage:
     monkeypatch.setattr(map_page, "COLUMNS", 6)
     monkeypatch.setattr(map_page, "ROWS", 4)
 
-    def made(name: str) -> Trial:
-        trial = Trial(next(row for row in PAGES if row.name == name), monkeypatch)
-        trial.host.session.settled = picture()
-        return trial
+    def made(name: str) -> PageUnderTest:
+        tested = PageUnderTest(next(row for row in PAGES if row.name == name), monkeypatch)
+        tested.host.session.settled = picture()
+        return tested
     return made

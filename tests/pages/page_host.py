@@ -60,7 +60,7 @@ class FakePageHost(FakeHost):
 
 
 @dataclass(frozen=True)
-class Given:
+class Submitted:
     """Work that a task submitted to a worker pool."""
 
     pool: str
@@ -76,65 +76,65 @@ class Given:
         return task
 
 
-class Trial:
+class PageUnderTest:
     """A page with its view, without a browser."""
 
     def __init__(self, row: PageSpec, monkeypatch: Any) -> None:
         self.row = row
         self.host = FakePageHost()
         self.view = (row.view or Tabs)()
-        self.told: list[dict[str, Any]] = []
-        self.given: list[Given] = []
-        monkeypatch.setattr(self.view, "send", lambda **message: self.told.append(message))
-        monkeypatch.setattr(WorkerPool, "submit", lambda pool, run, work, job, owner=None: self.given.append(
-            Given(pool.name, run, work, job)))
+        self.sent: list[dict[str, Any]] = []
+        self.submitted: list[Submitted] = []
+        monkeypatch.setattr(self.view, "send", lambda **message: self.sent.append(message))
+        monkeypatch.setattr(WorkerPool, "submit", lambda pool, run, work, job, owner=None: self.submitted.append(
+            Submitted(pool.name, run, work, job)))
         for name in ("has", "await_piece", "load"):
             monkeypatch.setattr(COMPILER, name, lambda *_: True)
         self.page: Page = row.page(self.host, self.view)
 
     @property
-    def line(self) -> tuple[str, str, str]:
+    def activity(self) -> tuple[str, str, str]:
         """The page's line in the list of running computations, which must exist."""
-        line = self.page.activity
-        assert line is not None
-        return line
+        activity = self.page.activity
+        assert activity is not None
+        return activity
 
     def do(self, action: str, /, **message: Any) -> None:
         """Request an action as the visitor."""
         self.page.actions[action]({"do": action, **message})
 
-    def look(self, visible: bool = True) -> None:
+    def set_visible(self, visible: bool = True) -> None:
         """Show or hide the page."""
         self.page.visibility_changed(visible)
 
-    def settle(self, new: Settled | None = None) -> None:
+    def deliver_picture(self, new: Settled | None = None) -> None:
         """Deliver the picture of the current knobs."""
         self.host.session.settled = new or picture()
         self.page.picture_ready(self.host.session.settled)
         self.host.call_waiting()
 
-    def turn(self, **knobs: float) -> None:
-        """Turn knobs as the visitor; the dashboard calls its pages in this order."""
+    def move_knobs(self, **knobs: float) -> None:
+        """Move knobs as the visitor; the dashboard calls its pages in this order."""
         self.page.picture_requested()
         self.host.session.scene = self.host.session.scene.evolve(**knobs)
         self.page.scene_changed()
 
-    def rest(self) -> None:
+    def run_callbacks(self) -> None:
         """Let time pass: run waiting callbacks and those that they request, but not endless repetitions."""
         for _ in range(4):
             self.host.call_waiting()
 
     def compute(self, work: Callable[[Job], None] | None = None) -> None:
         """Compute submitted work that was not cancelled, or `work` instead of it, and deliver the results."""
-        given, self.given = self.given, []
-        for one in given:
-            one.run(work or one.work, one.job)
-        self.rest()
+        runs, self.submitted = self.submitted, []
+        for submitted in runs:
+            submitted.run(work or submitted.work, submitted.job)
+        self.run_callbacks()
 
     @property
-    def under_way(self) -> list[Given]:
+    def under_way(self) -> list[Submitted]:
         """Work that was submitted to a worker pool and neither computed nor cancelled."""
-        return [one for one in self.given if not one.job.stop]
+        return [submitted for submitted in self.submitted if not submitted.job.stop]
 
     @property
     def state(self) -> dict[str, Any]:
@@ -143,7 +143,7 @@ class Trial:
 
     def messages(self, kind: str) -> list[dict[str, Any]]:
         """Return the messages of a type that were sent to the browser."""
-        return [one for one in self.told if one.get("type") == kind]
+        return [message for message in self.sent if message.get("type") == kind]
 
     def last(self, kind: str) -> dict[str, Any]:
         """Return the last message of a type that was sent to the browser."""
@@ -157,7 +157,7 @@ class Trial:
     @property
     def sentences(self) -> list[str]:
         """Sentences about failures, from the page or left to the dashboard; a row of effects has its own in `state`."""
-        rows = (one for one in self._entries("state") if isinstance(one, str))
+        rows = (state for state in self._entries("state") if isinstance(state, str))
         return [*self._entries("failure"), *rows, *map(str, self.host.failures), *(sentence for _, sentence in self.host.faults)]
 
     @property
@@ -167,11 +167,11 @@ class Trial:
 
     def _entries(self, name: str) -> Iterator[Any]:
         """Yield the values with this name in the state and in the messages, at any depth."""
-        waiting: list[Any] = [self.state, *self.told]
+        waiting: list[Any] = [self.state, *self.sent]
         while waiting:
-            one = waiting.pop()
-            if isinstance(one, dict):
-                yield from (value for key, value in one.items() if key == name)
-                waiting.extend(one.values())
-            elif isinstance(one, (list, tuple)):
-                waiting.extend(one)
+            value = waiting.pop()
+            if isinstance(value, dict):
+                yield from (inner for key, inner in value.items() if key == name)
+                waiting.extend(value.values())
+            elif isinstance(value, (list, tuple)):
+                waiting.extend(value)

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from page_host import Trial, picture
+from page_host import PageUnderTest, picture
 
 from app.pages.accuracy import page as module
 from app.plots.accuracy import points
@@ -17,7 +17,7 @@ ROWS = [Row("rk4", "100 steps", 1e-3, 1e-4, 400, 100.0), Row("dop853", "1e-9", 2
 
 
 @pytest.fixture
-def page(page_of: Callable[[str], Trial], monkeypatch: pytest.MonkeyPatch) -> Trial:
+def page(page_of: Callable[[str], PageUnderTest], monkeypatch: pytest.MonkeyPatch) -> PageUnderTest:
     """The page, with a measurement that delivers its rows at once."""
     def measure(scene: Any, stop: Any, *, report: Any, pause: Any, progress: Any) -> None:
         pause()
@@ -29,53 +29,53 @@ def page(page_of: Callable[[str], Trial], monkeypatch: pytest.MonkeyPatch) -> Tr
     return page_of("accuracy")
 
 
-def test_it_measures_when_it_is_first_looked_at_and_goes_on_hidden(page: Trial) -> None:
-    page.turn(f=2000.0)
-    assert page.told == [], "until it is opened, there is nothing to see"
-    page.look()
-    assert [one.pool for one in page.given] == ["measurements"] and page.state["status"] == "waiting"
-    page.look(False)
+def test_it_measures_when_it_is_first_looked_at_and_goes_on_hidden(page: PageUnderTest) -> None:
+    page.move_knobs(f=2000.0)
+    assert page.sent == [], "until it is opened, there is nothing to see"
+    page.set_visible()
+    assert [submitted.pool for submitted in page.submitted] == ["measurements"] and page.state["status"] == "waiting"
+    page.set_visible(False)
     assert len(page.under_way) == 1
     page.compute()
     assert page.state["status"] == "done" and page.state["done"] == 0.5 and page.state["reference"] == "dop853"
-    page.look()
+    page.set_visible()
     assert page.under_way == [] and page.page.activity == ("accuracy of all methods", "ready", "2 settings measured")
 
 
-def test_the_cheapest_setting_follows_the_accuracy_that_is_asked_for(page: Trial) -> None:
-    page.look()
+def test_the_cheapest_setting_follows_the_accuracy_that_is_asked_for(page: PageUnderTest) -> None:
+    page.set_visible()
     page.compute()
-    page.turn(accuracy=1e-2)
+    page.move_knobs(accuracy=1e-2)
     assert page.last("asked")["sentence"].startswith("The cheapest way to 1e-2 is rk4, 100 steps")
-    page.turn(accuracy=1e-7)
+    page.move_knobs(accuracy=1e-7)
     assert "is dop853, 1e-9" in page.last("asked")["sentence"] and not page.last("asked")["stale"]
-    page.turn(accuracy=1e-9)
+    page.move_knobs(accuracy=1e-9)
     assert page.last("asked")["sentence"] == "Nothing measured here reaches 1e-9; the nearest is dop853, 1e-9."
 
 
-def test_rows_of_another_chain_are_stale_until_it_is_measured(page: Trial) -> None:
-    page.look()
+def test_rows_of_another_chain_are_stale_until_it_is_measured(page: PageUnderTest) -> None:
+    page.set_visible()
     page.compute()
-    page.turn(f=2100.0)
+    page.move_knobs(f=2100.0)
     assert page.last("asked")["stale"]
     page.do("accuracy-measure")
     assert not page.last("asked")["stale"] and page.state["done"] == 0.0
-    page.turn(f=picture().run.scene.f)
+    page.move_knobs(f=picture().run.scene.f)
     assert page.last("asked")["stale"]
 
 
-def test_a_stopped_measurement_keeps_its_rows(page: Trial, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_stopped_measurement_keeps_its_rows(page: PageUnderTest, monkeypatch: pytest.MonkeyPatch) -> None:
     def stopped(scene: Any, stop: Any, *, report: Any, **_: Any) -> None:
         report(SimpleNamespace(rows=ROWS[:1], lesson=None, agreement=1e-9))
-        page.rest()
+        page.run_callbacks()
         page.do("accuracy-stop")
         assert stop
         report(SimpleNamespace(rows=ROWS, lesson=None, agreement=1e-9))
 
     monkeypatch.setattr(module, "work_precision", stopped)
-    page.look()
+    page.set_visible()
     page.compute()
     assert page.state["progress"] == "stopped; the measurements so far are kept"
-    assert page.state["drawn"] == points(ROWS[:1]) and page.line[2] == "1 settings measured"
-    page.look()
+    assert page.state["drawn"] == points(ROWS[:1]) and page.activity[2] == "1 settings measured"
+    page.set_visible()
     assert page.under_way == [], "a stopped measurement is not repeated automatically"

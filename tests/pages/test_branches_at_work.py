@@ -8,7 +8,7 @@ from functools import cache
 from typing import Any
 
 import pytest
-from page_host import Trial, picture
+from page_host import PageUnderTest, picture
 
 from app.pages.branches import page as module
 from app.pages.branches.page import NOT_PERIODIC
@@ -24,22 +24,22 @@ def found() -> Branch:
 
 
 @pytest.fixture
-def page(page_of: Callable[[str], Trial], monkeypatch: pytest.MonkeyPatch) -> Any:
+def page(page_of: Callable[[str], PageUnderTest], monkeypatch: pytest.MonkeyPatch) -> Any:
     """The page, on which branches are complete at once; `began` has the starting scene and axis of each."""
-    trial: Any = page_of("branches")
-    trial.began = []
+    tested: Any = page_of("branches")
+    tested.began = []
 
     def begin(scene: Any, *axis: Any, both: bool, stop: Any) -> Branch:
-        trial.began.append((scene, *axis))
+        tested.began.append((scene, *axis))
         return found()
 
     monkeypatch.setattr(module, "begin_branch", begin)
-    return trial
+    return tested
 
 
 def test_the_orbit_on_the_screen_is_followed_when_the_page_is_opened_first(page: Any) -> None:
     page.do("branches-open")
-    assert [one.pool for one in page.given] == ["long"] and page.state["status"] == "waiting"
+    assert [submitted.pool for submitted in page.submitted] == ["long"] and page.state["status"] == "waiting"
     page.compute()
     ((scene, knob, low, high, period, seed),) = page.began
     assert (scene, knob, period) == (picture().run.scene, "f", 1) and low < scene.f < high and seed is picture().state
@@ -53,9 +53,9 @@ def test_a_page_that_is_opened_early_waits_for_the_final_picture(page: Any) -> N
     page.host.session.settled = None
     page.do("branches-open")
     assert page.under_way == []
-    page.settle(replace(picture(), final=False))
+    page.deliver_picture(replace(picture(), final=False))
     assert page.under_way == []
-    page.settle()
+    page.deliver_picture()
     assert len(page.under_way) == 1
 
 
@@ -71,11 +71,11 @@ def test_a_motion_without_period_is_followed_only_with_a_chosen_one(page: Any) -
 def test_f_marks_the_branch_and_another_knob_makes_it_stale(page: Any) -> None:
     page.do("branches-open")
     page.compute()
-    page.turn(f=2010.0)
+    page.move_knobs(f=2010.0)
     assert (page.state["now"], page.state["stale"]) == (2010.0, False)
-    page.turn(kappa=0.2)
+    page.move_knobs(kappa=0.2)
     assert page.state["stale"]
-    page.turn(kappa=picture().run.scene.kappa)
+    page.move_knobs(kappa=picture().run.scene.kappa)
     assert not page.state["stale"]
 
 
@@ -106,12 +106,12 @@ def test_the_curve_stands_behind_the_branches_of_its_chain(page: Any, monkeypatc
     rows = {"curve": {"x": [1.0]}}
     monkeypatch.setattr(module.BranchRows, "curve", lambda self, curve: {"rows": rows} if curve else None)
     page.page.curve_ready()
-    assert page.told == [], "the page was not opened"
+    assert page.sent == [], "the page was not opened"
     page.do("branches-open")
     monkeypatch.setattr(page.host, "complete_curve", lambda: ["points"])
     page.page.curve_ready()
     assert page.last("add")["rows"] == rows
-    page.turn(kappa=0.2)
-    before = len(page.told)
+    page.move_knobs(kappa=0.2)
+    before = len(page.sent)
     page.page.curve_ready()
-    assert len(page.told) == before, "it is the curve of another chain"
+    assert len(page.sent) == before, "it is the curve of another chain"

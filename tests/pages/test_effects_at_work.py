@@ -7,7 +7,7 @@ from concurrent.futures import Future
 from typing import Any
 
 import pytest
-from page_host import Trial, picture
+from page_host import PageUnderTest, picture
 
 from app.pages.effects import page as module
 from app.serve.compiling.compiler import COMPILER
@@ -20,20 +20,20 @@ MEASURED = [name for name in SWITCHES if variants(name, picture().run.scene) is 
 
 
 @pytest.fixture
-def tab(page_of: Callable[[str], Trial], monkeypatch: pytest.MonkeyPatch) -> Trial:
+def tab(page_of: Callable[[str], PageUnderTest], monkeypatch: pytest.MonkeyPatch) -> PageUnderTest:
     """The tab, with measurements that take no time."""
     monkeypatch.setattr(module, "effect_cost", lambda with_it, without, method, stop, pause: EffectCost(30.0, 20.0, 10.0, 1.0))
     return page_of("effects")
 
 
-def row(tab: Trial, name: str) -> dict[str, Any]:
+def row(tab: PageUnderTest, name: str) -> dict[str, Any]:
     """Return the panel's entry for an effect."""
-    return next(one for one in tab.state["panel"]["effects"] if one["name"] == name)
+    return next(effect for effect in tab.state["panel"]["effects"] if effect["name"] == name)
 
 
-def test_effects_are_measured_one_after_the_other_while_somebody_looks(tab: Trial) -> None:
-    tab.look()
-    assert [one.pool for one in tab.given] == ["measurements"] and row(tab, MEASURED[0])["state"] == "measuring …"
+def test_effects_are_measured_one_after_the_other_while_somebody_looks(tab: PageUnderTest) -> None:
+    tab.set_visible()
+    assert [submitted.pool for submitted in tab.submitted] == ["measurements"] and row(tab, MEASURED[0])["state"] == "measuring …"
     for _ in MEASURED:
         tab.compute()
     assert row(tab, MEASURED[-1])["code"]["difference"] == 10.0 and row(tab, MEASURED[0])["motion"]["percent"] == 50.0
@@ -42,64 +42,64 @@ def test_effects_are_measured_one_after_the_other_while_somebody_looks(tab: Tria
     assert tab.under_way == []
 
 
-def test_a_second_look_does_not_make_two_of_the_list(tab: Trial, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_second_look_does_not_make_two_of_the_list(tab: PageUnderTest, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(tab.host, "awaiting_picture", True)
     for visible in (True, False, True, False, True):
-        tab.look(visible)
-    tab.rest()
+        tab.set_visible(visible)
+    tab.run_callbacks()
     assert len(tab.host.callbacks) == 1, "one list, one repetition"
-    tab.look(False)
-    tab.rest()
+    tab.set_visible(False)
+    tab.run_callbacks()
     assert tab.host.callbacks == []
 
 
-def test_nothing_is_measured_before_the_knobs_rest_and_the_picture_is_there(tab: Trial) -> None:
+def test_nothing_is_measured_before_the_knobs_rest_and_the_picture_is_there(tab: PageUnderTest) -> None:
     tab.host.awaiting_picture = True
-    tab.look()
+    tab.set_visible()
     assert tab.under_way == []
     tab.host.awaiting_picture = False
-    tab.turn(f=2100.0)
+    tab.move_knobs(f=2100.0)
     tab.host.callbacks.clear()
-    tab.look()
+    tab.set_visible()
     assert tab.under_way == [], "the knob has just moved"
-    tab.turn(f=2150.0)
-    tab.rest()
+    tab.move_knobs(f=2150.0)
+    tab.run_callbacks()
     assert len(tab.under_way) == 1
     tab.host.curve_computing = True
     tab.compute()
     assert tab.under_way == []
 
 
-def test_costs_hold_for_other_values_and_not_for_another_kernel(tab: Trial) -> None:
-    tab.turn(f=2100.0)  # from here on, it knows its kernel
-    tab.look()
-    tab.rest()
+def test_costs_hold_for_other_values_and_not_for_another_kernel(tab: PageUnderTest) -> None:
+    tab.move_knobs(f=2100.0)  # from here on, it knows its kernel
+    tab.set_visible()
+    tab.run_callbacks()
     tab.compute()
     assert row(tab, MEASURED[0])["code"] is not None
-    tab.turn(f=2200.0)
+    tab.move_knobs(f=2200.0)
     assert row(tab, MEASURED[0])["code"] is not None
     begun = tab.under_way
-    tab.turn(N=3)
-    assert row(tab, MEASURED[0])["code"] is None and all(one.job.stop for one in begun)
+    tab.move_knobs(N=3)
+    assert row(tab, MEASURED[0])["code"] is None and all(submitted.job.stop for submitted in begun)
 
 
 def test_a_kernel_that_is_not_there_is_compiled_first_and_one_that_cannot_be_is_named(
-        tab: Trial, monkeypatch: pytest.MonkeyPatch) -> None:
+        tab: PageUnderTest, monkeypatch: pytest.MonkeyPatch) -> None:
     compilation: Future[None] = Future()
     monkeypatch.setattr(COMPILER, "has", lambda scene, *pieces: "cost" not in pieces)
     monkeypatch.setattr(module, "COST_KERNELS", "cost")
     monkeypatch.setattr(module, "COST_ACCOUNT_KERNELS", "cost")
     monkeypatch.setattr(COMPILER, "ask", lambda *_: compilation)
-    tab.look()
+    tab.set_visible()
     assert tab.under_way == [] and row(tab, MEASURED[0])["state"] == "compiling its kernel …"
-    assert tab.line[2].startswith("compiling a kernel for ")
+    assert tab.activity[2].startswith("compiling a kernel for ")
     compilation.set_exception(OSError("no room"))
-    tab.rest()
+    tab.run_callbacks()
     assert row(tab, MEASURED[0])["state"] == "its kernel could not be compiled"
 
 
-def test_a_switch_turns_knobs_and_a_wrong_one_is_refused(tab: Trial) -> None:
-    tab.look()
+def test_a_switch_turns_knobs_and_a_wrong_one_is_refused(tab: PageUnderTest) -> None:
+    tab.set_visible()
     tab.do("switch", name="dashpot", value=False)
     ((scene, state, mode),) = tab.host.shown
     assert not present("dashpot", scene, False) and (state, mode) == (None, "settled")

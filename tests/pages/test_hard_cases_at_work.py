@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from page_host import Trial
+from page_host import PageUnderTest
 
 from app.pages.hard_cases import page as module
 from app.pages.hard_cases.work import Ended
@@ -37,19 +37,19 @@ class Process:
 
 
 @pytest.fixture
-def page(page_of: Callable[[str], Trial], monkeypatch: pytest.MonkeyPatch) -> Trial:
+def page(page_of: Callable[[str], PageUnderTest], monkeypatch: pytest.MonkeyPatch) -> PageUnderTest:
     """The page, with cases that take no time."""
     monkeypatch.setattr(module, "CaseProcess", Process)
     monkeypatch.setattr(Process, "closed", 0)
     return page_of("hard-cases")
 
 
-def status(page: Trial) -> list[str]:
+def status(page: PageUnderTest) -> list[str]:
     """Return the status on each card, in the order of the cases."""
     return [page.state["results"][case.name]["status"] for case in CASES if case.name in page.state["results"]]
 
 
-def test_cases_run_one_after_the_other(page: Trial) -> None:
+def test_cases_run_one_after_the_other(page: PageUnderTest) -> None:
     page.do("hard-cases-run", case=SECOND.name)
     page.do("hard-cases-run", case=FIRST.name)
     page.do("hard-cases-run", case=SECOND.name)
@@ -64,7 +64,7 @@ def test_cases_run_one_after_the_other(page: Trial) -> None:
     assert page.state["summary"].startswith(f"2 of {len(CASES)} cases run") and page.page.activity[1] == "ready"
 
 
-def test_stopping_keeps_what_was_found_and_forgets_what_waits(page: Trial) -> None:
+def test_stopping_keeps_what_was_found_and_forgets_what_waits(page: PageUnderTest) -> None:
     page.do("hard-cases-all")
     page.compute()
     page.do("hard-cases-stop")
@@ -75,7 +75,7 @@ def test_stopping_keeps_what_was_found_and_forgets_what_waits(page: Trial) -> No
     assert status(page)[:2] == ["done", "done"]
 
 
-def test_a_process_that_ends_fails_its_case_and_the_next_one_runs(page: Trial, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_process_that_ends_fails_its_case_and_the_next_one_runs(page: PageUnderTest, monkeypatch: pytest.MonkeyPatch) -> None:
     page.do("hard-cases-run", case=FIRST.name)
     page.do("hard-cases-run", case=SECOND.name)
     with monkeypatch.context() as patched:
@@ -89,12 +89,12 @@ def test_a_process_that_ends_fails_its_case_and_the_next_one_runs(page: Trial, m
     assert page.state["results"][FIRST.name]["failure"] == ""
 
 
-def test_its_process_ends_with_the_visit(page: Trial) -> None:
+def test_its_process_ends_with_the_visit(page: PageUnderTest) -> None:
     page.do("hard-cases-run", case=FIRST.name)
     page.host.leave()
     assert Process.closed == 1
 
 
-def test_a_case_that_does_not_exist_is_refused(page: Trial) -> None:
+def test_a_case_that_does_not_exist_is_refused(page: PageUnderTest) -> None:
     with pytest.raises(BadInput, match="There is no hard case 'none'"):
         page.do("hard-cases-run", case="none")

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from page_host import Trial, picture
+from page_host import PageUnderTest, picture
 
 from app.pages.map import page as module
 from granchain_core import Cancelled
@@ -16,7 +16,7 @@ from granchain_core.parameter_maps.cells import CELL
 
 
 @pytest.fixture
-def tab(page_of: Callable[[str], Trial], monkeypatch: pytest.MonkeyPatch) -> Trial:
+def tab(page_of: Callable[[str], PageUnderTest], monkeypatch: pytest.MonkeyPatch) -> PageUnderTest:
     """The tab, with cells that take no time."""
     def cell(number: int) -> np.ndarray:
         row = np.zeros((), dtype=CELL)
@@ -28,34 +28,34 @@ def tab(page_of: Callable[[str], Trial], monkeypatch: pytest.MonkeyPatch) -> Tri
     return page_of("map")
 
 
-def interrupted(monkeypatch: pytest.MonkeyPatch, tab: Trial, cells: int) -> None:
+def interrupted(monkeypatch: pytest.MonkeyPatch, tab: PageUnderTest, cells: int) -> None:
     """Let the visitor leave the tab after this many cells."""
     def some(grid: Any, missing: list[int], *_: Any, **_options: Any) -> Iterator[int]:
         yield from missing[:cells]
-        tab.look(False)
+        tab.set_visible(False)
         raise Cancelled
 
     with monkeypatch.context() as patched:
         patched.setattr(module, "_MESSAGE_EVERY", 0.0)
         patched.setattr(module, "iter_parameter_map", some)
-        tab.look()
-        given: Any = tab.given[0]
-        given.job.next_tick = lambda action, *arguments: action(*arguments)  # each cell arrives before the next
+        tab.set_visible()
+        submitted: Any = tab.submitted[0]
+        submitted.job.next_tick = lambda action, *arguments: action(*arguments)  # each cell arrives before the next
         tab.compute()
 
 
-def test_the_map_is_computed_once_while_somebody_looks(tab: Trial) -> None:
-    tab.look()
-    assert [one.pool for one in tab.given] == ["long"] and tab.last("map-status")["status"] == "waiting"
+def test_the_map_is_computed_once_while_somebody_looks(tab: PageUnderTest) -> None:
+    tab.set_visible()
+    assert [submitted.pool for submitted in tab.submitted] == ["long"] and tab.last("map-status")["status"] == "waiting"
     tab.compute()
     assert tab.last("map-status")["status"] == "done" and tab.last("map-cells")["done"] == 1.0
-    tab.look(False)
-    tab.look()
+    tab.set_visible(False)
+    tab.set_visible()
     assert tab.under_way == [], "the map is complete"
     assert len(tab.last("map-cells")["rows"]["cells"]["number"]) == module.ROWS * module.COLUMNS, "the whole map is sent again"
 
 
-def test_only_the_cells_that_are_missing_are_computed_later(tab: Trial, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_only_the_cells_that_are_missing_are_computed_later(tab: PageUnderTest, monkeypatch: pytest.MonkeyPatch) -> None:
     interrupted(monkeypatch, tab, 7)
     assert tab.last("map-status")["progress"] == "stopped; the cells computed so far are kept"
     asked: list[list[int]] = []
@@ -65,43 +65,43 @@ def test_only_the_cells_that_are_missing_are_computed_later(tab: Trial, monkeypa
         yield from missing
 
     monkeypatch.setattr(module, "iter_parameter_map", noted)
-    tab.look()
+    tab.set_visible()
     tab.compute()
     assert len(asked[0]) == module.ROWS * module.COLUMNS - 7 and tab.last("map-status")["status"] == "done"
 
 
-def test_f_and_A0_move_the_mark_and_any_other_knob_asks_for_another_map(tab: Trial) -> None:
-    tab.look()
+def test_f_and_A0_move_the_mark_and_any_other_knob_asks_for_another_map(tab: PageUnderTest) -> None:
+    tab.set_visible()
     tab.compute()
-    tab.turn(f=2100.0)
-    tab.rest()
+    tab.move_knobs(f=2100.0)
+    tab.run_callbacks()
     assert tab.last("map-mark")["mark"] and tab.under_way == [] and tab.messages("map-stale") == []
-    tab.turn(kappa=0.2)
+    tab.move_knobs(kappa=0.2)
     assert tab.last("map-stale") and tab.under_way == [], "it starts when the knobs rest"
-    tab.turn(kappa=0.3)
-    tab.rest()
-    (given,) = tab.under_way
-    tab.turn(kappa=0.4)
-    assert given.job.stop
-    tab.rest()
+    tab.move_knobs(kappa=0.3)
+    tab.run_callbacks()
+    (submitted,) = tab.under_way
+    tab.move_knobs(kappa=0.4)
+    assert submitted.job.stop
+    tab.run_callbacks()
     assert len(tab.under_way) == 1
-    tab.look(False)
+    tab.set_visible(False)
     assert tab.under_way == [] and tab.last("map-status")["status"] == "stopped"
 
 
-def test_knobs_of_a_map_that_nobody_looks_at_are_followed_when_somebody_does(tab: Trial) -> None:
-    tab.look()
+def test_knobs_of_a_map_that_nobody_looks_at_are_followed_when_somebody_does(tab: PageUnderTest) -> None:
+    tab.set_visible()
     tab.compute()
-    tab.look(False)
-    before = len(tab.told)
-    tab.turn(kappa=0.2)
-    tab.rest()
-    assert len(tab.told) == before and tab.under_way == []
-    tab.look()
+    tab.set_visible(False)
+    before = len(tab.sent)
+    tab.move_knobs(kappa=0.2)
+    tab.run_callbacks()
+    assert len(tab.sent) == before and tab.under_way == []
+    tab.set_visible()
     assert len(tab.under_way) == 1 and tab.last("map-head")
 
 
-def test_the_map_gives_way_to_picture_and_curve(tab: Trial) -> None:
+def test_the_map_gives_way_to_picture_and_curve(tab: PageUnderTest) -> None:
     page: Any = tab.page
     assert not page._in_front()
     tab.host.awaiting_picture = True
@@ -110,57 +110,57 @@ def test_the_map_gives_way_to_picture_and_curve(tab: Trial) -> None:
     assert page._in_front()
 
 
-def test_attractors_are_listed_loaded_and_forgotten_with_their_scene(tab: Trial, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_attractors_are_listed_loaded_and_forgotten_with_their_scene(tab: PageUnderTest, monkeypatch: pytest.MonkeyPatch) -> None:
     found = SimpleNamespace(scene=picture().run.scene, state=picture().state)
     monkeypatch.setattr(module, "attractors", lambda scene, starts, stop: [found])
-    monkeypatch.setattr(module, "described_attractor", lambda one: {"words": "period 1"})
-    tab.look()
-    tab.given.clear()
+    monkeypatch.setattr(module, "described_attractor", lambda attractor: {"words": "period 1"})
+    tab.set_visible()
+    tab.submitted.clear()
     tab.do("map-attractors")
     assert tab.last("map-attractors")["progress"] == "waiting for its turn …"
     tab.compute()
     assert tab.last("map-attractors")["attractors"] == [{"words": "period 1"}]
     tab.do("map-load", number=0)
     assert tab.host.shown == [(found.scene, found.state, "settled")] and tab.host.session.start == "previous"
-    tab.turn(f=2100.0)
+    tab.move_knobs(f=2100.0)
     assert tab.last("map-attractors")["attractors"] == [] and tab.last("map-attractors")["status"] == "none"
 
 
-def test_a_search_for_attractors_is_stopped_alone(tab: Trial) -> None:
-    tab.look()
+def test_a_search_for_attractors_is_stopped_alone(tab: PageUnderTest) -> None:
+    tab.set_visible()
     tab.do("map-attractors")
-    the_map, search = tab.given
+    the_map, search = tab.submitted
     tab.do("map-attractors-stop")
     assert search.job.stop and not the_map.job.stop
     last = tab.last("map-attractors")
     assert (last["progress"], last["running"], last["attractors"]) == ("stopped", False, [])
 
 
-def test_a_search_for_attractors_ends_when_a_knob_moves(tab: Trial, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_search_for_attractors_ends_when_a_knob_moves(tab: PageUnderTest, monkeypatch: pytest.MonkeyPatch) -> None:
     """Its result would be shown as that of the new knobs. This is true of a hidden tab too."""
     monkeypatch.setattr(module, "attractors", lambda scene, starts, stop: [scene])
-    monkeypatch.setattr(module, "described_attractor", lambda one: {"words": f"at {one.f:g} Hz"})
+    monkeypatch.setattr(module, "described_attractor", lambda shown: {"words": f"at {shown.f:g} Hz"})
     for visible, f in ((True, 2100.0), (False, 2200.0)):
-        tab.look()
-        tab.given.clear()
+        tab.set_visible()
+        tab.submitted.clear()
         tab.do("map-attractors")
-        (search,) = tab.given
-        tab.look(visible)
-        tab.turn(f=f)
+        (search,) = tab.submitted
+        tab.set_visible(visible)
+        tab.move_knobs(f=f)
         assert search.job.stop and tab.last("map-attractors")["status"] == "none"
         tab.compute()
-        assert all(one["attractors"] == [] for one in tab.messages("map-attractors"))
+        assert all(message["attractors"] == [] for message in tab.messages("map-attractors"))
 
 
-def test_who_looks_again_during_a_search_is_not_told_that_there_is_none(tab: Trial) -> None:
-    tab.look()
+def test_who_looks_again_during_a_search_is_not_told_that_there_is_none(tab: PageUnderTest) -> None:
+    tab.set_visible()
     tab.do("map-attractors")
-    tab.look(False)
-    tab.look()
+    tab.set_visible(False)
+    tab.set_visible()
     assert tab.last("map-attractors")["status"] == "waiting"
 
 
-def test_a_click_turns_both_knobs(tab: Trial) -> None:
+def test_a_click_turns_both_knobs(tab: PageUnderTest) -> None:
     tab.do("map-choose", x=1900.0, y=1e-7)
     ((scene, state, mode),) = tab.host.shown
     assert (scene.f, scene.A0, state, mode) == (1900.0, 1e-7, None, "settled")

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from page_host import Trial, picture
+from page_host import PageUnderTest, picture
 
 from app.pages.observer import page as module
 
@@ -44,13 +44,13 @@ class Run:
 
 
 @pytest.fixture
-def page(page_of: Callable[[str], Trial], monkeypatch: pytest.MonkeyPatch) -> Any:
+def page(page_of: Callable[[str], PageUnderTest], monkeypatch: pytest.MonkeyPatch) -> Any:
     """The page, with drive periods that take no time; `steps` collects the messages sent to the view."""
     monkeypatch.setattr(module, "ObserverRun", Run)
-    trial: Any = page_of("observer")
-    trial.steps = []
-    monkeypatch.setattr(trial.view, "step", lambda *step: trial.steps.append(step))
-    return trial
+    tested: Any = page_of("observer")
+    tested.steps = []
+    monkeypatch.setattr(tested.view, "step", lambda *step: tested.steps.append(step))
+    return tested
 
 
 def run(page: Any) -> Run:
@@ -59,11 +59,11 @@ def run(page: Any) -> Run:
 
 
 def test_each_period_is_asked_for_and_none_is_computed_unasked(page: Any) -> None:
-    page.look()
-    page.settle()
+    page.set_visible()
+    page.deliver_picture()
     assert page.under_way == []
     page.do("observer-more")
-    assert [one.pool for one in page.given] == ["pictures"]
+    assert [submitted.pool for submitted in page.submitted] == ["pictures"]
     page.compute()
     assert run(page).done == ["predict", "step"] and page.state["sentence"] == "It follows its chain."
     assert page.under_way == []
@@ -73,18 +73,18 @@ def test_what_is_asked_for_meanwhile_is_done_in_one_further_period(page: Any) ->
     page.do("observer-more")
     page.do("observer-nudge")
     page.do("observer-rest")
-    assert len(page.given) == 1
+    assert len(page.submitted) == 1
     page.compute()
     page.compute()
     assert run(page).done == ["predict", "step", "nudge", "rest", "step"] and page.under_way == []
-    assert [one[2] for one in page.steps] == [True, True]
+    assert [step[2] for step in page.steps] == [True, True]
 
 
 def test_a_turned_knob_goes_on_with_the_states_of_the_chain_before(page: Any) -> None:
     page.do("observer-more")
     page.compute()
     before = run(page)
-    page.turn(kappa=0.2)
+    page.move_knobs(kappa=0.2)
     assert (page.state["kappa"], page.state["sentence"]) == (0.2, "")
     page.do("observer-more")
     page.compute()
@@ -111,7 +111,7 @@ def test_a_final_picture_that_does_not_repeat_predicts_nothing(page: Any) -> Non
     page.do("observer-more")
     page.compute()
     assert run(page).done == ["step"] and page.state["predicted"] is None
-    page.settle(picture())
+    page.deliver_picture(picture())
     page.do("observer-more")
     page.compute()
     assert run(page).done == ["step", "predict", "step"], "as soon as a picture repeats"

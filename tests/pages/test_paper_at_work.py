@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
-from page_host import Trial
+from page_host import PageUnderTest
 
 from app.pages.paper import page as module
 from granchain_core import BadInput
@@ -14,25 +14,25 @@ from granchain_core.paper import FIGURES
 
 
 @pytest.fixture
-def page(page_of: Callable[[str], Trial], monkeypatch: pytest.MonkeyPatch) -> Any:
+def page(page_of: Callable[[str], PageUnderTest], monkeypatch: pytest.MonkeyPatch) -> Any:
     """The page, with figures that are computed and drawn at once; `computed` and `drawn` have their numbers."""
-    trial: Any = page_of("paper")
-    trial.computed, trial.drawn = [], []
+    tested: Any = page_of("paper")
+    tested.computed, tested.drawn = [], []
 
     def compute(number: str, stop: Any, progress: Callable[[float], None]) -> str:
         progress(0.5)
-        trial.computed.append(number)
+        tested.computed.append(number)
         return f"result {number}"
 
     monkeypatch.setattr(module, "compute", compute)
-    monkeypatch.setattr(trial.view, "draw", lambda figure, result: trial.drawn.append((figure.number, result)))
-    return trial
+    monkeypatch.setattr(tested.view, "draw", lambda figure, result: tested.drawn.append((figure.number, result)))
+    return tested
 
 
 def test_it_begins_with_a_figure_and_computes_each_once(page: Any) -> None:
     first, other = "2", next(number for number in FIGURES if number != "2")
-    page.look()
-    assert [one.pool for one in page.given] == ["long"] and page.state["chosen"] == first
+    page.set_visible()
+    assert [submitted.pool for submitted in page.submitted] == ["long"] and page.state["chosen"] == first
     page.compute()
     assert page.drawn == [(first, f"result {first}")] and (page.state["status"], page.state["done"]) == ("done", 0.5)
     page.do("paper-show", figure=other)
@@ -44,16 +44,16 @@ def test_it_begins_with_a_figure_and_computes_each_once(page: Any) -> None:
 
 
 def test_another_choice_gives_up_the_figure_before_and_looking_again_chooses_none(page: Any) -> None:
-    page.look()
+    page.set_visible()
     page.do("paper-show", figure="3")
-    page.look(False)
-    page.look()
+    page.set_visible(False)
+    page.set_visible()
     page.compute()
     assert page.computed == ["3"] and [number for number, _ in page.drawn] == ["3"]
 
 
 def test_a_stopped_figure_is_computed_anew_when_it_is_chosen(page: Any) -> None:
-    page.look()
+    page.set_visible()
     page.do("paper-stop")
     assert page.state["progress"] == "stopped" and page.under_way == []
     page.do("paper-show", figure="2")
@@ -62,8 +62,8 @@ def test_a_stopped_figure_is_computed_anew_when_it_is_chosen(page: Any) -> None:
 
 
 def test_a_moved_knob_changes_no_figure_of_the_paper(page: Any) -> None:
-    page.look()
-    page.turn(f=2100.0)
+    page.set_visible()
+    page.move_knobs(f=2100.0)
     page.compute()
     assert page.computed == ["2"] and page.state["status"] == "done"
 

@@ -171,11 +171,11 @@ class Page(FakePageHost):
     def __init__(self, mode: str = "settled") -> None:
         super().__init__()
         self.session = Session(scene=scene("sec2"), mode=mode)
-        self.told: list[dict[str, Any]] = []
+        self.sent: list[dict[str, Any]] = []
         view: Any = SimpleNamespace(
             state={}, update_state=lambda **changes: view.state.update(changes),
-            send=lambda **message: self.told.append(message),
-            need_figures=lambda: None, section=lambda shown: self.told.append(section_message(shown)))
+            send=lambda **message: self.sent.append(message),
+            need_figures=lambda: None, section=lambda shown: self.sent.append(section_message(shown)))
         self.view = view
 
     def work(self, until: Any, seconds: float = 60.0) -> None:
@@ -217,17 +217,17 @@ def test_nothing_is_computed_while_nobody_looks(page: Page, monkeypatch: pytest.
 def test_a_picture_that_stays_is_analysed(page: Page) -> None:
     view = opened(page)
     view.picture_ready(picture())
-    page.work(lambda: page.state.get("status") == "done" and any(m["type"] == "section" for m in page.told))
+    page.work(lambda: page.state.get("status") == "done" and any(m["type"] == "section" for m in page.sent))
     assert page.state["sentence"].startswith("Stable") and page.marks("within") == 22
     assert not page.state["stale"] and not page.state["searched"] and page.marks("observer within") == 0
-    mode = next(m for m in page.told if m["type"] == "mode")
+    mode = next(m for m in page.sent if m["type"] == "mode")
     assert mode["values"].dtype == np.float32 and len(mode["values"]) == 2 * 49 * 11
     assert view.activity[1] == "ready"
     # the same picture with its energy account changes nothing
-    count = len(page.told)
+    count = len(page.sent)
     view.picture_ready(replace(picture()))
     page.work(lambda: not page.callbacks)
-    assert len(page.told) == count
+    assert len(page.sent) == count
     page.leave()
 
 
@@ -257,7 +257,7 @@ def test_the_observer_is_computed_when_it_is_switched_on(page: Page) -> None:
 def test_a_found_orbit_is_marked_and_left_again(page: Page) -> None:
     view = opened(page)
     view.picture_ready(picture(f=1576.0))
-    page.work(lambda: page.state.get("status") == "done" and any(m["type"] == "section" for m in page.told))
+    page.work(lambda: page.state.get("status") == "done" and any(m["type"] == "section" for m in page.sent))
     assert page.state["period"] == 4
     view.actions["stability-search"]({"value": 1})
     page.work(lambda: page.state["searched"])
@@ -272,7 +272,7 @@ def test_a_scene_without_multipliers_says_so_and_has_its_section(page: Page) -> 
     page.session.scene = picture(tension="cut").run.scene
     view = opened(page)
     view.picture_ready(picture(tension="cut"))
-    page.work(lambda: page.state.get("status") == "failed" and any(m["type"] == "section" for m in page.told))
+    page.work(lambda: page.state.get("status") == "failed" and any(m["type"] == "section" for m in page.sent))
     assert "multipliers are not computed" in page.state["sentence"] and page.marks("within") == 0
     page.leave()
 

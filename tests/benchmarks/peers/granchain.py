@@ -20,7 +20,7 @@ from .. import problem
 from ..case import CURVE_REFINES, Case, Peaks, rungs
 from ..problem import Solved
 
-#: The fixed-step methods, and the factors of refinement that are tried, from 0.5 to 246 in the same ratio as the C
+#: The fixed-step methods, and the factors of refinement that are tried, from 0.5 to 245 in the same ratio as the C
 #: program's numbers of steps.
 FIXED = ("rk4-split", "rk4")
 REFINES = tuple(0.5 * 1.1**k for k in range(66))

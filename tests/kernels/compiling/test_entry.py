@@ -42,12 +42,12 @@ def advance(method: str, changes: dict, account: bool = False) -> None:
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_every_method(method: str) -> None:
+def test_every_call_of_a_method_has_the_types_it_was_compiled_for(method: str) -> None:
     advance(method, {})
 
 
 @pytest.mark.parametrize("changes", CHAINS, ids=str)
-def test_every_kind_of_chain(changes: dict) -> None:
+def test_every_call_for_a_kind_of_chain_has_the_types_it_was_compiled_for(changes: dict) -> None:
     advance(RK4_SPLIT, changes)
     advance(RK4_SPLIT, changes, account=True)
 
@@ -60,7 +60,7 @@ def test_a_workspace_of_another_type_has_a_specialization_of_its_own() -> None:
     assert np.isfinite(engine.record(2).force).all()
 
 
-def test_curves_and_branches() -> None:
+def test_every_call_for_curves_and_branches_has_the_types_it_was_compiled_for() -> None:
     chain = scene("sec2").evolve(N=2, f=2000.0)
     assert len(resonance_curve(chain, np.linspace(500.0, 3000.0, 12)).points) == 12
     assert branch(chain, "f", 1900.0, 2100.0, most_points=5).half_branches[0].points
@@ -101,5 +101,5 @@ def test_what_makes_a_type_is_in_the_key() -> None:
                  [*tuples]]
     frozen = plain.copy()
     frozen.flags.writeable = False
-    keys = [entry.types_of(one) for one in (*different, frozen)]
+    keys = [entry.types_of(value) for value in (*different, frozen)]
     assert len(set(keys)) == len(keys)

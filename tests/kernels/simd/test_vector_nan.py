@@ -60,9 +60,11 @@ def there_and_back(x, y, alone, out):
 
 
 def test_a_nan_that_cancels_in_a_sum_may_be_lost() -> None:
-    """With `reassoc` and `nsz`, the compiler may replace (x + y) − y by x. Kernels therefore check states, not sums."""
+    """With `reassoc` and `nsz`, the compiler may replace (x + y) − y by x, which is 1. Otherwise the result is NaN,
+    also where y is infinite. Kernels therefore check states, not sums.
+    """
     x, y, out, alone = aligned(1), aligned(1), aligned(1), np.zeros(8)
     x[0], y[0] = 1.0, VALUES
     there_and_back(x, y, alone, out)
     for found in (out[0], alone):
-        np.testing.assert_array_equal(found, 1.0)
+        assert ((found == 1.0) | (np.isnan(found) & ~np.isfinite(VALUES))).all()

@@ -1,11 +1,12 @@
-"""A dashboard without a browser for the tests in this folder; the fixture `dashboard` in conftest.py closes it."""
+"""A dashboard without a browser, and a fixture that closes it after the test, whether or not the test passes."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any
 
+import pytest
 from bokeh.document import Document
 from host import Pending
 
@@ -33,8 +34,8 @@ class Dashboard(Controller):
 
     def __init__(self) -> None:
         super().__init__(Document(), Session(), make_calls=WaitingCalls)
-        self.told: list[dict[str, Any]] = []
-        self.views.header.send = lambda **message: self.told.append(message)  # type: ignore[method-assign]
+        self.sent: list[dict[str, Any]] = []
+        self.views.header.send = lambda **message: self.sent.append(message)  # type: ignore[method-assign]
 
     @property
     def callbacks(self) -> list[Callable[[], None]]:
@@ -44,3 +45,11 @@ class Dashboard(Controller):
     def run_callbacks_until(self, until: Callable[[], bool], seconds: float = 20.0) -> None:
         """Run waiting callbacks until a condition is true."""
         self._calls.pending.run_callbacks_until(until, seconds)
+
+
+@pytest.fixture
+def dashboard() -> Iterator[Dashboard]:
+    """Yield a dashboard for this test alone."""
+    opened = Dashboard()
+    yield opened
+    opened.close()

@@ -20,6 +20,8 @@ from app.session.page_constants import page_constants
 from app.session.share import BROWSER_FIELDS, VIEW_VALUES
 from granchain_core import scene, settle
 
+pytestmark = pytest.mark.quick
+
 TEXT_ROLES = ("drive_text", "input_text", "output_text")
 
 
@@ -28,7 +30,7 @@ def properties(name: str) -> dict[str, str]:
     found: dict[str, str] = {}
     for selector, body in re.findall(r"(\S+) \{ (.*) \}", style_sheet()):
         if selector in (":root", f":root[data-theme={name}]"):
-            found |= dict(one.split(": ", 1) for one in body.split("; "))
+            found |= dict(declaration.split(": ", 1) for declaration in body.split("; "))
     return found
 
 
@@ -98,7 +100,7 @@ def test_text_grows_with_the_window_from_its_smallest_size_on() -> None:
 
 @pytest.mark.parametrize("path", sorted(Path(app.__file__).parent.rglob("*.css")), ids=lambda path: path.name)
 def test_no_style_uses_a_role_that_no_theme_has(path: Path) -> None:
-    own = set(re.findall(r"(--[\w-]+):", "".join(one.read_text(encoding="utf-8") for one in path.parents[1].rglob("*.css"))))
+    own = set(re.findall(r"(--[\w-]+):", "".join(sheet.read_text(encoding="utf-8") for sheet in path.parents[1].rglob("*.css"))))
     own |= {"--frame-top", "--frame-bottom", "--frame-left", "--gap"}
     assert set(re.findall(r"var\((--[\w-]+)\)", path.read_text(encoding="utf-8"))) <= {*properties("light"), *own, "--font", "--stale"}
 

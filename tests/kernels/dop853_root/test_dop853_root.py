@@ -94,9 +94,18 @@ def test_a_run_has_no_energy_account():
 def test_a_contact_that_opens_slowly_and_closes_again_in_one_step_does_not_chatter(name, knobs):
     """Of 2268 motions of twenty periods, 24 used to be refused for chatter: just after an opening, the overlap is only
     rounding.
+
+    The events are as many as dop853's, to a fifth (measured: 11 %, as the weakly damped motions are chaotic). The
+    other motions are dop853's within ten thousand tolerances (measured: 2600).
     """
+    chain = scene(name).evolve(**knobs)
+    reference = Engine(chain, MethodSetting("dop853", tolerance=1e-11), 16)
+    true = reference.record(20 * 16).displacement
     for tolerance in 10.0 ** np.linspace(-5.0, -9.0, 25):
-        Engine(scene(name).evolve(**knobs), MethodSetting("dop853-root", tolerance=tolerance), 16).record(20 * 16)
+        engine = Engine(chain, MethodSetting("dop853-root", tolerance=tolerance), 16)
+        found = engine.record(20 * 16).displacement
+        assert engine.counts.events == pytest.approx(reference.counts.events, rel=0.2)
+        assert "D" in knobs or np.abs(found - true).max() < 1e4 * tolerance * np.abs(true).max()
 
 
 @pytest.mark.parametrize("method", ["dop853", "dop853-root"])
