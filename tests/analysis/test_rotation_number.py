@@ -200,7 +200,7 @@ def test_of_a_long_chain_every_other_bead_is_kept() -> None:
 
 def test_three_frequencies_are_not_decided() -> None:
     states = np.concatenate([circle(rigid(GOLDEN)), circle(rigid(np.sqrt(3.0) - 1.5))], axis=2)
-    assert "there is a third one" in winding_of(states).reason
+    assert "there is a third frequency" in winding_of(states).reason
 
 
 @pytest.mark.parametrize("fraction", [Fraction(0), Fraction(1, 2), Fraction(1, 3), Fraction(1, 4), Fraction(2, 5), Fraction(1, 6),

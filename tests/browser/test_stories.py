@@ -112,4 +112,4 @@ def test_a_term_with_a_capital_has_its_definition(at: Visit) -> None:
     page = at("?v=1&scene=sec2&story=chaos.2")
     page.locator("#tabs").get_by_role("button", name="answer").click()
     page.locator("#tabs dfn", has_text="Lyapunov exponent").hover()
-    expect(page.get_by_role("tooltip")).to_contain_text("mean of the logarithm of a small disturbance's growth")
+    expect(page.get_by_role("tooltip")).to_contain_text("mean logarithmic growth of a small disturbance")

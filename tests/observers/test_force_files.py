@@ -252,5 +252,5 @@ def test_data_that_stand_elsewhere_are_not_read(tmp_path: Path) -> None:
         group = file.create_group("run")
         group["input_force"] = np.ones(100)
         group.create_dataset("time", (100,), "f8", external=[(str(secret), 0, 800)])
-    with pytest.raises(BadInput, match="stored in the file itself"):
+    with pytest.raises(BadInput, match="only data in the file itself are read"):
         read_force(crafted)
