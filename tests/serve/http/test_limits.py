@@ -207,10 +207,8 @@ def test_a_flood_of_frames_closes_the_connection(kind: str, dashboard: Listening
     monkeypatch.setattr(frame_rate, "FRAME_RATE", 0.0)
     monkeypatch.setattr(frame_rate, "FRAME_BURST", 60.0)
     refused = METRICS.counted["refused_messages"]
-    status, flooding = dashboard.open(dashboard.token())
-    assert status == 101
     first, repeated = FLOODS[kind]
-    with flooding, contextlib.suppress(ConnectionError):
+    with connected(dashboard) as flooding, contextlib.suppress(ConnectionError):
         flooding.sendall(first)
         for _ in range(1000):
             flooding.sendall(repeated)
