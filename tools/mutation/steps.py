@@ -39,7 +39,7 @@ FIXED = (
            "the excess of Simpson's rule is added again instead of subtracted", k.SIMD_PLAIN),
     Mutant("scalar-split-phase", _FIXED, "theta + dtheta * (done + 0.5 * part), theta", "theta + dtheta * (done + part), theta",
            "the driver is ahead in the middle of a split step", k.SIMD_PLAIN),
-    Mutant("give-back-work-sign", _FIXED, "y[y.size - 2] -= excess", "y[y.size - 2] += excess",
+    Mutant("give-back-work-sign", _FIXED, "y[WORK] -= excess", "y[WORK] += excess",
            "the driver's work keeps the excess that was subtracted", k.STEP_EVENTS),
     Mutant("hermite-slope", _CUBIC, "a = 2.0 * (d0 - d1) + s0 + s1", "a = 2.0 * (d0 - d1) + s0 - s1",
            "events inside a fixed step are in the wrong place", k.CUBIC, which=1, count=2),

@@ -15,7 +15,7 @@ from ..status import DONE, EVALUATIONS, NOT_FINITE, REJECTED, STEP_TOO_SMALL
 from .chain import Point, powers, transform_at
 from .changes import StepInXi, changes_in, first_event, may_change, size_in_xi
 from .forces import end_forces, in_xi, may_exceed
-from .step import Units, attempt, prepare_dense_rows
+from .step import Units, prepare_dense_rows, try_step
 
 #: [step size] dop853-root: smallest factor from one attempt to the next.
 _MIN_FACTOR = 0.1
@@ -48,7 +48,7 @@ class RunContext(NamedTuple):
     every: int
 
 
-class StepBegin(NamedTuple):
+class StepStart(NamedTuple):
     """The chain at a step's start: time in the period, point, rates, forces; closed contacts as bits and as 0 or 1.
 
     The forces are up to date only if they are being recorded.
@@ -88,22 +88,22 @@ def new_units(context, point, scale):
 
 
 @inline_numba
-def accepted_attempt(context, begin, chosen, dt, units):
-    """Shrink a step until its error is tolerable, in the time next to the event of contact `chosen`, or in t (−1).
+def tolerable_step(context, start, target, dt, units):
+    """Shrink a step until its error is tolerable, in the time next to the event of contact `target`, or in t (−1).
 
     Returns (status, step, dt). dt is nominal: the next step is planned from it, and it shrinks by the same factor as
     the step in ξ, although their ratio is not constant next to an event.
     """
     counts = context.out.counts
-    transform, q, h, limited, dt_dxi = transform_at(context.values, begin.closed, chosen), 0.0, dt, False, 1.0
-    if chosen >= 0:
-        q = nonnegative_root(at(begin.rates.overlap, chosen), context.power)
+    transform, q, h, limited, dt_dxi = transform_at(context.values, start.closed, target), 0.0, dt, False, 1.0
+    if target >= 0:
+        q = nonnegative_root(at(start.rates.overlap, target), context.power)
         dt_dxi, _, _ = powers(context.power, q)
-        h, limited = size_in_xi(context.power, q, at(begin.rates.rate, chosen), dt)
-    start, status = Point(begin.point.u, begin.point.w, splat8(q), splat8(begin.t)), DONE
+        h, limited = size_in_xi(context.power, q, at(start.rates.rate, target), dt)
+    point, status = Point(start.point.u, start.point.w, splat8(q), splat8(start.t)), DONE
     while True:
-        square, end, end_rates = attempt(context.values, context.driver, context.work, transform, start,
-                                         begin.rates, h, units)
+        square, end, end_rates = try_step(context.values, context.driver, context.work, transform, point,
+                                          start.rates, h, units)
         counts[EVALUATIONS] += STAGES
         if square <= 1.0:
             break
@@ -117,51 +117,51 @@ def accepted_attempt(context, begin, chosen, dt, units):
         else:
             factor = _MIN_FACTOR  # an overflow: ξ covers far more time than it should
         h, dt = h * factor, dt * factor
-        if is_too_small(dt, begin.t, context.beta):
+        if is_too_small(dt, start.t, context.beta):
             status = STEP_TOO_SMALL
             break
     end_dt_dxi = 1.0
-    if chosen >= 0:
+    if target >= 0:
         end_dt_dxi, _, _ = powers(context.power, at(end.q, 0))
-    return status, StepInXi(transform, h, start, begin.rates, dt_dxi, end, end_rates, end_dt_dxi, square, limited), dt
+    return status, StepInXi(transform, h, point, start.rates, dt_dxi, end, end_rates, end_dt_dxi, square, limited), dt
 
 
 @inline_numba
-def accepted_step(context, begin, chosen, dt, units, g):
+def accepted_step(context, start, target, dt, units, g):
     """Take an accepted step past grid point g in which only the contact of its time transformation may open.
 
     If another contact would open, the step is tried again with the time transformation of that contact's event. Returns
-    (status, `CheckedStep`, dt), with dt as in `accepted_attempt`.
+    (status, `CheckedStep`, dt), with dt as in `tolerable_step`.
     """
     slots, work, values, counts = context.slots, context.work, context.values, context.out.counts
     attempts = 1
     while True:
-        status, step, dt = accepted_attempt(context, begin, chosen, dt, units)
-        forces, contact, x, prepared, exceeds = begin.forces, -1, 2.0, False, False
+        status, step, dt = tolerable_step(context, start, target, dt, units)
+        forces, contact, x, prepared, exceeds = start.forces, -1, 2.0, False, False
         if status == DONE:
-            crossed, turned = changes_in(step, begin.bits, context.last + 1)
-            turned = may_change(step, context.power, begin.bits, turned)
+            crossed, turned = changes_in(step, start.bits, context.last + 1)
+            turned = may_change(step, context.power, start.bits, turned)
             changes = crossed | turned != 0
             prepared = changes or (g + 1) * context.spacing <= at(step.end.t, 0) + context.near
             if context.every > 0:
                 forces = end_forces(values, context.driver, step.end, step.end_rates, context.last)
                 if not prepared:
-                    exceeds = may_exceed(in_xi(begin.forces, step.dt_dxi), in_xi(forces, step.end_dt_dxi), step.h,
+                    exceeds = may_exceed(in_xi(start.forces, step.dt_dxi), in_xi(forces, step.end_dt_dxi), step.h,
                                          context.out.log.peaks)
             if prepared or exceeds:
                 prepare_dense_rows(values, context.driver, work, step.transform, step.start, step.end, step.h)
                 counts[EVALUATIONS] += DENSE_EVALUATIONS
             if changes:
-                contact, x = first_event(slots, work, step, begin.bits, crossed, turned)
-        done = status != DONE or contact < 0 or contact == chosen or (begin.bits >> contact) & 1 == 0 or x == 0.0
+                contact, x = first_event(slots, work, step, start.bits, crossed, turned)
+        done = status != DONE or contact < 0 or contact == target or (start.bits >> contact) & 1 == 0 or x == 0.0
         if done:
             break
-        chosen = contact
+        target = contact
         counts[REJECTED] += 1
         if attempts > 2:
             dt *= 0.5
         attempts += 1
-        if attempts > ATTEMPTS or is_too_small(dt, begin.t, context.beta):
+        if attempts > ATTEMPTS or is_too_small(dt, start.t, context.beta):
             status = STEP_TOO_SMALL
             break
     return status, CheckedStep(step, forces, contact, min(x, 1.0), prepared, exceeds), dt

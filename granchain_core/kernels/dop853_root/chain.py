@@ -50,7 +50,7 @@ class Dop853RootWorkspace(NamedTuple):
     """Workspace of steps along a short chain.
 
     `increments` are the slopes in ξ of 16 stages times the size of the step, `dense` the 7 rows of the dense output,
-    `begin` (1 row) the step's start. The rows of `state` (4, width) are named above; `closed` (1, width) is 1 where a
+    `start` (1 row) the step\'s start. The rows of `state` (4, width) are named above; `closed` (1, width) is 1 where a
     contact is closed. `polynomial` (8,) is one quantity of the dense output: its seven rows, then its value at the
     start.
     """
@@ -58,26 +58,26 @@ class Dop853RootWorkspace(NamedTuple):
     chain: Any
     increments: Stages
     dense: Stages
-    begin: Stages
+    start: Stages
     state: np.ndarray
     closed: np.ndarray
     polynomial: np.ndarray
 
 
 class TimeTransformation(NamedTuple):
-    """The transformed time ξ: that of the event of `contact` (`active` 1), or the time itself (0).
+    """The transformed time ξ: that of the event of contact `target` (`active` 1), or the time itself (0).
 
-    `others` is 1 for all other closed contacts; `stiffness` is that of the others, and `chosen_stiffness` that of
-    `contact`. `pull` is 1 on the bead after `contact` and −1 on the bead before it: the contact's action on its two
-    beads is added at the end, because q, on which it depends, is known last. `damping_pull` is λ/m times `pull`, None
+    `others` is 1 for all other closed contacts; `stiffness` is that of the others, and `target_stiffness` that of
+    the target. `pull` is 1 on the bead after the target and −1 on the bead before it: its action on these two beads is
+    added at the end, because q, on which it depends, is known last. `damping_pull` is λ/m times `pull`, None
     without damping, and `stiff_pull` is the stiffness times `pull`.
     """
 
     active: float
-    contact: int
+    target: int
     others: Any
     stiffness: Any
-    chosen_stiffness: Any
+    target_stiffness: Any
     damping_pull: Any
     stiff_pull: Any
 
@@ -148,23 +148,23 @@ def rates_at(values, driver, transform, point):
     _, r, d = powers(power, q)
     overlap = row_overlap(values.preload, u, from_right(u, blank(u)))
     pressed = positive_part(overlap)
-    roots, chosen = chain_root(pressed), d * r
+    roots, target_power = chain_root(pressed), d * r
     elastic = transform.stiffness * (pressed * roots)
     du = chain_velocity(law, point.w, values.damping_over_mass, transform.others * unit_primitive(law, pressed, roots))
     du = with_damping_of(law, du, transform.damping_pull, power, q)
-    contacts = from_left(blank(elastic), elastic) - elastic + transform.stiff_pull * chosen
+    contacts = from_left(blank(elastic), elastic) - elastic + transform.stiff_pull * target_power
     net_force = force_on_bead(values.slots, None, contacts, u, du)
     dw = with_first(values.inverse_mass * net_force, driver_acceleration(driver, at(u, 0)))
-    return Rates(du, dw, overlap, du - from_right(du, blank(du)), elastic + transform.chosen_stiffness * chosen)
+    return Rates(du, dw, overlap, du - from_right(du, blank(du)), elastic + transform.target_stiffness * target_power)
 
 
 @inline_llvm
-def transform_of(values, closed, chosen, active, contact):
-    """The transformed time next to the event of the contact for which `chosen` is 1; if none is, the time itself."""
-    others, pull = closed * (1.0 - chosen), from_left(blank(chosen), chosen) - chosen
-    stiffness = repeat_like(chosen, splat8(at(values.stiffness, contact)))
-    return TimeTransformation(active, contact, others, others * values.stiffness, chosen * stiffness,
-                         pull_of_damping(values.slots.dissipation, values.damping_over_mass, pull), stiffness * pull)
+def transform_of(values, closed, in_target, active, target):
+    """The transformed time next to the event of the contact for which `in_target` is 1; if none is, the time itself."""
+    others, pull = closed * (1.0 - in_target), from_left(blank(in_target), in_target) - in_target
+    stiffness = repeat_like(in_target, splat8(at(values.stiffness, target)))
+    return TimeTransformation(active, target, others, others * values.stiffness, in_target * stiffness,
+                              pull_of_damping(values.slots.dissipation, values.damping_over_mass, pull), stiffness * pull)
 
 
 @inline_llvm
@@ -174,11 +174,11 @@ def no_transform(values, closed):
 
 
 @inline_llvm
-def transform_at(values, closed, contact):
-    """The transformed time next to the event of a contact, or the time itself where `contact` is −1."""
-    if contact < 0:
+def transform_at(values, closed, target):
+    """The transformed time next to the event of contact `target`, or the time itself where `target` is −1."""
+    if target < 0:
         return no_transform(values, closed)
-    return transform_of(values, closed, only_lane(closed, contact), 1.0, contact)
+    return transform_of(values, closed, only_lane(closed, target), 1.0, target)
 
 
 @inline_llvm

@@ -39,7 +39,7 @@ _MISSED_PART = 0.25
 class StepInXi(NamedTuple):
     """An accepted step in ξ: its time transformation, size, start and end, with rates and dt/dξ at both.
 
-    `error_squared` is the square of its error in units of the tolerance, as returned by `attempt` (step.py). `limited`
+    `error_squared` is the square of its error in units of the tolerance, as returned by `try_step` (step.py). `limited`
     is true if the step was repeated, or shortened next to an event, so that the next one should not be longer.
     """
 
@@ -106,7 +106,7 @@ def may_change(step, power, bits, turned):
         sign, s0, s1 = -1.0 if (bits >> c) & 1 != 0 else 1.0, at(step.rates.rate, c), at(step.end_rates.rate, c)
         d0, d1 = at(step.rates.overlap, c), at(step.end_rates.overlap, c)
         s0, s1 = step.dt_dxi * s0, step.end_dt_dxi * s1
-        if step.transform.active != 0.0 and c == step.transform.contact:
+        if step.transform.active != 0.0 and c == step.transform.target:
             d0, d1 = at(step.start.q, 0), at(step.end.q, 0)
             s0, s1 = at(step.rates.rate, c) / power, at(step.end_rates.rate, c) / power
         if may_touch(sign * d0, sign * step.h * s0, sign * d1, sign * step.h * s1):
@@ -124,8 +124,8 @@ def changes_in(step, bits, contacts):
     crossed = (positive_mask(overlap) & ~bits) | (positive_mask(-overlap) & bits)
     turned = turns(bits, rising, risen)
     if step.transform.active != 0.0:
-        own = 1 << step.transform.contact
-        crossed = crossed | own if at(step.end.q, 0) < 0.0 else crossed & ~own
+        target = 1 << step.transform.target
+        crossed = crossed | target if at(step.end.q, 0) < 0.0 else crossed & ~target
     all_contacts = (1 << contacts) - 1
     return crossed & all_contacts, turned & ~crossed & all_contacts
 
@@ -138,8 +138,8 @@ def first_event(slots, work, step, bits, crossed, turned):
         if ((crossed | turned) >> c) & 1 == 0:
             continue
         sign, high, s0 = -1.0 if (bits >> c) & 1 != 0 else 1.0, 1.0, at(step.rates.rate, c)
-        chosen = step.transform.active != 0.0 and c == step.transform.contact
-        load_distance(slots, work, c, chosen, sign)
+        is_target = step.transform.active != 0.0 and c == step.transform.target
+        load_distance(slots, work, c, is_target, sign)
         if (crossed >> c) & 1 == 0:
             high, top = turn_of(work.polynomial, 1.0)
             if top <= 0.0:

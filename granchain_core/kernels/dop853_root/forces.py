@@ -75,8 +75,8 @@ def in_xi(forces, dt_dxi):
 @internal
 def forces_inside(slots, work, x, counts):
     """The three forces at fraction x of the step."""
-    values, begin, width = chain_values(work.chain, slots), work.begin, work.chain.width
-    start = Point(load_row(width, begin.u, 0), load_row(width, begin.w, 0), load8(begin.q, 0), load8(begin.t, 0))
+    values, kept, width = chain_values(work.chain, slots), work.start, work.chain.width
+    start = Point(load_row(width, kept.u, 0), load_row(width, kept.w, 0), load8(kept.q, 0), load8(kept.t, 0))
     rates = rates_at(values, slots.driver, no_transform(values, load_row(width, work.closed, 0)),
                      point_inside(work, start, x))
     counts[EVALUATIONS] += 1

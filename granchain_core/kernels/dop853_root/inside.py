@@ -25,15 +25,15 @@ class Polynomial(NamedTuple):
 
 
 @internal
-def load_distance(slots, work, contact, chosen, sign):
-    """Load a contact's overlap, or q if the contact is `chosen`, times a sign into the polynomial."""
-    p, begin, dense = work.polynomial, work.begin, work.dense
-    if chosen:
-        p[7] = sign * begin.q[0, 0]
+def load_distance(slots, work, contact, is_target, sign):
+    """Load a contact's overlap, or q if it is the target of the time transformation, times a sign into the polynomial."""
+    p, start, dense = work.polynomial, work.start, work.dense
+    if is_target:
+        p[7] = sign * start.q[0, 0]
         for k in range(7):
             p[k] = sign * dense.q[k, 0]
     else:
-        p[7] = sign * overlap(slots.preload, begin.u[0], contact)
+        p[7] = sign * overlap(slots.preload, start.u[0], contact)
         for k in range(7):
             p[k] = sign * (dense.u[k, contact] - dense.u[k, contact + 1])
 
@@ -41,7 +41,7 @@ def load_distance(slots, work, contact, chosen, sign):
 @internal
 def load_time(work, instant):
     """Load the time since an instant into the polynomial."""
-    work.polynomial[7] = work.begin.t[0, 0] - instant
+    work.polynomial[7] = work.start.t[0, 0] - instant
     for k in range(7):
         work.polynomial[k] = work.dense.t[k, 0]
 

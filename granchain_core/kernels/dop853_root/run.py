@@ -4,8 +4,8 @@ The order of one step, `run_dop853_root`:
 
 1. `nearest_event` (changes.py) chooses a contact whose event is near enough to transform the time for it, or none;
 2. `accepted_step` (accepted_step.py) tries steps from the nominal size dt: `size_in_xi` (changes.py) gives the size in
-   ξ, `attempt` (step.py) the step, and dt shrinks until the error is tolerable. If another contact opens in the step,
-   the time is transformed for that contact's event instead, and the attempts begin again;
+   ξ, `try_step` (step.py) the step, and dt shrinks until the error is tolerable. If another contact opens in the step,
+   the time is transformed for that contact's event instead, and the attempts start again;
 3. `end_of_step` takes the part of the step up to the first change of a contact, or up to the last point of the grid.
    The state there is that of the dense output, and the next step begins there;
 4. `record_step` records largest forces and samples (forces.py);
@@ -37,7 +37,7 @@ from ..status import (
     STEP_TOO_SMALL,
     STEPS,
 )
-from .accepted_step import ATTEMPTS, RunContext, StepBegin, accepted_step, new_units
+from .accepted_step import ATTEMPTS, RunContext, StepStart, accepted_step, new_units
 from .chain import (
     DISPLACEMENT,
     ELASTIC,
@@ -82,17 +82,17 @@ class StepEnd(NamedTuple):
 
 
 @inline_llvm
-def with_contact_toggled(context, begin, contact):
-    """`StepBegin` after a contact has opened or closed."""
+def with_contact_toggled(context, start, contact):
+    """`StepStart` after a contact has opened or closed."""
     work = context.work
     work.closed[0, contact] = 1.0 - work.closed[0, contact]
     closed = load_row(work.chain.width, work.closed, 0)
-    return StepBegin(begin.t, begin.point, begin.rates, begin.forces, begin.bits ^ (1 << contact), closed)
+    return StepStart(start.t, start.point, start.rates, start.forces, start.bits ^ (1 << contact), closed)
 
 
 @inline_numba
-def begin_of_run(context, t, y, bodies):
-    """`StepBegin` at the start of a run, from its state; contacts are closed where they overlap."""
+def start_of_run(context, t, y, bodies):
+    """`StepStart` at the start of a run, from its state; contacts are closed where they overlap."""
     work, values = context.work, context.values
     for i in range(bodies):
         work.state[DISPLACEMENT, i], work.state[W, i] = y[i], y[bodies + i]
@@ -103,25 +103,25 @@ def begin_of_run(context, t, y, bodies):
     for c in range(bodies - 1):
         work.closed[0, c] = 1.0 if (bits >> c) & 1 != 0 else 0.0
     forces = end_forces(values, context.driver, point, rates, context.last)
-    return StepBegin(t, point, rates, forces, bits, load_row(width, work.closed, 0))
+    return StepStart(t, point, rates, forces, bits, load_row(width, work.closed, 0))
 
 
 @inline_numba
-def with_driver_in_place(context, begin):
-    """`StepBegin` with the driver set to its exact phase, and the rates there."""
-    driver, values, theta = context.driver, context.values, context.beta * begin.t
-    point = Point(with_first(begin.point.u, driver_displacement(driver, theta)),
-                  with_first(begin.point.w, driver_velocity(driver, theta)), splat8(0.0), splat8(begin.t))
-    rates = rates_at(values, driver, no_transform(values, begin.closed), point)
+def with_driver_in_place(context, start):
+    """`StepStart` with the driver set to its exact phase, and the rates there."""
+    driver, values, theta = context.driver, context.values, context.beta * start.t
+    point = Point(with_first(start.point.u, driver_displacement(driver, theta)),
+                  with_first(start.point.w, driver_velocity(driver, theta)), splat8(0.0), splat8(start.t))
+    rates = rates_at(values, driver, no_transform(values, start.closed), point)
     context.out.counts[EVALUATIONS] += 1
-    forces = begin.forces
+    forces = start.forces
     if context.every > 0:
         forces = end_forces(values, driver, point, rates, context.last)
-    return StepBegin(begin.t, point, rates, forces, begin.bits, begin.closed)
+    return StepStart(start.t, point, rates, forces, start.bits, start.closed)
 
 
 @inline_numba
-def end_of_step(context, begin, checked, g, left):
+def end_of_step(context, start, checked, g, left):
     """The end of a step past grid point g: where a contact changes, or at the last of the `left` points."""
     step, contact, x = checked.step, checked.contact, checked.x
     end, end_rates = step.end, step.end_rates
@@ -138,13 +138,13 @@ def end_of_step(context, begin, checked, g, left):
     cut = contact >= 0 or passed == left
     if cut:
         end = point_inside(context.work, step.start, x)
-        end_rates = rates_at(context.values, context.driver, no_transform(context.values, begin.closed), end)
+        end_rates = rates_at(context.values, context.driver, no_transform(context.values, start.closed), end)
         context.out.counts[EVALUATIONS] += 1
     return StepEnd(contact, x, time, passed, cut, end, end_rates)
 
 
 @inline_numba
-def record_step(context, begin, checked, end, g, row, samples):
+def record_step(context, start, checked, end, g, row, samples):
     """Record the forces in a step, and every `every`-th of its grid points after number g.
 
     Returns the forces at its end and the next free row of `samples`.
@@ -156,7 +156,7 @@ def record_step(context, begin, checked, end, g, row, samples):
         forces = end_forces(values, driver, end.point, end.rates, context.last)
         if step.transform.active != 0.0:
             end_dt_dxi, _, _ = powers(context.power, at(end.point.q, 0))
-    first, last = in_xi(begin.forces, step.dt_dxi), in_xi(forces, end_dt_dxi)
+    first, last = in_xi(start.forces, step.dt_dxi), in_xi(forces, end_dt_dxi)
     if checked.prepared:
         exceeds = may_exceed(first, last, x * step.h, out.log.peaks)
     if exceeds:
@@ -164,7 +164,7 @@ def record_step(context, begin, checked, end, g, row, samples):
     for number in range(g + 1, g + 1 + end.passed):
         if number % context.every == 0:
             inside = point_inside(work, step.start, fraction_at(work, number * context.spacing, x))
-            keep_state(work, inside, rates_at(values, driver, no_transform(values, begin.closed), inside))
+            keep_state(work, inside, rates_at(values, driver, no_transform(values, start.closed), inside))
             write_sample(slots, row, work.state[DISPLACEMENT], work.state[VELOCITY], work.state[ELASTIC], samples)
             row += 1
     out.log.counts[SAMPLE] = row - 1
@@ -173,7 +173,7 @@ def record_step(context, begin, checked, end, g, row, samples):
 
 @inline_llvm
 def growth(step, end):
-    """Factor from a step's nominal size in time (`accepted_attempt`) to that of the next step."""
+    """Factor from a step's nominal size in time (`tolerable_step`) to that of the next step."""
     if end.cut and end.x < 0.5:
         return 1.0
     most = _MAX_FACTOR if step.error_squared > _SMALL_ERROR**2 else _MAX_FACTOR_OF_SMALL_ERROR
@@ -181,11 +181,11 @@ def growth(step, end):
 
 
 @inline_numba
-def write_beads(context, begin, y, bodies):
+def write_beads(context, start, y, bodies):
     """Write the state of the beads to y."""
     state = context.work.state
-    store(state, DISPLACEMENT, begin.point.u)
-    store(state, W, begin.point.w)
+    store(state, DISPLACEMENT, start.point.u)
+    store(state, W, start.point.w)
     for i in range(1, bodies - 1):
         y[i], y[bodies + i] = state[DISPLACEMENT, i], state[W, i]
 
@@ -200,58 +200,58 @@ def run_dop853_root(method, work, trajectory, sample_range, samples, out):
                       smooth_power(slots.dissipation), bodies - 2, period / grid, GOAL_TOLERANCE * period, every)
     g, done, row, dt = sample_range.first, 0, 1, workspace.next_step[0]
     events, most_events, idle = 0, EVENTS_PER_CONTACT * (bodies - 1), 0
-    begin = begin_of_run(context, g * context.spacing, y, bodies)
-    since = begin.t
+    start = start_of_run(context, g * context.spacing, y, bodies)
+    since = start.t
     if every > 0:
-        evaluate(slots, drive.beta, begin.t, y, workspace.k[0], workspace.forces)
+        evaluate(slots, drive.beta, start.t, y, workspace.k[0], workspace.forces)
         write_sample(slots, 0, y, workspace.k[0], workspace.forces.e, samples)
     while done < points:
-        begin = with_driver_in_place(context, begin)  # within a period, its oscillator is as accurate as the beads
-        while done < points and not begin.t >= period:
+        start = with_driver_in_place(context, start)  # within a period, its oscillator is as accurate as the beads
+        while done < points and not start.t >= period:
             if out.stop[0] != 0:
                 return CANCELLED, row if every > 0 else done
-            if begin.t - since > EVENT_WINDOW:
-                events, since = 0, begin.t
+            if start.t - since > EVENT_WINDOW:
+                events, since = 0, start.t
             dt = min(dt, method.largest_step)
-            units = new_units(context, begin.point, workspace.scale)
-            chosen = nearest_event(begin.rates, begin.closed, workspace.scale[0], dt)
-            if chosen >= 0 and at(begin.rates.overlap, chosen) <= 0.0 and at(begin.rates.rate, chosen) < 0.0:
+            units = new_units(context, start.point, workspace.scale)
+            target = nearest_event(start.rates, start.closed, workspace.scale[0], dt)
+            if target >= 0 and at(start.rates.overlap, target) <= 0.0 and at(start.rates.rate, target) < 0.0:
                 # opened by rounding, or by another event at the same time
-                begin, events = with_contact_toggled(context, begin, chosen), events + 1
+                start, events = with_contact_toggled(context, start, target), events + 1
                 if events > most_events:
                     return CHATTER, row if every > 0 else done
                 continue
-            if is_too_small(dt, begin.t, drive.beta):
+            if is_too_small(dt, start.t, drive.beta):
                 return STEP_TOO_SMALL, row if every > 0 else done
-            status, checked, dt = accepted_step(context, begin, chosen, dt, units, g)
+            status, checked, dt = accepted_step(context, start, target, dt, units, g)
             if status != DONE:
                 return status, row if every > 0 else done
-            end = end_of_step(context, begin, checked, g, points - done)
-            idle = idle + 1 if end.contact < 0 and end.time <= begin.t else 0
+            end = end_of_step(context, start, checked, g, points - done)
+            idle = idle + 1 if end.contact < 0 and end.time <= start.t else 0
             if idle > ATTEMPTS:
                 return STEP_TOO_SMALL, row if every > 0 else done
-            forces = begin.forces
+            forces = start.forces
             if every > 0:
-                forces, row = record_step(context, begin, checked, end, g, row, samples)
+                forces, row = record_step(context, start, checked, end, g, row, samples)
             dt *= growth(checked.step, end)
             g, done = g + end.passed, done + end.passed
             counts[STEPS] += 1
-            begin = StepBegin(end.time, end.point, end.rates, forces, begin.bits, begin.closed)
+            start = StepStart(end.time, end.point, end.rates, forces, start.bits, start.closed)
             if end.contact >= 0:
                 events += 1
                 counts[EVENTS] += 1
                 if events > most_events:
                     return CHATTER, row if every > 0 else done
-                begin = with_contact_toggled(context, begin, end.contact)
-                if (begin.bits >> end.contact) & 1 != 0 and every > 0:
-                    record_closing(slots.dissipation, at(begin.rates.rate, end.contact), end.contact, context.last,
-                                 drive.beta * begin.t, out.log)
-        if begin.t >= period:
-            begin = StepBegin(begin.t - period, begin.point, begin.rates, begin.forces, begin.bits, begin.closed)
-            g, events, since = g - grid, 0, begin.t
-    write_beads(context, begin, y, bodies)
+                start = with_contact_toggled(context, start, end.contact)
+                if (start.bits >> end.contact) & 1 != 0 and every > 0:
+                    record_closing(slots.dissipation, at(start.rates.rate, end.contact), end.contact, context.last,
+                                 drive.beta * start.t, out.log)
+        if start.t >= period:
+            start = StepStart(start.t - period, start.point, start.rates, start.forces, start.bits, start.closed)
+            g, events, since = g - grid, 0, start.t
+    write_beads(context, start, y, bodies)
     workspace.next_step[0] = dt
-    evaluate(slots, drive.beta, begin.t, y, workspace.k[0], workspace.forces)
+    evaluate(slots, drive.beta, start.t, y, workspace.k[0], workspace.forces)
     if first_not_finite(y, bodies) != 0:
         return NOT_FINITE, row if every > 0 else done
     return DONE, row if every > 0 else done

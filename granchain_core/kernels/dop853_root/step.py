@@ -44,8 +44,8 @@ def keep_increment(work, law, transform, h, q, rates, row):
     dt_dxi, _, _ = powers(smooth_power(law), q)
     dt = h.xi * (1.0 - transform.active + transform.active * dt_dxi)
     dt_like = repeat_like(rates.du, dt)
-    contact = transform.contact
-    rise = splat8(at(rates.du, contact)) - splat8(at(rates.du, contact + 1))  # `rates.rate` is not known yet
+    target = transform.target
+    rise = splat8(at(rates.du, target)) - splat8(at(rates.du, target + 1))  # `rates.rate` is not known yet
     increment = Point(rates.du * dt_like, rates.dw * dt_like, h.root * rise, dt)
     store(work.increments.u, row, increment.u)
     store(work.increments.w, row, increment.w)
@@ -76,7 +76,7 @@ _dense3, _dense4, _dense5, _dense6 = (weighted_rows(row) for row in DENSE_WEIGHT
 
 
 @inline_llvm
-def attempt(values, driver, work, transform, start, rates, h, units):
+def try_step(values, driver, work, transform, start, rates, h, units):
     """Try a step of size h in ξ; return the squared error in units of the tolerance, the end, and the rates there.
 
     `rates` are those at the start; `units` are `Units`.
@@ -122,7 +122,7 @@ def _dense_rows(increments, dense, start, end):
 @inline_llvm
 def prepare_dense_rows(values, driver, work, transform, start, end, h):
     """Fill the dense output of the step, with three more stages, and store its start."""
-    increments, dense, begin = work.increments, work.dense, work.begin
+    increments, dense = work.increments, work.dense
     h = step_size(values.slots.dissipation, transform, h)
     k = Point(load_like(start.u, increments.u, STAGES), load_like(start.w, increments.w, STAGES),
               load_like(start.q, increments.q, STAGES), load_like(start.t, increments.t, STAGES))
@@ -133,10 +133,10 @@ def prepare_dense_rows(values, driver, work, transform, start, end, h):
     _dense_rows(increments.w, dense.w, start.w, end.w)
     _dense_rows(increments.q, dense.q, start.q, end.q)
     _dense_rows(increments.t, dense.t, start.t, end.t)
-    store(begin.u, 0, start.u)
-    store(begin.w, 0, start.w)
-    store(begin.q, 0, start.q)
-    store(begin.t, 0, start.t)
+    store(work.start.u, 0, start.u)
+    store(work.start.w, 0, start.w)
+    store(work.start.q, 0, start.q)
+    store(work.start.t, 0, start.t)
 
 
 @inline_llvm

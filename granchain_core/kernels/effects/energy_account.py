@@ -24,6 +24,10 @@ from .preload import overlap
 from .tension import contact_primitive, lost_in, unless_force_free
 
 
+#: Places of W and Q in the state, which they end, and of their rates in its slope.
+WORK, LOST = -2, -1
+
+
 class EnergyAccount(NamedTuple):
     """Slot of the energy account; its one value is always 1, since the compiler has no type for an empty tuple."""
 
@@ -50,8 +54,8 @@ def _(account, slots, y, dy, e):
         if c == 0:
             work = e[0] * dy[0] - times_primitive(slots.dissipation, G, acceleration)
     dy[bodies] = 0.0
-    dy[dy.size - 2] = work
-    dy[dy.size - 1] = lost
+    dy[WORK] = work
+    dy[LOST] = lost
 
 
 @by_slot
@@ -72,8 +76,8 @@ def add_to_account(account, y, work, lost):
 
 @add_to_account.of(EnergyAccount)
 def _(account, y, work, lost):
-    y[y.size - 2] += work
-    y[y.size - 1] += lost
+    y[WORK] += work
+    y[LOST] += lost
 
 
 @internal

@@ -24,7 +24,8 @@ from .vector import VectorType, as_vector
 _HAS_RSQRT14, _HAS_RSQRT_PS = has_avx512(), is_x86()
 #: Smallest number whose root is computed; smaller ones are replaced by it. Its power 3/2, the force of such an overlap,
 #: is negligible. Where `rsqrtps` is used, it must not underflow to zero in single precision.
-_LEAST_ARGUMENT = 1e-280 if BATCH_SIZE == 8 else 1e-30
+_LEAST_ARGUMENT_OF_EIGHT = 1e-280
+_LEAST_ARGUMENT = _LEAST_ARGUMENT_OF_EIGHT if BATCH_SIZE == 8 else 1e-30
 #: A maximum is smooth if both of its neighbours are above this part of it; the jump of a dashpot force is not.
 NEIGHBOUR_PART = 0.8
 #: The same for the two values beyond the neighbours. They must not exceed the maximum either, since the quartic through
@@ -71,7 +72,7 @@ def _root_of_eight(builder, value, coefficients=(0.5, 0.375)):
 
 def _full_root_of_eight(builder, value):
     """A root of any number that is not negative, to rounding: the first omitted term, 35e⁴/128, is below 7e-17."""
-    least = ir.Constant(value.type, [1e-280] * value.type.count)
+    least = ir.Constant(value.type, [_LEAST_ARGUMENT_OF_EIGHT] * value.type.count)
     value = builder.select(builder.fcmp_ordered("<", value, least), least, value)
     return _root_of_eight(builder, value, (0.5, 0.375, 0.3125))
 
