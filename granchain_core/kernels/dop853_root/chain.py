@@ -164,7 +164,8 @@ def transform_of(values, closed, in_target, active, target):
     others, pull = closed * (1.0 - in_target), from_left(blank(in_target), in_target) - in_target
     stiffness = repeat_like(in_target, splat8(at(values.stiffness, target)))
     return TimeTransformation(active, target, others, others * values.stiffness, in_target * stiffness,
-                              pull_of_damping(values.slots.dissipation, values.damping_over_mass, pull), stiffness * pull)
+                              pull_of_damping(values.slots.dissipation, values.damping_over_mass, pull),
+                              stiffness * pull)
 
 
 @inline_llvm

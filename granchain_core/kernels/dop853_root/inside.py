@@ -26,7 +26,7 @@ class Polynomial(NamedTuple):
 
 @internal
 def load_distance(slots, work, contact, is_target, sign):
-    """Load a contact's overlap, or q if it is the target of the time transformation, times a sign into the polynomial."""
+    """Load a contact's overlap (q for the target of the time transformation), times a sign, into the polynomial."""
     p, start, dense = work.polynomial, work.start, work.dense
     if is_target:
         p[7] = sign * start.q[0, 0]

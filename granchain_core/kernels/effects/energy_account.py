@@ -23,7 +23,6 @@ from .driver import driver_acceleration
 from .preload import overlap
 from .tension import contact_primitive, lost_in, unless_force_free
 
-
 #: Places of W and Q in the state, which they end, and of their rates in its slope.
 WORK, LOST = -2, -1
 
