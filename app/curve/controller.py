@@ -21,10 +21,11 @@ from ..session.progress import COMPUTING, OFF, READY
 from ..session.scene_facts import rig_beads, slider_range, without_frequency
 from ..session.share import joined
 from ..session.task import Task
-from .curve_bar import CHOICES, CurveBar
+from .curve_bar import CHOICES, CurveBar, shown_progress
 from .drafts import Drafts
 from .peak_names import PeakNames, stated_name
 from .reports import Reports
+from .request import CurveRequest
 from .sweep import Progress, Sweep
 from .view import CurveFigure
 
@@ -52,15 +53,12 @@ class CurveController:
         self._visible = True
         #: Whether each curve, by its start, and the stated features are selected.
         self._wanted = {name: name == "rest" for name, *_ in CHOICES}
-        #: Scenes from `without_frequency`, since a curve is the same at every f: for the present knobs, for the curve
-        #: that was started last, and for the complete curve from each start.
+        #: Scenes from `without_frequency`, since a curve is the same at every f: for the present knobs, and for the
+        #: complete curve from each start.
         self._wanted_for: Scene | None = None
-        self._begun_for: Scene | None = None
         self._complete_for: dict[str, Scene] = {}
-        #: Starts whose curves were missing when the last curve was started, and the fraction of these curves that is
-        #: computed, from 0 to 1; -1 if nothing is under way.
-        self._missing: list[str] = []
-        self._done = -1.0
+        #: The curves that were started last.
+        self._request = CurveRequest()
         #: The error that kept the kernels of the present knobs from being compiled.
         self._uncompiled: Exception | None = None
         self._kernels = Requests(COMPILER)
@@ -172,8 +170,8 @@ class CurveController:
         """Stop computing; the points computed so far stay."""
         self._cancel()
         self._drafts.drop()
-        self._done = -1.0
-        self._bar.update_state(done=-1.0)
+        self._request.done = None
+        self._bar.update_state(done=shown_progress(None))
         if self._figure.expected:
             self._figure.expected = False
             self._placed()
@@ -181,30 +179,30 @@ class CurveController:
     @property
     def computing(self) -> bool:
         """Whether a curve is under way."""
-        return 0.0 <= self._done < 1.0
+        return self._request.computing
 
     def activities(self) -> list[Activity]:
         """Return name, state and detail of the curve from every start at this moment."""
-        rows = []
-        for name in CURVE_STARTS:
-            title = f"resonance curve, {SWEEPS[name].words}"
-            if not self._wanted[name]:
-                rows.append((title, OFF, "not selected"))
-            elif self._complete_for.get(name) is not None and self._complete_for.get(name) == self._begun_for:
-                rows.append((title, READY, "all points are computed"))
-            elif not self._visible:
-                rows.append((title, OFF, "not on the screen"))
-            elif self._wanted_for is not None and not self._wanted_for.is_driven:
-                rows.append((title, OFF, "nothing drives the chain"))
-            elif self._wanted_for is not None and not curve_affordable(self._wanted_for):
-                rows.append((title, OFF, "it would take too long; granchain curve computes it"))
-            elif self._uncompiled is not None:
-                rows.append((title, OFF, "its kernels could not be compiled"))
-            elif name in self._missing and self.computing:
-                rows.append((title, COMPUTING, f"{100 * self._done:.0f} % of the curves asked for"))
-            else:
-                rows.append((title, OFF, "waits until the knobs rest, or was stopped"))
-        return rows
+        return [(f"resonance curve, {SWEEPS[name].words}", *self._state(name)) for name in CURVE_STARTS]
+
+    def _state(self, start: str) -> tuple[str, str]:
+        """Return state and detail of the curve from one start."""
+        scene, request = self._wanted_for, self._request
+        if not self._wanted[start]:
+            return OFF, "not selected"
+        if request.scene is not None and self._complete_for.get(start) == request.scene:
+            return READY, "all points are computed"
+        if not self._visible:
+            return OFF, "not on the screen"
+        if scene is not None and not scene.is_driven:
+            return OFF, "nothing drives the chain"
+        if scene is not None and not curve_affordable(scene):
+            return OFF, "it would take too long; granchain curve computes it"
+        if self._uncompiled is not None:
+            return OFF, "its kernels could not be compiled"
+        if start in request.missing and request.computing:
+            return COMPUTING, f"{100 * (request.done or 0.0):.0f} % of the curves asked for"
+        return OFF, "waits until the knobs rest, or was stopped"
 
     def measured(self, measured: Measured | None) -> Difference | None:
         """Draw the visitor's data, or remove them; return their difference from a complete curve from rest."""
@@ -232,14 +230,13 @@ class CurveController:
                    if self._visible and self._wanted[name] and self._complete_for.get(name) != key]
         for name in missing:
             self._complete_for.pop(name, None)
-        self._begun_for = key
+        self._request = CurveRequest.of(key, missing)
         shown = [name for name in CURVE_STARTS if self._wanted[name]]
         self._figure.show_only(shown)
         self._figure.begin(missing)
-        self._bar.update_state(**self._wanted, done=0.0 if missing else -1.0)
+        self._bar.update_state(**self._wanted, done=shown_progress(self._request.done))
         if "rest" in missing:
             self._notify_compared(None)
-        self._missing, self._done = list(missing), 0.0 if missing else -1.0
         self._drafts.drop()
         if missing:
             self._task.start(Sweep(scene, missing, self._reports.add, lambda: self._host.busy,
@@ -266,21 +263,22 @@ class CurveController:
         for start, new in points.items():
             self._figure.add(start, new, start in covers)
         for progress in reports:
-            if progress.complete and self._begun_for is not None:
-                self._complete_for[progress.start] = self._begun_for
-                self._figure.finished(progress.start)
-                self._placed()
-                if progress.start == "rest":
-                    self._names.name(self._figure.points("rest"), self._begun_for)
-                self._notify_compared(self._figure.difference)
-        self._done = self._overall(reports[-1])
-        self._bar.update_state(done=self._done)
+            if progress.complete:
+                self._completed(progress.start)
+        self._request.advance(reports[-1])
+        self._bar.update_state(done=shown_progress(self._request.done))
 
-    def _overall(self, progress: Progress) -> float:
-        """Return the progress over all curves of this request."""
-        if progress.start not in self._missing:
-            return -1.0
-        return (self._missing.index(progress.start) + progress.done) / len(self._missing)
+    def _completed(self, start: str) -> None:
+        """Note that the curve from a start is complete, and use it."""
+        scene = self._request.scene
+        if scene is None:
+            return
+        self._complete_for[start] = scene
+        self._figure.finished(start)
+        self._placed()
+        if start == "rest":
+            self._names.name(self._figure.points("rest"), scene)
+        self._notify_compared(self._figure.difference)
 
     def _show_names(self, names: list[dict[str, Any]]) -> None:
         """Show the names of peaks, valleys and stop band, with their heights on the axis."""

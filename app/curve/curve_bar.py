@@ -31,3 +31,8 @@ class CurveBar(Component):
                                           "kinds": KINDS, "strong": STRONG_FRACTION, "driven": True, "too_long": False,
                                           "rig": False},
                          **params)
+
+
+def shown_progress(done: float | None) -> float:
+    """Return the progress as the bar's script expects it: from 0 to 1, or −1 if no curve is under way."""
+    return -1.0 if done is None else done

@@ -9,6 +9,7 @@ import pytest
 from app.curve.controller import CurveController
 from app.curve.curve_bar import CurveBar
 from app.curve.reports import CURVE_EVERY
+from app.curve.request import CurveRequest
 from app.curve.sweep import Progress
 from app.curve.view import CurveFigure
 from app.session.session import Session
@@ -61,7 +62,7 @@ def test_a_stopped_curve_is_not_under_way_again_when_its_last_points_would_be_dr
     monkeypatch.setattr("app.curve.reports.time.monotonic", lambda: now[0])
     host = Host()
     curves = CurveController(host, CurveFigure(lambda _: None), CurveBar(lambda _: None), lambda: None)  # type: ignore[arg-type]
-    curves._missing = ["rest"]
+    curves._request = CurveRequest.of(scene("sec2"), ["rest"])
     for f in (500.0, 600.0):
         curves._reports.add(point(f))
         host.call_waiting()
