@@ -17,7 +17,7 @@ from ..session.activities import Activity
 from ..session.budget import curve_affordable
 from ..session.debounce import Debounce
 from ..session.host import PageHost
-from ..session.progress import COMPUTING, OFF, READY
+from ..session.progress import COMPUTING, OFF, READY, ActivityState
 from ..session.scene_facts import rig_beads, slider_range, without_frequency
 from ..session.share import joined
 from ..session.task import Task
@@ -185,7 +185,7 @@ class CurveController:
         """Return name, state and detail of the curve from every start at this moment."""
         return [(f"resonance curve, {SWEEPS[name].words}", *self._state(name)) for name in CURVE_STARTS]
 
-    def _state(self, start: str) -> tuple[str, str]:
+    def _state(self, start: str) -> tuple[ActivityState, str]:
         """Return state and detail of the curve from one start."""
         scene, request = self._wanted_for, self._request
         if not self._wanted[start]:

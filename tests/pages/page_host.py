@@ -14,6 +14,7 @@ from app.dashboard.table import PageSpec, overlay_names
 from app.dashboard.tabs import Tabs
 from app.serve.compiling.compiler import COMPILER
 from app.serve.computing.worker_pools import WorkerPool
+from app.session.activities import Activity
 from app.session.page import Page
 from app.session.session import Session
 from app.session.task import Job, Task
@@ -40,7 +41,7 @@ class FakePageHost(FakeHost):
         self.shown: list[tuple[Scene, State | None, str]] = []
         self.addresses = 0
 
-    def activities(self) -> list[tuple[str, str, str]]:
+    def activities(self) -> list[Activity]:
         return []
 
     def show(self, scene: Scene, state: State | None = None, mode: str = "settled") -> None:
@@ -93,7 +94,7 @@ class PageUnderTest:
         self.page: Page = row.page(self.host, self.view)
 
     @property
-    def activity(self) -> tuple[str, str, str]:
+    def activity(self) -> Activity:
         """The page's line in the list of running computations, which must exist."""
         activity = self.page.activity
         assert activity is not None

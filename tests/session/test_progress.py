@@ -13,7 +13,7 @@ from app.pages.branches.page import WORDS as BRANCHES
 from app.pages.hard_cases.page import WORDS as HARD_CASES
 from app.pages.map.page import SEARCH_WORDS
 from app.session import progress as module
-from app.session.progress import UNDER_WAY, Status, StatusWords
+from app.session.progress import UNDER_WAY, Status, StatusWords, activity_state, is_under_way
 
 PAGES = Path(module.__file__).parents[1] / "pages"
 #: Every `StatusWords` of a page, by page and name.
@@ -47,6 +47,13 @@ def test_what_is_under_way_is_running_on_every_page() -> None:
 def test_every_status_is_under_way_or_still() -> None:
     """Mypy checks the statuses used by pages against `Status`."""
     assert set(get_args(Status)) == {*UNDER_WAY, "none", "done", "stopped", "failed"}
+
+
+@pytest.mark.parametrize(("status", "results", "state"), [
+    ("none", False, "off"), ("waiting", False, "computing"), ("measuring", True, "computing"), ("stopped", False, "off"),
+    ("stopped", True, "ready"), ("done", True, "ready"), ("failed", False, "off")])
+def test_the_list_of_computations_has_one_of_three_states_for_each(status: Status, results: bool, state: str) -> None:
+    assert activity_state(is_under_way(status), results) == state
 
 
 def test_every_page_stops_with_the_same_word() -> None:

@@ -18,7 +18,7 @@ from ...session.active_setting import PlacedSetting, locate, shown_setting
 from ...session.activities import Activity
 from ...session.host import PageHost
 from ...session.page import Actions, Page
-from ...session.progress import COMPUTING, OFF, READY, Status, StatusWords
+from ...session.progress import Status, StatusWords, activity_state
 from ...session.task import Job, Task
 from .view import Accuracy, described_methods, described_reference
 
@@ -56,7 +56,7 @@ class AccuracyPage(Page):
     def activity(self) -> Activity:
         """Name, state and detail for the list of running computations."""
         words = f"{len(self.rows)} settings measured" if self.rows or self.running else "its page has not been opened"
-        return "accuracy of all methods", COMPUTING if self.running else READY if self.rows else OFF, words
+        return "accuracy of all methods", activity_state(self.running, bool(self.rows)), words
 
     def scene_changed(self) -> None:
         """Update the page after a knob has moved, which may change the requested accuracy or outdate the rows."""

@@ -20,7 +20,7 @@ from ...session.debounce import Debounce
 from ...session.host import PageHost
 from ...session.message_checks import quoted
 from ...session.page import Actions, Page
-from ...session.progress import COMPUTING, READY, UNDER_WAY
+from ...session.progress import UNDER_WAY, activity_state
 from ...session.switches import SWITCHES, present, refusal, variants
 from ...session.task import Job, Task
 
@@ -52,7 +52,7 @@ class EffectsPage(Page):
     @property
     def activity(self) -> Activity:
         """Name, state and detail for the list of running computations."""
-        return "cost of effects", COMPUTING if self.measuring else READY, self._progress_words
+        return "cost of effects", activity_state(bool(self.measuring)), self._progress_words
 
     @property
     def _progress_words(self) -> str:

@@ -13,7 +13,7 @@ from ...session.activities import Activity
 from ...session.host import PageHost
 from ...session.message_checks import quoted
 from ...session.page import Actions, Page
-from ...session.progress import COMPUTING, OFF, READY, Status, StatusWords
+from ...session.progress import Status, StatusWords, activity_state
 from ...session.task import Job, Task
 from .view import HardCases, described_results, summary
 from .work import CaseProcess, Ended, case_of
@@ -43,9 +43,8 @@ class HardCasesPage(Page):
     @property
     def activity(self) -> Activity:
         """Name, state and detail for the list of running computations."""
-        if self.waiting:
-            return "hard cases", COMPUTING, self.waiting[0]
-        return "hard cases", READY if self.rows else OFF, f"{len(self.rows)} of {len(CASES)} run"
+        detail = self.waiting[0] if self.waiting else f"{len(self.rows)} of {len(CASES)} run"
+        return "hard cases", activity_state(bool(self.waiting), bool(self.rows)), detail
 
     def stop(self) -> None:
         """Stop the running case and forget the waiting cases; the results so far stay."""

@@ -18,7 +18,7 @@ from ...session.debounce import Debounce
 from ...session.host import PageHost
 from ...session.message_checks import check_integer
 from ...session.page import Actions, Page
-from ...session.progress import COMPUTING, OFF, READY, Status, StatusWords
+from ...session.progress import OFF, Status, StatusWords, activity_state, is_under_way
 from ...session.task import Job, Task
 from .trail import Trail
 from .view import (
@@ -38,6 +38,12 @@ _QUIET = 0.12
 _LIVE = "Only a motion that repeats has multipliers, and a live run is under way: choose “settled” above."
 
 WORDS = StatusWords("the tangent flow", ORBIT_KERNELS)
+
+#: Details of a computation that is under way, for the list of computations.
+_DETAILS: dict[Status, str] = {
+    "compiling": "compiling the tangent flow", "computing": "multipliers, mode and section",
+    "searching": "Newton's method for an unstable orbit",
+}
 
 
 class StabilityPage(Page):
@@ -71,11 +77,8 @@ class StabilityPage(Page):
         """Name, state and detail for the list of running computations."""
         if not self._visible:
             return "stability", OFF, "not on the screen"
-        words = {"compiling": "compiling the tangent flow", "computing": "multipliers, mode and section",
-                 "searching": "Newton's method for an unstable orbit"}
-        if self.status in words:
-            return "stability", COMPUTING, words[self.status]
-        return "stability", READY if self._analysed is not None else OFF, "follows the settled picture"
+        state = activity_state(is_under_way(self.status), self._analysed is not None)
+        return "stability", state, _DETAILS.get(self.status, "follows the settled picture")
 
     # The picture in front
 
