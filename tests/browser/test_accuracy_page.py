@@ -38,10 +38,10 @@ def opened(page: Page) -> Locator:
     settled(page)
     page.get_by_role("button", name="asked").click()
     page.get_by_role("button", name="What accuracy costs in time").click()
-    sheet = page.locator('[data-overlay="accuracy"]')
+    overlay = page.locator('[data-overlay="accuracy"]')
     page.wait_for_function(f"Object.keys(({POINTS})()).length > 0", timeout=COMPILED)
-    expect(sheet.locator(".work canvas").first).to_be_visible()
-    return sheet
+    expect(overlay.locator(".work canvas").first).to_be_visible()
+    return overlay
 
 
 def test_the_status_line_says_what_is_asked_reached_and_how_long_it_took(visit: Visit) -> None:
@@ -77,22 +77,22 @@ def test_its_tab_opens_the_page(measured: Page) -> None:
 @pytest.mark.long
 def test_points_appear_and_the_cheapest_way_is_told(measured: Page) -> None:
     page = measured
-    sheet = opened(page)
-    expect(sheet.get_by_role("button", name="measure again")).to_be_visible(timeout=COMPILED)
+    overlay = opened(page)
+    expect(overlay.get_by_role("button", name="measure again")).to_be_visible(timeout=COMPILED)
     methods = page.evaluate(POINTS)
     assert sum(methods.values()) > 30
     assert {"rk4", "rk4-split", "rk4-naive", "verlet-naive", "dop853", "scipy LSODA"} <= set(methods)
-    expect(sheet).to_contain_text("The cheapest way to 1e-6 is")
-    expect(sheet).to_contain_text("Two independent references agree to")
-    expect(sheet).to_contain_text("against the reference; the status line has no reference and states an estimate on the safe side")
+    expect(overlay).to_contain_text("The cheapest way to 1e-6 is")
+    expect(overlay).to_contain_text("Two independent references agree to")
+    expect(overlay).to_contain_text("against the reference; the status line has no reference and states an estimate on the safe side")
     assert marked(page, "cheapest") == 1
     assert marked(page, "now") == 1
     # another accuracy: other words, no new measurement, and nothing is greyed
     type_into(page, "accuracy", "1e-3")
-    expect(sheet).to_contain_text("The cheapest way to 1e-3 is")
-    expect(sheet.get_by_role("button", name="stop")).to_be_hidden()
-    expect(sheet.locator(".stale")).to_have_count(0)
-    rows = sheet.locator("tbody tr")
+    expect(overlay).to_contain_text("The cheapest way to 1e-3 is")
+    expect(overlay.get_by_role("button", name="stop")).to_be_hidden()
+    expect(overlay.locator(".stale")).to_have_count(0)
+    rows = overlay.locator("tbody tr")
     expect(rows.filter(has_text="rk4-split")).to_contain_text("two events of one inner contact")
     expect(rows.filter(has_text="dop853").first).to_contain_text("Hairer")
     # hovering describes the point, wherever the figure has moved meanwhile
@@ -103,7 +103,7 @@ def test_points_appear_and_the_cheapest_way_is_told(measured: Page) -> None:
           const { frame, model } = figures.view("accuracy", true), { data } = model.document.get_model_by_name("rk4-split");
           return [frame.x_scale.compute(data.ms[0]), frame.y_scale.compute(data.error[0])];
         }""")
-        box = sheet.locator(".work canvas").first.bounding_box()
+        box = overlay.locator(".work canvas").first.bounding_box()
         assert box is not None
         page.mouse.move(box["x"] + x - 30, box["y"] + y)
         page.mouse.move(box["x"] + x, box["y"] + y)
@@ -113,61 +113,61 @@ def test_points_appear_and_the_cheapest_way_is_told(measured: Page) -> None:
     for words in ("default steps", "error", "s, ", "evaluations", "order 3.9"):
         expect(tip).to_contain_text(words)
     page.mouse.move(0, 0)
-    naive_force_lies_over_the_accurate_one(page, sheet)
+    naive_force_lies_over_the_accurate_one(page, overlay)
     assert violations(page, "#overlay") == {}  # with all points and rows; test_axe.py has only the first ones
-    fits(page, sheet)
+    fits(page, overlay)
 
 
 def test_a_moved_knob_greys_the_page_until_it_is_measured_again(measured: Page) -> None:
     page = measured
     if page.locator("#overlay").is_hidden():
         opened(page)
-    sheet = page.locator('[data-overlay="accuracy"]')
-    expect(sheet.get_by_role("button", name="measure again")).to_be_visible(timeout=COMPILED)
+    overlay = page.locator('[data-overlay="accuracy"]')
+    expect(overlay.get_by_role("button", name="measure again")).to_be_visible(timeout=COMPILED)
     type_into(page, "D", "90")
-    expect(sheet.locator(".stale")).to_be_visible()
-    expect(sheet).to_contain_text("measured for another chain")
+    expect(overlay.locator(".stale")).to_be_visible()
+    expect(overlay).to_contain_text("measured for another chain")
     type_into(page, "D", "100")
-    expect(sheet.locator(".stale")).to_have_count(0)
+    expect(overlay.locator(".stale")).to_have_count(0)
     type_into(page, "D", "80")
-    sheet.get_by_role("button", name="measure again").click()
-    expect(sheet.locator(".stale")).to_have_count(0)
+    overlay.get_by_role("button", name="measure again").click()
+    expect(overlay.locator(".stale")).to_have_count(0)
     page.wait_for_function(f"Object.keys(({POINTS})()).length > 0", timeout=COMPILED)
-    sheet.locator("button:text-is('stop')").first.evaluate("one => one.click()")  # hidden if all is measured already
+    overlay.locator("button:text-is('stop')").first.evaluate("one => one.click()")  # hidden if all is measured already
 
 
-def naive_force_lies_over_the_accurate_one(page: Page, sheet: Locator) -> None:
+def naive_force_lies_over_the_accurate_one(page: Page, overlay: Locator) -> None:
     """Check that it is dashed, has as many points, and has its error stated for the chosen steps."""
-    expect(sheet.locator(".naive canvas").first).to_be_visible()
+    expect(overlay.locator(".naive canvas").first).to_be_visible()
     drawn = naive_line(page)
     assert drawn["accurate"] == drawn["naive"] > 50 and drawn["dash"] not in ("", "solid")
-    said = sheet.locator(".naive p")
+    said = overlay.locator(".naive p")
     expect(said).to_contain_text("With 200 steps per period, the force is off by")
     first = said.inner_text()
-    sheet.get_by_label("its steps per drive period").select_option("2000")
+    overlay.get_by_label("its steps per drive period").select_option("2000")
     expect(said).to_contain_text("With 2000 steps")
     assert said.inner_text() != first
 
 
-def fits(page: Page, sheet: Locator) -> None:
+def fits(page: Page, overlay: Locator) -> None:
     """Check that the figure is inside the window at every size."""
     for width, height in ((1280, 800), (1920, 1080), (390, 844)):
         resize(page, width, height)
-        box = sheet.locator(".work .figure").bounding_box()
+        box = overlay.locator(".work .figure").bounding_box()
         assert box is not None and box["x"] >= 0 and box["x"] + box["width"] <= width and box["height"] > 200, width
 
 
 def test_steps_that_blow_up_are_told_and_a_stopped_measurement_keeps_its_points(visit: Visit) -> None:
     page = visit("?v=1&scene=rig")
-    sheet = opened(page)
+    overlay = opened(page)
     # at once: the button is there during the measurement, however long anything else takes
-    sheet.get_by_role("button", name="stop").click()
-    expect(sheet).to_contain_text("stopped", timeout=COMPILED)
-    expect(sheet.get_by_role("button", name="measure again")).to_be_visible()
+    overlay.get_by_role("button", name="stop").click()
+    expect(overlay).to_contain_text("stopped", timeout=COMPILED)
+    expect(overlay.get_by_role("button", name="measure again")).to_be_visible()
     assert sum(at_rest(page, f"({POINTS})()", still=1500).values()) > 0
     # the next one starts: the stopped one, which would take minutes, has really ended
-    sheet.get_by_role("button", name="measure again").click()
-    expect(sheet).to_contain_text("measuring")
-    sheet.get_by_label("its steps per drive period").select_option("100")  # steps that blow up are reported
-    expect(sheet.locator(".naive p")).to_contain_text("nothing would have been drawn", timeout=COMPILED)
+    overlay.get_by_role("button", name="measure again").click()
+    expect(overlay).to_contain_text("measuring")
+    overlay.get_by_label("its steps per drive period").select_option("100")  # steps that blow up are reported
+    expect(overlay.locator(".naive p")).to_contain_text("nothing would have been drawn", timeout=COMPILED)
     assert naive_line(page)["naive"] == 0

@@ -27,24 +27,24 @@ def opened(page: Page) -> Locator:
     """Open the page from its tab."""
     page.get_by_role("tab", name="hard-cases").click()
     page.locator("#tabs").get_by_role("button", name="open the page").click()
-    sheet = page.locator('[data-overlay="hard-cases"]')
-    expect(sheet.get_by_role("button", name="run all (quick)")).to_be_visible()
-    return sheet
+    overlay = page.locator('[data-overlay="hard-cases"]')
+    expect(overlay.get_by_role("button", name="run all (quick)")).to_be_visible()
+    return overlay
 
 
-def card(sheet: Locator, name: str) -> Locator:
+def card(overlay: Locator, name: str) -> Locator:
     """Return the card of one case."""
-    return sheet.locator(f'[data-case="{name}"]')
+    return overlay.locator(f'[data-case="{name}"]')
 
 
 def test_a_case_runs_when_asked_and_shows_rows_and_picture(visit: Visit) -> None:
     page = visit()
-    sheet = opened(page)
-    expect(sheet.locator("article")).to_have_count(len(CASES))
-    expect(sheet.locator("article").first).to_contain_text("Naive:")
+    overlay = opened(page)
+    expect(overlay.locator("article")).to_have_count(len(CASES))
+    expect(overlay.locator("article").first).to_contain_text("Naive:")
     assert not [one for one in page.evaluate("sent") if one.startswith("hard-cases-")]  # no case was asked to run
-    expect(sheet.locator("table")).to_have_count(0)
-    one = card(sheet, QUICK)
+    expect(overlay.locator("table")).to_have_count(0)
+    one = card(overlay, QUICK)
     one.get_by_role("button", name="run").click()
     expect(one.locator("tbody tr").first).to_be_visible(timeout=COMPILED)
     assert [one for one in page.evaluate("sent") if one.startswith("hard-cases-")] == ["hard-cases-run"]
@@ -62,7 +62,7 @@ def test_a_case_runs_when_asked_and_shows_rows_and_picture(visit: Visit) -> None
     box = one.locator(".drawn canvas").first.bounding_box()
     assert box is not None and box["width"] > 300 and box["height"] > 250
     expect(one.get_by_role("button", name="run")).to_have_text("run again")
-    expect(sheet).to_contain_text(f"1 of {len(CASES)} cases run")
+    expect(overlay).to_contain_text(f"1 of {len(CASES)} cases run")
     # the result is reported in its tab and stays
     page.keyboard.press("Escape")
     expect(page.locator("#tabs")).to_contain_text(f"1 of {len(CASES)} cases run")
@@ -70,17 +70,17 @@ def test_a_case_runs_when_asked_and_shows_rows_and_picture(visit: Visit) -> None
 
 def test_run_all_is_stopped_at_once_and_all_cases_fit(visit: Visit) -> None:
     page = visit()
-    sheet = opened(page)
-    sheet.get_by_role("button", name="run all").click()
-    expect(card(sheet, LONG)).to_contain_text("computing")
-    expect(card(sheet, QUICK)).to_contain_text("waiting for its turn …")
-    sheet.get_by_role("button", name="stop", exact=True).click()
-    expect(card(sheet, QUICK)).to_contain_text("stopped")
-    expect(card(sheet, LONG)).to_contain_text("stopped")
-    expect(sheet.get_by_role("button", name="run all (quick)")).to_be_visible()
+    overlay = opened(page)
+    overlay.get_by_role("button", name="run all").click()
+    expect(card(overlay, LONG)).to_contain_text("computing")
+    expect(card(overlay, QUICK)).to_contain_text("waiting for its turn …")
+    overlay.get_by_role("button", name="stop", exact=True).click()
+    expect(card(overlay, QUICK)).to_contain_text("stopped")
+    expect(card(overlay, LONG)).to_contain_text("stopped")
+    expect(overlay.get_by_role("button", name="run all (quick)")).to_be_visible()
     for width, height in ((1280, 800), (1920, 1080), (390, 844)):
         resize(page, width, height)
-        for one in sheet.locator("article").all():
+        for one in overlay.locator("article").all():
             box = one.bounding_box()
             assert box is not None and box["x"] >= 0 and box["x"] + box["width"] <= width
             expect(one).to_have_text(re.compile("Hard:.*Naive:.*Known from:", re.DOTALL))

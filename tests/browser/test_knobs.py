@@ -118,6 +118,6 @@ def test_a_phone_has_f_at_hand_and_the_pictures_in_view_while_a_knob_moves(visit
     assert box is not None and box["height"] >= 44  # px, a finger
     page.touchscreen.tap(box["x"] + 0.8 * box["width"], box["y"] + 0.5 * box["height"])
     page.wait_for_function("(before) => window.painted.length > before", arg=before)
-    expect(second).to_be_in_viewport(ratio=0.9)  # the sheet stays
+    expect(second).to_be_in_viewport(ratio=0.9)  # the drawer stays
     page.get_by_role("button", name="Show or hide the other knobs").click()
     expect(second).not_to_be_in_viewport(ratio=0.5)

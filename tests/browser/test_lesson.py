@@ -99,13 +99,13 @@ def test_on_a_phone_one_tap_puts_the_curve_under_the_picture(visit: Visit) -> No
     page.wait_for_selector(".peak-names button", timeout=COMPILED)
     for part in ("chain", "map", "curve"):
         expect(page.locator(f"#{part}")).to_be_in_viewport(ratio=1)
-    sheet, box = page.locator("#side").bounding_box(), curve.bounding_box()
-    assert sheet and box and box["y"] + box["height"] <= sheet["y"]  # the knob f does not cover it
+    drawer, box = page.locator("#side").bounding_box(), curve.bounding_box()
+    assert drawer and box and box["y"] + box["height"] <= drawer["y"]  # the knob f does not cover it
     until(page, lambda: faults(page) == [])
     page.locator(".peak-names .peak").nth(1).tap()
     expect(page.locator("#foot #regime")).to_contain_text("1:2 resonance")
     page.get_by_role("button", name="Show or hide the other knobs").tap()
-    expect(button).to_have_attribute("aria-pressed", "false")  # the sheet has its place
+    expect(button).to_have_attribute("aria-pressed", "false")  # the drawer has its place
 
 
 def test_a_scene_is_chosen_by_its_picture_with_the_keyboard(visit: Visit) -> None:

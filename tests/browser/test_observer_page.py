@@ -36,36 +36,36 @@ def opened(page: Page) -> Locator:
     page.get_by_label("scene").first.select_option("fig11-free")
     page.get_by_role("tab", name="observer").click()
     page.get_by_role("button", name="open the page").click()
-    sheet = page.locator('[data-overlay="observer"]')
+    overlay = page.locator('[data-overlay="observer"]')
     page.wait_for_function(drawn("distance", 8), timeout=COMPILED)
-    expect(sheet.locator(".trace canvas").first).to_be_visible()
-    return sheet
+    expect(overlay.locator(".trace canvas").first).to_be_visible()
+    return overlay
 
 
 def test_it_breaks_without_foundation_synchronises_with_it_and_rests_unseen(visit: Visit) -> None:
     page = visit(reduced_motion="no-preference")
-    sheet = opened(page)
-    expect(sheet).to_contain_text("it drifts: a common shift of all its beads grows exponentially, an instability, because "
+    overlay = opened(page)
+    expect(overlay).to_contain_text("it drifts: a common shift of all its beads grows exponentially, an instability, because "
                                   "nothing pulls them back", timeout=COMPILED)
-    expect(sheet).to_contain_text("predicted × 4.418")  # docs/observers.md: one multiplier outside
+    expect(overlay).to_contain_text("predicted × 4.418")  # docs/observers.md: one multiplier outside
     page.wait_for_function(f"{LAST}?.[1] > 0.5")
     # as in the main picture, which shows the same chain
-    expect(sheet.locator(".chains")).to_contain_text("as in the main picture; displacements drawn × 10\u202f000")
-    chains = sheet.locator(".chains canvas")
+    expect(overlay.locator(".chains")).to_contain_text("as in the main picture; displacements drawn × 10\u202f000")
+    chains = overlay.locator(".chains canvas")
     assert chains.count() == 3
     # the force pushes the observer: an arrow in its colour, visible during most of a drive period
     until(page, lambda: int(chains.nth(2).evaluate(PUSH)) > 30)
-    sheet.get_by_role("button", name="0.001").click()
-    expect(sheet).to_contain_text("it synchronises with its chain", timeout=COMPILED)
+    overlay.get_by_role("button", name="0.001").click()
+    expect(overlay).to_contain_text("it synchronises with its chain", timeout=COMPILED)
     page.wait_for_function(drawn("prediction", 2))
     page.wait_for_function(f"{LAST}[1] < 0.1")
     expect(field(page, "kappa")).to_have_value("0.001")
     # a new start is visible
     page.wait_for_function(f"{LAST}[1] < 3e-3")
-    sheet.get_by_role("button", name="from rest").click()
+    overlay.get_by_role("button", name="from rest").click()
     page.wait_for_function(f"{LAST}[1] > 0.05")
     page.keyboard.press("Escape")
-    expect(sheet).to_be_hidden()
+    expect(overlay).to_be_hidden()
     # it continues in its tab, at a smaller size
     before = page.evaluate(f"{LAST}[0]")
     page.wait_for_function(f"{LAST}[0] > {before} + 2")

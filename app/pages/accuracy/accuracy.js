@@ -55,7 +55,7 @@ class AccuracyPage {
     this.methods = element("div", { className: "table", tabIndex: 0, role: "region", ariaLabel: "methods" });
     this.root = element(
       "div",
-      { className: "part sheet" },
+      { className: "part overlay" },
       pageHead("What accuracy costs", this.status, this.meter, this.stop, this.again),
       element("div", { className: "say" }, this.line, " ", this.used, this.agreement, this.machine, this.warning),
       element("div", { className: "work" }, this.host),

@@ -45,7 +45,8 @@ class AnalysisPage {
     this.command = element("code");
     const result = element("div", { className: "found" }, this.result.root, this.caption, this.words, this.command);
     const choice = element("div", { className: "choice" }, ...this.buttons);
-    this.root = element("div", { className: "part sheet" }, head, choice, this.about, this.form, this.warning, result);
+    const question = [choice, this.about, this.form];
+    this.root = element("div", { className: "part overlay" }, head, ...question, this.warning, result);
     this.controls = [];
   }
 

@@ -90,7 +90,7 @@ class BranchesPage {
       this.status,
     );
     const say = element("div", { className: "say" }, this.sentences, this.about, this.warning, this.choice.root);
-    this.root = element("div", { className: "part sheet" }, head, say, this.work);
+    this.root = element("div", { className: "part overlay" }, head, say, this.work);
     this.data = new StreamedData();
     this.figure = new BokehFigure(this.host, (bokehFigure) => this.fill(bokehFigure));
     this.everywhere = [this.figure]; // all figures with these data; the tab adds its figure

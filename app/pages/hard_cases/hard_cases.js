@@ -99,7 +99,7 @@ class HardCases {
     this.line = element("p", { className: "say", ariaLive: "polite" });
     const head = pageHead("Hard cases", this.meter, this.stop, this.all);
     const list = element("div", { className: "cases" }, ...[...this.cards.values()].map(({ root }) => root));
-    this.root = element("div", { className: "part sheet" }, head, this.line, list);
+    this.root = element("div", { className: "part overlay" }, head, this.line, list);
   }
 
   show() {

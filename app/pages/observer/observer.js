@@ -66,7 +66,7 @@ class ObserverPage {
     this.figure = new BokehFigure(host, (bokehFigure) => fillDistance(bokehFigure, this.known));
     this.root = element(
       "div",
-      { className: "part sheet" },
+      { className: "part overlay" },
       pageHead(
         "Observer",
         this.kappa.root,

@@ -41,7 +41,7 @@ class PaperPage {
     this.caption = element("p", { className: "caption", ariaLive: "polite" });
     this.rows = element("div", { className: "rows" });
     const result = element("div", { className: "found" }, this.result.root, this.caption, this.rows);
-    this.root = element("div", { className: "part sheet" }, head, choice, this.warning, result);
+    this.root = element("div", { className: "part overlay" }, head, choice, this.warning, result);
     this.leave = () => model.state.running && stop();
   }
 

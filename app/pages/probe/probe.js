@@ -20,7 +20,7 @@ class ProbePage {
     this.line = paragraph("", "say");
     this.figures = new Map();
     const panels = Object.entries(TITLES).map(([name, words]) => this.panel(name, words));
-    this.root = element("div", { className: "part sheet" }, this.title, this.line, ...panels);
+    this.root = element("div", { className: "part overlay" }, this.title, this.line, ...panels);
   }
 
   steps() {

@@ -34,7 +34,7 @@ class StabilityPage {
     this.evidence = element("div", { className: "table" });
     this.root = element(
       "div",
-      { className: "part sheet" },
+      { className: "part overlay" },
       pageHead("Stability", this.status),
       element("div", { className: "say" }, this.searched, this.sentence),
       this.plane.root,

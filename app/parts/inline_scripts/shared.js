@@ -10,7 +10,7 @@ window.granchain = (() => {
   // event "page:NAME" for each page, whose detail is what the page has published.
   const EVENTS = new Set([
     "theme", // the theme has changed: its name
-    "place", // another tab and page are to be shown: { tab, page }, empty for the first tab and no page
+    "place", // another tab and overlay are to be shown: { tab, page } as in the share link, empty for the first and none
     "tab", // a tab was opened: its name
     "overlay", // an overlay was opened or closed: its name or null
     "visible", // the set of visible pages has changed: their names
