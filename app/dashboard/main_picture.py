@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import threading
 from collections import deque
 from collections.abc import Callable, Iterator
@@ -20,15 +19,9 @@ from ..serve.monitoring.picture_stages import PictureStages
 from ..session.host import PageHost
 from ..session.live import LiveRun, LiveStep
 from .layout import Views
+from .picture_requests import PictureRequest, PictureRequests
 from .picture_work import PictureWork, SettledRequest
 from .show import show_live, show_regime, show_settled
-
-
-class _PictureRequest(NamedTuple):
-    """A request for a picture: its number, and the stages of its first picture, which begin with the request."""
-
-    number: int
-    stages: PictureStages
 
 
 class _Answer(NamedTuple):
@@ -38,7 +31,7 @@ class _Answer(NamedTuple):
     """
 
     picture: Settled | LiveStep
-    request: _PictureRequest | None
+    request: PictureRequest | None
     stages: PictureStages | None
 
 
@@ -69,16 +62,7 @@ class MainPicture:
         self._accepted: Settled | LiveStep | None = None
         #: The settled picture that was sent last; None while a live run is shown.
         self._sent: Settled | None = None
-        #: The last request for a picture; None after a failure.
-        self._request: _PictureRequest | None = None
-        #: The stages of the last request until its computation is submitted, and of a picture until it is sent.
-        self._pending_stages: PictureStages | None = None
-        self._unsent_stages: PictureStages | None = None
-        #: The stages of pictures in flight, by their numbers.
-        self._in_flight: dict[int, PictureStages] = {}
-        self._numbers = itertools.count(1)
-        #: The number of the last request whose picture has arrived.
-        self._answered = 0
+        self._requests = PictureRequests()
         #: Frames of the last pictures. The cache of `prepared_frames` has only weak references, so without these the
         #: event loop would prepare the frames again.
         self._frames: deque[Frames] = deque(maxlen=2)
@@ -117,8 +101,7 @@ class MainPicture:
 
     def compute(self, initial_state: State | None = None) -> None:
         """Compute a picture for the present knobs, from `initial_state` or from the visitor's chosen start."""
-        self._pending_stages = PictureStages()
-        self._request = _PictureRequest(next(self._numbers), self._pending_stages)
+        self._requests.begin()
         session, scene = self._session, self._session.scene
         if session.mode == "live":
             if self.live is not None:
@@ -139,10 +122,7 @@ class MainPicture:
 
     def _submit(self, work: _Work) -> None:
         """Compute `work` next; its pictures answer the last request."""
-        stages, self._pending_stages = self._pending_stages, None
-        if stages is not None:
-            stages.end("pace")  # live mode requests no step while two pictures are in flight
-        self._jobs.submit(partial(self._answers, work, self._request, stages))
+        self._jobs.submit(partial(self._answers, work, self._requests.last, self._requests.submitted()))
 
     def shown_run(self) -> Run | None:
         """Return the motion on the screen as a run, if there is one."""
@@ -159,7 +139,7 @@ class MainPicture:
     # In a worker thread
 
     @staticmethod
-    def _answers(work: _Work, request: _PictureRequest | None, stages: PictureStages | None,
+    def _answers(work: _Work, request: PictureRequest | None, stages: PictureStages | None,
                  stop: TurnFlag) -> Iterator[_Answer]:
         """Yield the pictures of `work`, each with the request that it answers, the first with its stages."""
         if stages is not None:
@@ -194,16 +174,13 @@ class MainPicture:
         if newest is not None:
             self._accept(*newest)
 
-    def _accept(self, result: Settled | LiveStep, request: _PictureRequest | None = None,
+    def _accept(self, result: Settled | LiveStep, request: PictureRequest | None = None,
                 stages: PictureStages | None = None) -> None:
         """Offer a picture to the browser, if it belongs to the present mode and scene."""
         live = isinstance(result, LiveStep)
         if live != (self._session.mode == "live") or result.run.scene.name != self._session.scene.name:
             return
-        if stages is not None:
-            stages.end("loop")
-            self._unsent_stages = stages
-        self._count_answer(request)
+        self._say_if_busy(self._requests.accepted(request, stages))
         if isinstance(result, Settled):
             self._session.settled = result
             self._picture_ready(result)
@@ -215,25 +192,19 @@ class MainPicture:
             self.next_live_step()  # so that two are in flight from the first step on, even before a knob is moved
 
     def _failed(self, error: Exception) -> None:
-        """Report a failure; after it, live steps answer no request."""
-        self._request = self._pending_stages = None
+        """Report a failure."""
+        self._requests.failed()
         self._host.show_failure(error)
 
-    def _count_answer(self, request: _PictureRequest | None) -> None:
-        """Count how long the first picture of a request took, and say so if the server is busy with many sessions."""
-        if request is None or request.number <= self._answered:
-            return
-        self._answered, seconds = request.number, request.stages.elapsed
-        METRICS.answered(seconds)
-        words = f"The server is busy: this picture took {seconds:.1f} s." if METRICS.busy else ""
-        self._views.status_line.update_state(busy=words)
+    def _say_if_busy(self, seconds: float | None) -> None:
+        """Say that a request took so long because the server is busy with many sessions; None for no request."""
+        if seconds is not None:
+            words = f"The server is busy: this picture took {seconds:.1f} s." if METRICS.busy else ""
+            self._views.status_line.update_state(busy=words)
 
     def _send(self, number: int, result: Settled | LiveStep) -> None:
         METRICS.count("pictures")
-        stages, self._unsent_stages = self._unsent_stages, None
-        if stages is not None:
-            stages.end("pace")
-            self._in_flight[number] = stages
+        self._requests.sent(number)
         if isinstance(result, Settled):
             self._sent = result
             show_settled(self._views, number, result)
@@ -248,12 +219,9 @@ class MainPicture:
 
     def painted(self, number: object, browser_ms: object = None) -> None:
         """Note that picture `number` is on the screen; the browser's script took `browser_ms` [ms] to draw it."""
-        if not isinstance(number, int):
-            return
-        if number in self._in_flight:
-            self._in_flight[number].painted(browser_ms)
-            self._in_flight = {later: stages for later, stages in self._in_flight.items() if later > number}
-        self._pacer.painted(number)
+        if isinstance(number, int):
+            self._requests.painted(number, browser_ms)
+            self._pacer.painted(number)
 
     def redraw(self) -> None:
         """Send the picture on the screen again, drawn differently; a running chain sends its next one anyway."""
@@ -265,7 +233,7 @@ class MainPicture:
 
     def restart(self) -> None:
         """Stop waiting for acknowledgements of pictures in flight, because the page is visible again."""
-        self._in_flight.clear()
+        self._requests.forget_in_flight()
         self._pacer.restart()
 
     def next_live_step(self) -> None:
