@@ -15,7 +15,7 @@ PAGE = ROOT / "docs" / "add-a-metric.md"
 def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A copy of the repository with the page's edits made."""
     copy = tmp_path_factory.mktemp("metric") / "tree"
-    for part in ("granchain", "granchain_start", "tools", "docs", "tests/serve/monitoring", "tests/pages/test_measurement.py",
+    for part in ("granchain", "granchain_start", "tools", "docs", "tests/serve/monitoring", "tests/pages/data_tab.py",
                  "tests/headless_dashboard.py", "tests/waiting.py", "tests/host.py"):
         copied(part, copy)
     return edited_copy(PAGE, copy)
@@ -32,7 +32,7 @@ import sys
 sys.path[:0] = ["tests", "tests/pages"]
 from headless_dashboard import Dashboard
 from app.serve.monitoring.metrics import METRICS
-from test_measurement import FILE, sent
+from data_tab import FILE, sent
 dashboard = Dashboard()
 for _ in range(2):
     dashboard.received(sent(FILE))

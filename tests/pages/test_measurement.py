@@ -1,55 +1,28 @@
-"""The data tab, without a browser: files, questions, answers, comparisons and refusals."""
+"""The data tab, without a browser: files, questions, answers, measured curves and refusals."""
 
 from __future__ import annotations
 
-import base64
 import gc
-import re
-import threading
-from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 import h5py
 import numpy as np
 import pytest
+from data_tab import FILE, after, data_page, sent, show
 from headless_dashboard import Dashboard
 
-from app.dashboard.show import show_settled
-from app.frames import samples_for
 from app.pages.data import page as module
 from app.pages.data.page import SAMPLES, DataPage
 from app.plots.measured import measured_columns
-from app.serve.computing.worker_pools import LONG
 from app.serve.http.limits import MOST_UPLOADED_POINTS
-from granchain_core import BadInput, CurvePoint, Scene, scene, settle, settling
+from granchain_core import BadInput, CurvePoint, scene
 from granchain_core.experiment import Measured, Series, answers_of, compared, read_data
 from granchain_core.experiment.formats import FORMATS
 from granchain_core.hdf5 import VERSIONS, seal
 from granchain_core.results.forces import ForceErrors
 from granchain_core.results.regime import Regime
 from granchain_core.scene.state import rest
-from granchain_core.virtual_experiment import Sensors, virtual_series_csv
-
-FILE = b"frequency_Hz,force_N\n40,5.5\n60,12.1\n"
-
-
-def data_page(dashboard: Dashboard) -> DataPage:
-    """Return the page of the data tab."""
-    return next(page for page in dashboard.pages if isinstance(page, DataPage))
-
-
-def sent(content: bytes) -> dict[str, Any]:
-    """Return a message with a file."""
-    return {"do": "measurement", "name": "mine.csv", "content": base64.b64encode(content).decode()}
-
-
-def after(dashboard: Dashboard, message: dict[str, Any], name: str) -> Any:
-    """Return `name` in the tab's state after the message is processed, or the sentence if the message is refused."""
-    dashboard.received(message)
-    dashboard.run_callbacks_until(lambda: bool(dashboard.session.sentence or dashboard.views.tabs.state.get(name)))
-    return dashboard.views.tabs.state.get(name) or dashboard.session.sentence
 
 
 def test_every_byte_of_a_file_arrives(dashboard: Dashboard) -> None:
@@ -194,133 +167,6 @@ def test_the_sample_file_is_read_and_says_what_it_is(dashboard: Dashboard) -> No
     assert told[0]["type"] == "sample" and told[0]["text"].startswith("# Not measured")
 
 
-def show(dashboard: Dashboard) -> None:
-    """Show a settled picture as the worker that computes it does."""
-    chain = dashboard.session.scene
-    dashboard.session.settled = settle(chain, samples=samples_for(chain))
-    show_settled(dashboard.views, 1, dashboard.session.settled)
-
-
-def with_series(dashboard: Dashboard, chain: Scene) -> str:
-    """Return the tab's sentence about a series of `chain` over the settled picture at 340 Hz."""
-    text = virtual_series_csv(chain, 12, Sensors(rate=256.0 * chain.f, noise=0.005)).encode()
-    show(dashboard)
-    dashboard.received({"do": "measurement", "name": "mine.csv", "content": base64.b64encode(text).decode()})
-    dashboard.run_callbacks_until(lambda: re.search("series|rms", str(dashboard.views.tabs.state.get("misfit"))) is not None)
-    return str(dashboard.views.tabs.state["misfit"]["sentence"])
-
-
-def test_a_series_goes_over_the_force_trains_and_moves_with_the_picture(dashboard: Dashboard) -> None:
-    """For the same scene, the differences are the noise; the lines are drawn over both trains and removed again."""
-    sentence = with_series(dashboard, scene("sec2"))
-    left = [float(number) for number in re.findall(r"([0-9.e-]+) N for the", sentence)]
-    assert len(left) == 2 and all(0.003 < misfit < 0.02 for misfit in left)  # the noise is 5 mN; the jumps are smoothed alike
-    trains = dashboard.views.trains
-    lines = [[drawn for drawn in plot.renderers if drawn.level == "overlay"] for plot in (trains.left, trains.right)]
-    assert [len(overlays) for overlays in lines] == [1, 1]
-    assert all(len(overlays[0].data_source.data["time"]) > 1000 for overlays in lines)
-    settled = dashboard.session.settled
-    assert settled is not None
-    preview = replace(settled, final=False)  # for knobs that have moved
-    data_page(dashboard).picture_ready(preview)
-    assert dashboard.views.tabs.state["misfit"] is None
-    data_page(dashboard).picture_ready(settled)
-    dashboard.run_callbacks_until(lambda: "rms" in str(dashboard.views.tabs.state["misfit"]))
-    dashboard.received({"do": "measurement-remove"})
-    assert all(len(overlays[0].data_source.data["time"]) == 0 for overlays in lines)
-
-
-def test_the_model_passes_the_low_pass_of_the_sensors(dashboard: Dashboard) -> None:
-    """A record of the same scene by 2 kHz sensors differs only by noise once their bandwidth is taken into account."""
-    chain = scene("sec2")
-
-    def differences(message: dict[str, Any]) -> list[float]:
-        dashboard.views.tabs.update_state(misfit=None)
-        dashboard.received(message)
-        dashboard.run_callbacks_until(lambda: "rms" in str(dashboard.views.tabs.state.get("misfit")))
-        return [float(number) for number in re.findall(r"([0-9.e-]+) N for the", dashboard.views.tabs.state["misfit"]["sentence"])]
-
-    show(dashboard)
-    record = virtual_series_csv(chain, 12, Sensors(rate=256.0 * chain.f, noise=0.003, bandwidth=2000.0)).encode()
-    without = differences(sent(record))
-    given = differences({"do": "measurement-bandwidth", "value": "2000"})
-    assert min(without) > 0.015 and all(0.002 < misfit < 0.004 for misfit in given)
-    assert "a low-pass of 2000 Hz" in dashboard.views.tabs.state["misfit"]["sentence"]
-    assert differences({"do": "measurement-bandwidth", "value": ""}) == without
-    for wrong in ("2 kHz", "0.5", None):
-        dashboard.received({"do": "measurement-bandwidth", "value": wrong})
-        assert "bandwidth" in dashboard.session.sentence
-
-
-def test_a_measured_displacement_goes_over_the_drive(dashboard: Dashboard) -> None:
-    """Its zero is arbitrary; aligned by the forces, it agrees with the drive of the picture."""
-    chain = scene("sec2")
-    rows = virtual_series_csv(chain, 12, Sensors(rate=256.0 * chain.f)).splitlines()
-    table = np.array([[float(number) for number in row.split(",")] for row in rows[3:]])
-    # integral of the velocity in the second column: v = A0 ω cos(ωt + φ), u = A0 sin(ωt + φ) + offset
-    omega = 2.0 * np.pi * chain.f
-    phase = np.angle(np.mean((table[:, 1]) * np.exp(-1j * omega * table[:, 0])))
-    swing = 3e-6 + chain.A0 * np.sin(omega * table[:, 0] + phase)
-    text = "time (s),displacement (m),output force (N)\n" + "".join(
-        f"{t:.9g},{u:.9g},{force:.9g}\n" for t, u, force in zip(table[:, 0], swing, table[:, 3], strict=True))
-    show(dashboard)
-    dashboard.received(sent(text.encode()))
-    dashboard.run_callbacks_until(lambda: "rms" in str(dashboard.views.tabs.state.get("misfit")))
-    trains = dashboard.views.trains
-    line, = (drawn for drawn in trains.left.renderers if drawn.level == "overlay")
-    drawn = {name: np.asarray(values, dtype=float) for name, values in line.data_source.data.items()}
-    factor = chain.A0 / 500.0  # the axis is in nm
-    model = np.interp(drawn["time"], np.asarray(trains._source.data["time"]), np.asarray(trains._source.data["drive"]))
-    assert line.x_range_name == "drive" and len(drawn["time"]) > 500
-    # the model's samples are interpolated linearly
-    np.testing.assert_allclose(drawn["force"], model, atol=0.02 * chain.A0 / factor)
-
-
-def test_a_virtual_experiment_is_recorded_of_the_present_scene_and_says_so(dashboard: Dashboard) -> None:
-    show(dashboard)
-    assert "virtual experiment, nothing measured" in after(dashboard, {"do": "measurement-virtual"}, "understood")
-    dashboard.run_callbacks_until(lambda: "rms" in str(dashboard.views.tabs.state.get("misfit")))
-
-
-def test_a_virtual_experiment_holds_up_nobodys_file(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
-    """It settles a chain in a queue where each visitor has a share; two threads read and write everybody's files."""
-    threads: dict[str, str] = {}
-
-    def noting(of: str, original: Any, *words: Any, **named: Any) -> Any:
-        threads[of] = threading.current_thread().name.split()[0]
-        return original(*words, **named)
-
-    for name in ("settling", "read_data"):
-        monkeypatch.setattr(module, name, partial(noting, name, getattr(module, name)))
-    show(dashboard)
-    assert "virtual experiment" in after(dashboard, {"do": "measurement-virtual"}, "understood")
-    assert threads == {"settling": "long", "read_data": "files"}
-
-
-def test_a_virtual_experiment_that_does_not_settle_is_given_up(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(module, "WHOLE_PICTURE", -1.0)
-    show(dashboard)
-    assert after(dashboard, {"do": "measurement-virtual"}, "understood").endswith("so the virtual experiment was not made.")
-
-
-def test_a_file_replaces_the_virtual_experiment_under_way(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
-    begun, read = threading.Event(), threading.Event()
-
-    def slow(*words: Any, **named: Any) -> Any:
-        begun.set()
-        assert read.wait(20)
-        return settling(*words, **named)
-
-    monkeypatch.setattr(module, "settling", slow)
-    dashboard.received({"do": "measurement-virtual"})
-    assert begun.wait(20)
-    assert after(dashboard, sent(FILE), "understood").startswith("mine.csv: ")
-    read.set()
-    dashboard.run_callbacks_until(lambda: not LONG.busy_threads)
-    dashboard.run_callbacks_until(lambda: not dashboard.callbacks)
-    assert dashboard.views.tabs.state["understood"].startswith("mine.csv: ")
-
-
 def test_a_file_stays_in_memory_only_while_a_question_about_it_is_open(dashboard: Dashboard) -> None:
     def kept() -> bool:
         # by type: any weak proxy of a deleted object raises `ReferenceError` when asked for its class
@@ -354,8 +200,3 @@ def test_a_file_that_is_refused_leaves_the_one_that_is_asked_about(dashboard: Da
     dashboard.received({"do": "measurement-answer", "columns": [["frequency", 1, "Hz"], ["force", 2, "mN"]], "decimal": "comma"})
     dashboard.run_callbacks_until(lambda: bool(dashboard.views.tabs.state.get("understood")))
     assert dashboard.views.tabs.state["understood"].startswith("mine.csv: ")
-
-
-def test_a_series_without_a_force_is_refused(dashboard: Dashboard) -> None:
-    rows = "".join(f"{1e-3 * i},{0.1 * i}\n" for i in range(12)).encode()
-    assert "without a force" in after(dashboard, sent(b"time_s,velocity_m_s\n" + rows), "misfit")
