@@ -67,6 +67,8 @@ ATTRIBUTES = (
     FormerName("LyapunovSpectrum.liouville", "LyapunovSpectrum.liouville_error"),
     FormerName("Regime.contraction", "Regime.assumed_contraction"),
     FormerName("Regime.decay", "Regime.observed_contraction"),
+    FormerName("Regime.followed", "Regime.is_approach"),
+    FormerName("Regime.followed_by", "Regime.orbit_found_by", values={"settling": None, "not stated": None}),
     FormerName("Fit.freedom", "Fit.degrees_of_freedom"),
     FormerName("Pulse.speed", "Pulse.speed_beads_s"),
     FormerName("Pulse.speed_in_metres", "Pulse.speed_m_s"),

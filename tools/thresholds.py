@@ -1,8 +1,8 @@
 """The tables of thresholds in docs/regimes.md and other pages, written by `python -m tools.update`.
 
 A threshold is a constant in `granchain_core` whose `#:` comment begins with a mark. A mark such as `[period n]` names
-the regimes that it decides. `[rotation]` puts it into the table of docs/rotation-number.md, `[response]` into that of
-docs/orbits.md, `[fit]` into that of docs/fit.md and `[safety factor]` into that of docs/accuracy.md. `[step size]`,
+the regimes to which it belongs. `[rotation]` puts it into the table of docs/rotation-number.md, `[response]` into that
+of docs/orbits.md, `[fit]` into that of docs/fit.md and `[safety factor]` into that of docs/accuracy.md. `[step size]`,
 `[branch]` and `[attractors]` put it into the tables of docs/constants.md.
 
 The comment's first sentence becomes its row; the rest, the reason, stays in the code. A number next to thresholds that
@@ -24,7 +24,7 @@ _MARKED = re.compile(r"^#: \[([a-z, -]+)\] ((?:.*\n)(?:#: .*\n)*)(\w+)\b.*=", re
 #: The first two lines of a table.
 _HEAD = ("| what | threshold | constant and file |", "|---|---|---|")
 _REGIMES = ("period n", "followed", "chaotic", "quasi-periodic", "unsettled", "all")
-#: Marks that headings spell out: `followed` is the name of the regime's key in JSON and files.
+#: Marks that the table spells out: `followed` is the name of the regime's key in JSON and files.
 _IN_WORDS = {"followed": "an orbit that the motion still approaches", "all": "every regime"}
 
 
@@ -44,7 +44,7 @@ class Marked:
 
     @property
     def cells(self) -> str:
-        """Its row without the column of regimes."""
+        """Its cells in every table."""
         return f"{self.what} | {printed(self.value)} | `{self.name}` in `{self.file}` |"
 
 
@@ -69,46 +69,35 @@ def printed(value: float | tuple[float, ...]) -> str:
 
 
 #: The beginning of the text of a `period n` threshold that applies to only one of the two ways to a steady state, and
-#: the heading of the table of such thresholds.
-_WAYS = {"": "period n", "A batch: ": "period n, in a batch", "A chain alone: ": "period n, of a chain settled alone"}
+#: the regime in the table.
+_WAYS = {"A batch: ": "period n, in a batch", "A chain alone: ": "period n, settled alone"}
+#: The constants that decide the label of a motion, in the order of the definitions: the first rows of the table.
+DECIDING = ("SETTLED_DISTANCE", "LONGEST_LOCKED_PERIOD", "STANDARD_ERRORS", "_BOUNDED_GROWTH", "CLEAR_GROWTH",
+            "_LARGEST_NEUTRAL_EXPONENT", "_RETURN_FACTOR", "_SHRINK_FACTOR", "_EXPONENT_DIFFERENCE")
 
 
-def tables_of_regimes() -> str:
-    """Return the tables of docs/regimes.md, one for each set of regimes, in order, below a heading."""
-    parts: dict[str, list[str]] = {}
-    rows = sorted((one for one in marked_constants() if one.mark.split(", ")[0] in _REGIMES),
-                  key=lambda one: [_REGIMES.index(regime) for regime in one.mark.split(", ")])
-    period_n = [one for one in rows if one.mark == "period n"]
-    for begin, heading in _WAYS.items():
-        parts[heading] = [_row(one, begin) for one in period_n if _way(one) == begin]
-    for one in rows:
-        if one.mark != "period n":
-            heading = ", ".join(_IN_WORDS.get(mark, mark) for mark in one.mark.split(", "))
-            parts.setdefault(heading, []).append(_row(one))
-    return "\n\n".join("\n".join([f"### Thresholds: {heading}", "", *_HEAD, *cells]) for heading, cells in parts.items())
+def table_of_regimes() -> str:
+    """Return the table of docs/regimes.md: the thresholds that decide a label, then the others, regime by regime."""
+    rows = [one for one in marked_constants() if one.mark.split(", ")[0] in _REGIMES]
+    ways = ["", *_WAYS]
+    deciding = sorted((one for one in rows if one.name in DECIDING), key=lambda one: DECIDING.index(one.name))
+    others = sorted((one for one in rows if one.name not in DECIDING),
+                    key=lambda one: ([_REGIMES.index(mark) for mark in one.mark.split(", ")], ways.index(_way(one))))
+    return "\n".join(["| regime | decides | what | threshold | constant and file |", "|---|---|---|---|---|",
+                      *(_row(one, "the label") for one in deciding), *(_row(one, "evidence") for one in others)])
 
 
 def _way(one: Marked) -> str:
-    """Return the beginning of a threshold's text, as a key of `_WAYS`."""
-    return next((begin for begin in _WAYS if begin and one.what.startswith(begin)), "")
+    """Return the beginning of a threshold's text if it is a key of `_WAYS`."""
+    return next((begin for begin in _WAYS if one.mark == "period n" and one.what.startswith(begin)), "")
 
 
-def _row(one: Marked, begin: str = "") -> str:
-    """Return a row without the words that are in the heading above it."""
+def _row(one: Marked, decides: str) -> str:
+    """Return a row, without the words at the beginning of its text that are in its first column."""
+    begin = _way(one)
+    regimes = _WAYS[begin] if begin else ", ".join(_IN_WORDS.get(mark, mark) for mark in one.mark.split(", "))
     cells = one.cells.removeprefix(begin)
-    return f"| {cells[0].upper()}{cells[1:]}"
-
-
-#: The constants that decide the regime of a motion, in the order of the definitions.
-_DECIDING = ("SETTLED_DISTANCE", "STANDARD_ERRORS", "_BOUNDED_GROWTH", "_LARGEST_NEUTRAL_EXPONENT", "_RETURN_FACTOR",
-             "_SHRINK_FACTOR", "CLEAR_GROWTH", "_EXPONENT_DIFFERENCE", "LONGEST_LOCKED_PERIOD")
-
-
-def table_of_deciding() -> str:
-    """Return the short table of docs/regimes.md: the thresholds that decide the regime of a motion."""
-    rows = {one.name: one for one in marked_constants()}
-    return "\n".join(["| regime | what | threshold | constant and file |", "|---|---|---|---|",
-                      *(f"| {rows[name].mark} | {rows[name].cells}" for name in _DECIDING)])
+    return f"| {regimes} | {decides} | {cells[0].upper()}{cells[1:]}"
 
 
 def table_of_responses() -> str:

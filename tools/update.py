@@ -53,21 +53,19 @@ from tools.special_kinds import table_of_kinds, table_of_terms
 from tools.thresholds import (
     table_of_attractors,
     table_of_branches,
-    table_of_deciding,
     table_of_fits,
+    table_of_regimes,
     table_of_responses,
     table_of_rotation_numbers,
     table_of_safety_factors,
     table_of_step_sizes,
-    tables_of_regimes,
 )
 
 _ROOT = Path(__file__).resolve().parents[1]
 _COMMAND = "python -m tools.update"
 #: Every table that follows from the code: its page, its name in the page's marks, and the function that writes it.
 _TABLES = (
-    ("docs/regimes.md", "deciding thresholds", table_of_deciding),
-    ("docs/regimes.md", "thresholds", tables_of_regimes),
+    ("docs/regimes.md", "thresholds", table_of_regimes),
     ("docs/rotation-number.md", "rotation thresholds", table_of_rotation_numbers),
     ("docs/orbits.md", "thresholds", table_of_responses),
     ("docs/branches.md", "kinds of special points", table_of_kinds),

@@ -1,7 +1,7 @@
 """Weighted Birkhoff averages along an orbit of a map.
 
-Equation   ⟨h⟩ = Σ_p ŵ_p h_p,  ŵ_p = w(t_p) / Σ w,  t_p = (p + 1) / (P + 1),  w(t) = exp(−1 / (t (1 − t)))
-           the Fourier coefficient at the frequency ν per period: ⟨x e^{−2πiνp}⟩
+Equation   ⟨h⟩ = Σ_k ŵ_k h_k,  ŵ_k = w(t_k) / Σ w,  t_k = (k + 1) / (P + 1),  w(t) = exp(−1 / (t (1 − t)))
+           the Fourier coefficient at the frequency ν per period: ⟨x e^{−2πiνk}⟩
 Source     Das, Saiki, Sander & Yorke 2016, 2017; the weight is their bump function of order 1. The frequency from the
            phases of two halves is the main idea of Laskar 1993
 Note       Along a smooth torus with a Diophantine rotation, the average converges faster than any power of 1/P, whereas
@@ -34,7 +34,7 @@ def average(values: np.ndarray) -> np.ndarray:
 
 
 def turns(frequency: float, count: int) -> np.ndarray:
-    """e^{−2πi ν p} (count,) for the frequency ν per period."""
+    """e^{−2πi ν k} (count,) for the frequency ν per period."""
     return np.asarray(np.exp(-2j * np.pi * frequency * np.arange(count)))
 
 

@@ -1,6 +1,6 @@
 """All Lyapunov exponents of the stroboscopic map, and the Kaplan–Yorke dimension of its attractor.
 
-Equation   Q_{p+1} R_{p+1} = M_p Q_p with M_p the derivative of the map over period p
+Equation   Q_{k+1} R_{k+1} = M_k Q_k with M_k the derivative of the map over period k
            λ_i = ⟨ln |R_ii|⟩ per drive period
            D_KY = j + (λ_1 + … + λ_j) / |λ_{j+1}| with the largest j for which the sum is not negative
 Source     Benettin et al. 1980; Kaplan & Yorke 1979; standard errors from means of blocks
@@ -250,15 +250,15 @@ def _growth(stroboscopic_map: StroboscopicMap, x: np.ndarray, periods: int,
     """
     directions, growth, traces = np.eye(len(x)), np.zeros((periods, len(x))), np.zeros(periods)
     rounding = np.zeros(len(x), dtype=bool)
-    for p in range(periods):
+    for k in range(periods):
         flow = stroboscopic_map(x, directions=directions)
         directions, triangle = np.linalg.qr(flow.derivative)
         stretching = np.abs(np.diag(triangle))
         rounding |= stretching <= _ROUNDING * stretching.max()
-        growth[p] = np.log(np.maximum(stretching, np.finfo(float).tiny))
-        x, traces[p] = flow.end, flow.log_determinant
+        growth[k] = np.log(np.maximum(stretching, np.finfo(float).tiny))
+        x, traces[k] = flow.end, flow.log_determinant
         if progress is not None:
-            progress((p + 1) / periods)
+            progress((k + 1) / periods)
     return growth, traces, int(np.argmax(rounding)) if rounding.any() else len(x)
 
 

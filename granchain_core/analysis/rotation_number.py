@@ -1,9 +1,9 @@
 """The rotation number of a quasi-periodic motion: its second frequency over the drive frequency.
 
-Definition  ρ = lim (θ_p − θ_0) / p: on a closed curve that the stroboscopic map P maps to itself, the mean advance of
-            the angle θ, in turns, per drive period p. The second frequency is f₂ = ρ f
-Convention  ρ is known up to its sign and a whole number, and is given in [0, ½]. On q closed curves that are visited in
-            turn, it is the rotation number of P^q, and f₂ = ρ f / q, up to its sign and multiples of f / q
+Definition  ρ = lim (ψ_k − ψ_0) / k: on a closed curve that the stroboscopic map Φ maps to itself, the mean advance of
+            the angle ψ, in turns, per drive period k. The second frequency is f₂ = ρ f
+Convention  ρ is known up to its sign and a whole number, and is given in [0, ½]. On n closed curves that are visited in
+            turn, it is the rotation number of Φⁿ, and f₂ = ρ f / n, up to its sign and multiples of f / n
 Source      winding.py in this folder, which computes it from strobes
 """
 
@@ -123,12 +123,12 @@ class RotationNumber(Labelled):
 
     @property
     def nearest_fraction(self) -> Fraction | None:
-        """The fraction p/q, q at most 60, that is nearest to ρ; None where there is no value."""
+        """The fraction j/q, q at most 60, that is nearest to ρ; None where there is no value."""
         return None if self.value is None else Fraction(self.value).limit_denominator(LARGEST_DENOMINATOR)
 
     @property
     def fraction_distance(self) -> float | None:
-        """|ρ − p/q| for the nearest fraction, to be compared with `error`; None where there is no value."""
+        """|ρ − j/q| for the nearest fraction, to be compared with `error`; None where there is no value."""
         nearest = self.nearest_fraction
         return None if self.value is None or nearest is None else abs(self.value - float(nearest))
 

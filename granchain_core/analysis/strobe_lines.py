@@ -1,7 +1,7 @@
 """The spectral lines of stroboscopic states: on how many curves the states lie, and which frequency is basic.
 
 The states of a quasi-periodic motion with two frequencies have lines at m ρ + j modulo 1, in units of one per drive
-period. If they lie on q closed curves that are visited in turn, there are also lines at j/q.
+period. If they lie on n closed curves that are visited in turn, there are also lines at j/n.
 """
 
 from __future__ import annotations

@@ -1,11 +1,11 @@
 """The rotation number of stroboscopic states, from the angle with which they go round a closed curve.
 
-Equation   ρ = ⟨θ_{p+1} − θ_p⟩ with θ = arg(z) / 2π, z = a* · (x_p, x_{p+1}) and ⟨⟩ the weighted Birkhoff average
-           a = C⁺ X: C is the covariance of (x_p, x_{p+1}), X its Fourier coefficient at one line of the spectrum
+Equation   ρ = ⟨ψ_{k+1} − ψ_k⟩ with ψ = arg(z) / 2π, z_k = X̂* C⁺ X_k and ⟨⟩ the weighted Birkhoff average. X_k is the
+           pair (x_k, x_{k+1}), C its covariance and X̂ its Fourier coefficient at one line of the spectrum
 Source     Das, Saiki, Sander & Yorke 2016, 2017; Sander & Meiss 2020 for the average as a test of chaos
-Note       C⁺ X is the projection in which this line is strongest relative to everything else (a matched filter), so
+Note       C⁺ X̂ is the projection in which this line is strongest relative to everything else (a matched filter), so
            that z goes round zero once in each turn of the line, even if the curve is folded in every plane of two
-           coordinates. The angle is well defined if z, turned back by ν p, stays in one half plane. For a line at mρ,
+           coordinates. The angle is well defined if z, turned back by ν k, stays in one half plane. For a line at mρ,
            the angle advances by mρ per period.
 """
 
@@ -30,7 +30,7 @@ _PROJECTED_LINES = 3
 #: [rotation] Largest denominator of a fraction with which a rotation number is compared: the longest period that a
 #: regime may have.
 LARGEST_DENOMINATOR = 60
-#: [rotation] Minimum number of passes, P |qρ − p|, of the states near a fraction from one of the places of a locked
+#: [rotation] Minimum number of passes, P |qρ − j|, of the states near a fraction from one of the places of a locked
 #: motion to the next.
 _FEWEST_PASSES = 4.0
 #: [rotation] Minimum number of passes near a fraction whose denominator is at most `_SMALL`. It is two widths of a line
@@ -180,7 +180,7 @@ def _at_length(steps: np.ndarray, multiple: int, near: float) -> tuple[float, fl
 def _passes(rotation: float, states: int) -> Fraction | None:
     """The fraction near which `states` states do not fill a curve; None if there is no such fraction.
 
-    Near p/q, the states stay close to q places, and in q periods they move by q|ρ − p/q| of the distance between these.
+    Near j/q, the states stay close to q places, and in q periods they move by q|ρ − j/q| of the distance between these.
     """
     for q in range(1, LARGEST_DENOMINATOR + 1):
         fewest = _FEWEST_PASSES_IF_SMALL if q <= _SMALL else _FEWEST_PASSES

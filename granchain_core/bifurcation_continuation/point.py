@@ -110,7 +110,7 @@ class KnobBranch:
 
 
 def _bordered(derivative: np.ndarray, slope: np.ndarray, border: np.ndarray) -> np.ndarray:
-    """The matrix [[P_x − 1, P_p], [border]] (2N + 1, 2N + 1)."""
+    """The matrix [[Φ_x − 1, Φ_ζ], [border]] (2N + 1, 2N + 1)."""
     return np.block([[derivative - np.eye(len(slope)), slope[:, None]], [border[None, :]]])
 
 

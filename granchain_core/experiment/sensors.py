@@ -2,7 +2,7 @@
 
 Equation   F_in = F_0 + m_tip ü_0: the input sensor sits between the shaker and a tip of mass m_tip that touches bead 1
            H(f) = 1 / (1 + √2 i f/f_c − (f/f_c)²),   |H(f)|² = 1 / (1 + (f/f_c)⁴): Butterworth's low-pass of order 2
-           y = 2 Re r z,   ż = p z + F,   p = 2π f_c (−1 + i)/√2,   r = (2π f_c)² / (p − p̄): the same over time
+           y = 2 Re b z,   ż = s z + F,   s = 2π f_c (−1 + i)/√2,   b = (2π f_c)² / (s − s̄): the same over time
            normal noise, independent from sample to sample
 Source     Butterworth 1930; the rig: Zhang et al. 2016, figure 4
 Note       The low-pass is an analogue filter, the same for both forces. A force is given at nodes and is piecewise

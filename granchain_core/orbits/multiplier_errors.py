@@ -1,13 +1,13 @@
 """Errors of Floquet multipliers, from a derivative computed with a looser tolerance.
 
-Equation   Δμ_i = y_i* ΔM x_i / y_i* x_i to first order, with x_i and y_i the right and left eigenvectors of the map's
+Equation   Δμ_i = ℓ_i* ΔM η_i / ℓ_i* η_i to first order, with η_i and ℓ_i the right and left eigenvectors of the map's
            derivative M;   the stated error is the larger of 2 |Δμ_i| and a quarter of
-           |y_i|ᵀ |ΔM| |x_i| / |y_i* x_i|
+           |ℓ_i|ᵀ |ΔM| |η_i| / |ℓ_i* η_i|
 Source     Wilkinson 1965, The Algebraic Eigenvalue Problem, chapter 2
 Note       ΔM is measured: M minus the derivative of a map whose steps have ten times the tolerance, at that map's own
-           fixed point. Its entries may cancel by chance in y* ΔM x, which is why their moduli count too. The rounding
+           fixed point. Its entries may cancel by chance in ℓ* ΔM η, which is why their moduli count too. The rounding
            of M is added. Beyond a grazing, M varies as the root of the depth, so a shift of the orbit by the tolerance
-           changes M by the root of the tolerance: ΔM is large there (docs/orbits.md). Where two multipliers meet, y* x
+           changes M by the root of the tolerance: ΔM is large there (docs/orbits.md). Where two multipliers meet, ℓ* η
            goes to zero and the error grows without bound, as does the multipliers' sensitivity to M.
 """
 

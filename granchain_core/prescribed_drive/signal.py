@@ -279,6 +279,6 @@ def _of_samples(count: int, put_in: np.ndarray, of: Callable[[np.ndarray], Signa
                             for signal in signals)
 
     (coarser, second), (_, fourth) = by_every(2), by_every(4)
-    # differences of order p from a spacing h: C h^p (2^p − 1) and C h^p (4^p − 1), whose ratio is 2^p + 1
+    # differences for a spacing h: C h^order (2^order − 1) and C h^order (4^order − 1), whose ratio is 2^order + 1
     falls = fourth / second - 1.0 if second > 0.0 else 4.0
     return replace(full, coarser=coarser, order=math.log2(min(max(falls, 2.0), 4.0)))

@@ -15,7 +15,9 @@ NAMES = ("periodic", "quasi-periodic", "chaotic", "unsettled")
 #: Names of steady states that never repeat, for which no errors are stated.
 NEVER_REPEATING = ("quasi-periodic", "chaotic")
 #: Ways in which the orbit of a periodic motion was found: the motion settled on it, or was still approaching it.
-FOUND_BY = ("settling", "Newton", "extrapolation")
+FOUND_BY = SETTLING, NEWTON, EXTRAPOLATION = ("settling", "Newton", "extrapolation")
+#: `Regime.orbit_found_by` of an approach in an older file that does not say which of the last two it was.
+NOT_STATED = "not stated"
 #: [all] A distance is taken to shrink by |μ| per orbit, at most 1 less this (`Regime.assumed_contraction`).
 LEAST_BELOW_1 = 1e-6
 #: Name of `Regime.observed_contraction` in files and JSON, whose keys do not change.
@@ -49,10 +51,6 @@ class Regime:
     multiplier : float or None
         Largest |μ| of the n-period map; None if it was not computed. A batch computes it for orbits found by
         extrapolation that decay slowly, to about 1e-4.
-    followed : bool
-        Whether the motion was still approaching its orbit, which Newton's method or extrapolation then found.
-    followed_by : str or None
-        Which of the two, "Newton" or "extrapolation"; None if neither, and in older files.
     approaches : int or None
         Period of an orbit that an unsettled motion approaches.
     driven : bool
@@ -66,6 +64,10 @@ class Regime:
     window_ratios : tuple of float or None
         Smallest and largest ratio of the largest change in a window of periods to that in the window before, over three
         windows and all periods tried; known if the Lyapunov exponent is neutral.
+    orbit_found_by : str or None
+        How the orbit of a periodic motion was found: "settling" if the motion settled on it; "Newton" or
+        "extrapolation" if the motion was still approaching it, "not stated" if an older file does not say which of the
+        two; None for other motions. JSON and files have it under the keys `followed` and `followed_by` too.
 
     Examples
     --------
@@ -82,14 +84,18 @@ class Regime:
     periods_run: int
     lyapunov: tuple[float, float] | None = None
     multiplier: float | None = None
-    followed: bool = False
     approaches: int | None = None
     driven: bool = True
     return_distance: float | None = None
     return_limit: float | None = None
     window_ratios: tuple[float, float] | None = None
     lyapunov_periods: int | None = None
-    followed_by: str | None = None
+    orbit_found_by: str | None = SETTLING
+
+    def __post_init__(self) -> None:
+        """Leave `orbit_found_by` to periodic motions."""
+        if self.name != "periodic":
+            object.__setattr__(self, "orbit_found_by", None)
 
     @classmethod
     def unsettled(cls, periods_run: int, lyapunov: tuple[float, float] | None = None,
@@ -110,28 +116,32 @@ class Regime:
 
     def to_json(self) -> dict[str, Any]:
         """Return the fields under their keys in files and JSON."""
-        return {CONTRACTION_KEY if name == "observed_contraction" else name: value
-                for name, value in asdict(self).items()}
+        values = {CONTRACTION_KEY if name == "observed_contraction" else name: value
+                  for name, value in asdict(self).items() if name != "orbit_found_by"}
+        by = self.found_by_in_files if self.is_approach else None
+        return {**values, "followed": self.is_approach, "followed_by": by}
 
     def evidence_by_key(self) -> dict[str, Any]:
         """Return the fields, and how the orbit was found, under their keys in the command line's JSON."""
-        return {**self.to_json(), "orbit_found_by": self.orbit_found_by}
+        return {**self.to_json(), "orbit_found_by": self.found_by_in_files}
 
     @classmethod
     def from_json(cls, kept: Mapping[str, Any]) -> Regime:
         """Return the regime from the keys of a file, whose values have been checked."""
-        return cls(**{"observed_contraction" if name == CONTRACTION_KEY else name: value
-                      for name, value in kept.items()})
+        values = {"observed_contraction" if name == CONTRACTION_KEY else name: value
+                  for name, value in kept.items() if name not in ("followed", "followed_by")}
+        by = (kept.get("followed_by") or NOT_STATED) if kept.get("followed") else SETTLING
+        return cls(**values, orbit_found_by=by)
 
     @property
-    def orbit_found_by(self) -> str | None:
-        """How the orbit of a periodic motion was found, one of `FOUND_BY`; None for other motions.
+    def found_by_in_files(self) -> str | None:
+        """`orbit_found_by` as JSON and files have it, None where it is not stated."""
+        return None if self.orbit_found_by == NOT_STATED else self.orbit_found_by
 
-        It is also None for an older file's orbit that the motion was still approaching.
-        """
-        if self.name != "periodic":
-            return None
-        return self.followed_by if self.followed else "settling"
+    @property
+    def is_approach(self) -> bool:
+        """Whether the motion was still approaching its orbit when that was found."""
+        return self.orbit_found_by not in (SETTLING, None)
 
     @property
     def assumed_contraction(self) -> float:
@@ -152,7 +162,7 @@ class Regime:
         shown = self.period or self.approaches or 1
         if self.multiplier is not None:
             return f"|μ| {modulus_words(self.multiplier)}" + ("" if shown == 1 else f" per {shown} periods")
-        if self.observed_contraction is None or self.followed:
+        if self.observed_contraction is None or self.is_approach:
             return ""
         interval = "period" if shown == 1 else f"{shown} periods"
         return f"transient shrinks to {modulus_words(self.observed_contraction)} every {interval}"
@@ -162,7 +172,7 @@ class Regime:
         """The regime in words for the dashboard."""
         evidence = f" ({self.evidence})" if self.evidence else ""
         if self.name == "periodic":
-            if self.followed:
+            if self.is_approach:
                 return f"period {self.period}, orbit found after {self.periods_run} periods of approach{evidence}"
             return f"period {self.period}, settled within {self.periods_run} periods{evidence}"
         if not self.driven:

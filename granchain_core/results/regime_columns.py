@@ -46,13 +46,13 @@ def evidence_columns(regimes: Sequence[Regime], along: str) -> dict[str, Column]
     numbers = np.array([_evidence(regime) for regime in regimes], dtype=float).reshape(-1, len(meanings))
     return {
         "periods_run": whole([regime.periods_run for regime in regimes], "drive periods run until that was decided"),
-        "followed": whole([regime.followed for regime in regimes],
+        "followed": whole([regime.is_approach for regime in regimes],
                           "1 where Newton's method or extrapolation found the orbit of a motion still approaching it"),
         "approaches": whole([regime.approaches or 0 for regime in regimes],
                             "period of an orbit that an unsettled motion approaches, 0 where none is known"),
         **{name: Column(values, (along,), "1", meaning)
            for (name, meaning), values in zip(meanings.items(), numbers.T, strict=True)},
-        "orbit_found_by": Column(np.array([regime.orbit_found_by or "" for regime in regimes], dtype=object),
+        "orbit_found_by": Column(np.array([regime.found_by_in_files or "" for regime in regimes], dtype=object),
                                  (along,), "",
                                  f"how the orbit was found: {', '.join(FOUND_BY[:-1])} or {FOUND_BY[-1]}; empty where "
                                  "not periodic")}

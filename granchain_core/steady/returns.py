@@ -28,9 +28,9 @@ def relative_change(change: np.ndarray, x: np.ndarray, least_displacement: float
 
 def shorter_periods(after: Callable[[int], np.ndarray], x: np.ndarray, period: int, tolerance: float,
                     least_displacement: float = 0.0) -> Iterator[int]:
-    """Yield the proper divisors n of `period` after which x returns within a relative `tolerance`; `after(n)` is Pⁿ(x).
+    """Yield the proper divisors n of `period` after which x returns within a relative `tolerance`; `after(n)` is Φⁿ(x).
 
-    The tolerance must be far above the error of the map P and far below the distance between two orbits.
+    The tolerance must be far above the error of the map Φ and far below the distance between two orbits.
     """
     for n in range(1, period):
         if period % n == 0 and relative_change(after(n) - x, x, least_displacement) < tolerance:

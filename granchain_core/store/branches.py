@@ -7,8 +7,8 @@
                  criticality, coefficient, coefficient_error, undecided (special), which older files lack
 /special_before, /special_after   the two orbits around each special point, as in /branch
 /turns           extrema of the overlaps on each half-branch's last orbit, with which the next step is compared
-The root's attribute `amplitude` describes A0 over f if it is not the scene's. `coordinate` says that p is linear in the
-static overlap. Older files over F0 lack it: there, p is linear in F0, and their branches continue that way.
+The root's attribute `amplitude` describes A0 over f if it is not the scene's. `coordinate` says that ζ is linear in the
+static overlap. Older files over F0 lack it: there, ζ is linear in F0, and their branches continue that way.
 Components are the beads' displacements, then their w, scaled by the chain's own A0 and A0·φ (docs/model.md).
 """
 

@@ -141,7 +141,7 @@ def test_a_curve_whose_strongest_line_is_twice_the_rotation_number() -> None:
 
 @pytest.mark.parametrize("curves", [2, 3, 5])
 def test_curves_that_are_visited_in_turn(curves: int) -> None:
-    """The rotation number is that of the q-th iterate, known up to its sign and a whole number."""
+    """The rotation number is that of the n-th iterate, for n curves, known up to its sign and a whole number."""
     theta = rigid(GOLDEN / curves, 4000 * curves)
     places = np.random.default_rng(curves).standard_normal((curves, 2, 1))
     found = winding_of(circle(theta) + 5.0 * np.tile(places, (4000, 1, 1)))
@@ -261,9 +261,9 @@ def peaks_of_the_force(chain: Scene, least: float) -> tuple[np.ndarray, float]:
 
 @pytest.mark.parametrize(("name", "orders", "least"), [("curve", 4, 1e-2), ("three", 3, 2e-3)])
 def test_the_lines_of_a_force_are_combinations(name: str, orders: int, least: float, request: pytest.FixtureRequest) -> None:
-    """Every strong line of the output force is at |m f/q + n f₂|, for q curves, within the resolution of the spectrum.
+    """Every strong line of the output force is at |i f/n + j f₂| with whole i and j, within the spectrum's resolution.
 
-    `by_chance` is the probability that a line is so near to one of them by chance.
+    n is the number of curves. `by_chance` is the probability that a line is so near to one of them by chance.
     """
     found = request.getfixturevalue(name)
     assert found.value is not None and found.curves == (1 if name == "curve" else 3)

@@ -20,7 +20,7 @@ from granchain_core.results.regime import Regime
 from granchain_core.steady import regime_criteria
 from granchain_core.steady.settling import nearby_orbit, regime_decisions
 from tools.numbers import with_numbers
-from tools.thresholds import _REGIMES, marked_constants, printed
+from tools.thresholds import _REGIMES, DECIDING, marked_constants, printed, table_of_regimes
 
 OBSERVERS, GLOSSARY = (" ".join((ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8").split())
                        for name in ("observers", "glossary"))
@@ -30,6 +30,14 @@ def test_every_mark_has_a_table() -> None:
     """A constant whose mark no table knows would be missing from all pages."""
     known = {*_REGIMES, "rotation", "response", "branch", "fit", "attractors", "safety factor", "step size", "no threshold"}
     assert {mark for one in marked_constants() for mark in one.mark.split(", ")} <= known
+
+
+def test_every_threshold_of_a_regime_has_one_row_and_those_that_decide_a_label_come_first() -> None:
+    names = [re.findall(r"`(\w+)` in `[\w/]+\.py` \|$", row)[0] for row in table_of_regimes().split("\n")[2:]]
+    assert sorted(names) == sorted(one.name for one in marked_constants() if one.mark.split(", ")[0] in _REGIMES)
+    labels = [row.split(" | ")[1] for row in table_of_regimes().split("\n")[2:]]
+    assert labels == ["the label"] * len(DECIDING) + ["evidence"] * (len(names) - len(DECIDING))
+    assert tuple(names[: len(DECIDING)]) == DECIDING
 
 
 def test_every_number_with_a_name_beside_a_threshold_has_a_mark() -> None:

@@ -110,7 +110,7 @@ def test_a_slow_approach_is_not_quasi_periodic() -> None:
     chain = scene("sec2").evolve(A0=3e-7, f=1500.0)
     assert run(chain, periods=300).regime.name == "unsettled"
     settling = run_until_settled(chain, None, None)
-    assert (settling.regime.name, settling.regime.period, settling.regime.followed) == ("periodic", 1, True)
+    assert (settling.regime.name, settling.regime.period, settling.regime.is_approach) == ("periodic", 1, True)
     assert settling.regime.orbit_found_by == "Newton"
     assert settling.regime.multiplier is not None and 0.999 < settling.regime.multiplier < 1.0
     assert settling.regime.sentence.endswith("(|μ| 0.9995)")

@@ -59,7 +59,7 @@ def test_the_coordinate_of_the_preload_and_its_inverse() -> None:
 
 
 def test_a_file_from_before_goes_on_in_its_own_coordinate(tmp_path: Path) -> None:
-    """In a file without the attribute, tangents and P_p are for a coordinate that is linear in F0."""
+    """In a file without the attribute, tangents and Φ_ζ are for a coordinate that is linear in F0."""
     shown = scene("sec2").evolve(N=2, f=2000.0, F0=1.0)
     begun = begin_branch(shown, "F0", 1.0, 0.5, 1)
     assert load_branch(save_branch(begun, tmp_path / "new.h5")).axis == begun.axis

@@ -53,7 +53,7 @@ def special_point(branch: Branch, kind: str, number: int = 0) -> SpecialPoint:
 
 @pytest.mark.parametrize(("number", "criticality"), [(0, "subcritical"), (1, "supercritical")])
 def test_the_doubled_orbit_is_on_the_side_that_the_criticality_says(doubling: Branch, number: int, criticality: str) -> None:
-    """The orbit is found at amplitude ξ along q by Newton's method on the doubled map, without normal forms."""
+    """The orbit is found at amplitude γ along η by Newton's method on the doubled map, without normal forms."""
     special = special_point(doubling, "period_doubling", number)
     form = special.normal_form
     assert form is not None and form.criticality == criticality
@@ -65,7 +65,7 @@ def test_the_doubled_orbit_is_on_the_side_that_the_criticality_says(doubling: Br
     beyond = (twice.value(solved.z) - special.knob) * (unstable.knob - special.knob) > 0.0
     assert abs(twice.value(solved.z) - special.knob) > 0.5 * (special.interval[1] - special.interval[0])
     assert beyond == (criticality == "supercritical")
-    # (−1 − β + 3cξ²)² with β = cξ²; at 255.8 Hz, the next order in ξ is a sixth of it
+    # (−1 − β + 3cγ²)² with β = cγ²; at 255.8 Hz, the next order in γ is a sixth of it
     leading = sorted_multipliers(solved.flow.derivative)[0].real
     assert (leading < 1.0) == beyond
     assert (1.0 - leading) / (4.0 * amplitude**2) == pytest.approx(form.coefficient, rel=0.25)
@@ -76,7 +76,7 @@ def test_a_subcritical_doubling_has_hysteresis(doubling: Branch) -> None:
     subcritical, supercritical = (special_point(doubling, "period_doubling", number) for number in (0, 1))
     doubled = Continuation(switch_to_doubled(doubling, supercritical)).run()
     fold, end = special_point(doubled, "fold"), doubled.special[-1]
-    # μ − 1 = 2aξ along the branch, so two orbits and their multipliers give the coefficient
+    # μ − 1 = 2aγ along the branch, so two orbits and their multipliers give the coefficient
     before, after = (min(point.multipliers, key=lambda z: abs(z - 1.0)).real for point in (fold.before, fold.after))
     apart = np.sqrt(np.mean((fold.after.x - fold.before.x) ** 2))
     assert fold.normal_form is not None
@@ -100,7 +100,7 @@ def test_a_coefficient_agrees_with_that_of_smaller_amplitudes_within_its_error(d
 
 
 def test_the_closed_curve_grows_as_the_root_of_the_distance(torus: Branch) -> None:
-    """On the curve, |z|² = −β/Re d with β = |μ| − 1. A chain that starts near it moves to the curve and stays there."""
+    """On the curve, |γ|² = −β/Re d with β = |μ| − 1. A chain that starts near it moves to the curve and stays there."""
     form = special_point(torus, "neimark_sacker").normal_form
     assert form is not None and form.criticality == "supercritical"
     equations = BranchEquations(torus.axis, 1)
@@ -109,14 +109,14 @@ def test_the_closed_curve_grows_as_the_root_of_the_distance(torus: Branch) -> No
         point = granchain_core.branch(scene("sec2"), "f", frequency, frequency - 0.1, 1).points[0]
         values, vectors = np.linalg.eig(equations.stroboscopic_map(frequency)(point.x).derivative)
         mine = int(np.argmax(np.where(values.imag > 0.0, np.abs(values), 0.0)))
-        q = vectors[:, mine] * np.sqrt(len(values)) / np.linalg.norm(vectors[:, mine])
-        p = np.linalg.inv(vectors)[mine] / (np.linalg.inv(vectors)[mine] @ q)
+        right = vectors[:, mine] * np.sqrt(len(values)) / np.linalg.norm(vectors[:, mine])
+        left = np.linalg.inv(vectors)[mine] / (np.linalg.inv(vectors)[mine] @ right)
         expected.append(np.sqrt((1.0 - abs(values[mine])) / form.coefficient))
-        x, steps = point.x + 2.0 * 0.8 * expected[-1] * q.real, equations.quick_steps(equations.point(point.x, frequency))
+        x, steps = point.x + 2.0 * 0.8 * expected[-1] * right.real, equations.quick_steps(equations.point(point.x, frequency))
         squares = []
         for _ in range(int(3.0 / (abs(values[mine]) - 1.0))):
             x = equations.quick_end(x, frequency, steps)
-            squares.append(abs(p @ (x - point.x)) ** 2)
+            squares.append(abs(left @ (x - point.x)) ** 2)
         radii.append(np.sqrt(np.mean(squares[-300:])))
     assert radii == pytest.approx(expected, rel=0.05)
 

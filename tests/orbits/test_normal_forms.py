@@ -70,16 +70,16 @@ def henon(a: float, b: float = 0.3) -> MapNear:
 
 
 def test_the_coefficient_is_that_of_henons_cycle() -> None:
-    """Its 2-cycle, x = ((1 − b) ± √(4a − 3(1 − b)²))/(2a), is at ξ² = β/c where the multiplier is −1 − β."""
+    """Its 2-cycle, x = ((1 − b) ± √(4a − 3(1 − b)²))/(2a), is at γ² = β/c where the multiplier is −1 − β."""
     b = 0.3
     critical = 0.75 * (1.0 - b) ** 2
     form = found("period_doubling", -1.0, lambda beta: henon(critical + beta))
     beyond = critical * (1.0 + 1e-5)
     values, vectors = np.linalg.eig(henon(beyond).derivative)
     mine = int(np.argmin(values))
-    q = vectors[:, mine] * np.sqrt(2.0) / np.linalg.norm(vectors[:, mine])
+    right = vectors[:, mine] * np.sqrt(2.0) / np.linalg.norm(vectors[:, mine])
     half_width = np.sqrt(4.0 * beyond - 3.0 * (1.0 - b) ** 2) / (2.0 * beyond)
-    expected = (-1.0 - values[mine]) / (half_width / q[0]) ** 2
+    expected = (-1.0 - values[mine]) / (half_width / right[0]) ** 2
     assert form.criticality == SUPERCRITICAL
     assert form.coefficient == pytest.approx(expected, rel=1e-4)  # higher orders: the distance 1e-5
 
@@ -99,7 +99,7 @@ def turning(angle: float, cubic: complex) -> Callable[[float], MapNear]:
 def test_a_closed_curve_is_attracting_or_repelling(cubic: complex, criticality: str) -> None:
     form = found("neimark_sacker", np.exp(1.0j), turning(1.0, cubic))
     assert form.criticality == criticality
-    assert form.coefficient == pytest.approx(4.0 * cubic.real, rel=1e-4)  # z = 2ζ, since q = (1, ∓i) has the norm √2
+    assert form.coefficient == pytest.approx(4.0 * cubic.real, rel=1e-4)  # z = 2γ, since η = (1, ∓i) has the norm √2
 
 
 @pytest.mark.parametrize("k", [3, 4])
@@ -115,7 +115,7 @@ def delayed(r: float) -> MapNear:
 
 
 def test_the_curve_of_the_delayed_logistic_map_has_the_radius_that_the_coefficient_gives() -> None:
-    """Beyond r = 2, where the map rotates by 60°, |z|² = −β/Re d with β = |μ| − 1."""
+    """Beyond r = 2, where the map rotates by 60°, |γ|² = −β/Re d with β = |μ| − 1."""
     form = found("neimark_sacker", np.exp(1j * np.pi / 3.0), lambda beta: delayed(2.0 + beta))
     assert form.criticality == SUPERCRITICAL
     for beyond in (1e-3, 4e-3):

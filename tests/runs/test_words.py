@@ -22,7 +22,7 @@ def test_the_sentence_claims_no_more_than_the_periods_show() -> None:
     """`run` computes a given number of periods, so a motion settled within them, not after them."""
     settled = Regime("periodic", 3, 0.54, 1e-8, 303)
     assert settled.sentence == "period 3, settled within 303 periods (transient shrinks to 0.54 every 3 periods)"
-    followed = replace(settled, followed=True, multiplier=0.995, periods_run=400)
+    followed = replace(settled, orbit_found_by="Newton", multiplier=0.995, periods_run=400)
     assert followed.sentence == "period 3, orbit found after 400 periods of approach (|μ| 0.9950 per 3 periods)"
     assumed = replace(followed, multiplier=None)  # from a batch, which computes no multiplier
     assert assumed.sentence == "period 3, orbit found after 400 periods of approach"

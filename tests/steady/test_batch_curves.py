@@ -55,7 +55,7 @@ def test_a_computed_multiplier_is_kept_and_is_what_the_errors_rest_on(monkeypatc
     assert extrapolated
     for found in extrapolated:
         exact = settle(found.scene.evolve(accuracy=1e-6))
-        assert found.regime.followed
+        assert found.regime.is_approach
         assert found.regime.multiplier == pytest.approx(exact.regime.multiplier, abs=1e-3)
         assert found.errors is not None and found.errors.max() < 2e-4
         assert found.maxima[1] == pytest.approx(exact.run.max_output_force, rel=found.errors[1])

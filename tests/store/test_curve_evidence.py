@@ -30,7 +30,7 @@ def test_the_evidence_of_every_regime_comes_back(tmp_path: Path) -> None:
         Regime("quasi-periodic", None, None, None, 900, (1e-4, 2e-3), return_distance=0.01, return_limit=0.15,
                window_ratios=(0.99, 1.01), lyapunov_periods=1200),
         Regime("unsettled", None, None, None, 900, (1e-4, 2e-3), approaches=3, multiplier=0.999),
-        Regime("periodic", 2, 0.97, 1e-7, 400, followed=True, followed_by="Newton"))
+        Regime("periodic", 2, 0.97, 1e-7, 400, orbit_found_by="Newton"))
     points = [replace(point, regime=regime) for point, regime in zip(CURVE.points, regimes, strict=True)]
     found = load_curve(save(replace(CURVE, points=points), tmp_path / "c.h5"))
     assert tuple(point.regime for point in found.points) == regimes
@@ -55,7 +55,7 @@ def test_a_file_without_evidence_opens(tmp_path: Path, missing: tuple[str, ...])
 
 
 def test_how_an_orbit_was_found_comes_back_and_is_not_known_from_an_older_file(tmp_path: Path) -> None:
-    regimes = (Regime("periodic", 1, 0.5, 1e-7, 90), Regime("periodic", 2, 0.97, 1e-7, 400, followed=True, followed_by="extrapolation"),
+    regimes = (Regime("periodic", 1, 0.5, 1e-7, 90), Regime("periodic", 2, 0.97, 1e-7, 400, orbit_found_by="extrapolation"),
                Regime("chaotic", None, None, None, 900, (0.2, 1e-3), lyapunov_periods=200))
     points = [replace(point, regime=regime) for point, regime in zip(CURVE.points, regimes, strict=True)]
     path = save(replace(CURVE, points=points), tmp_path / "c.h5")
@@ -63,4 +63,4 @@ def test_how_an_orbit_was_found_comes_back_and_is_not_known_from_an_older_file(t
     with h5py.File(path, "r+") as file:
         del file["curve"]["orbit_found_by"]
     seal(path)
-    assert [point.regime.orbit_found_by for point in load_curve(path).points] == ["settling", None, None]
+    assert [point.regime.orbit_found_by for point in load_curve(path).points] == ["settling", "not stated", None]

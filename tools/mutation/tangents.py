@@ -106,7 +106,7 @@ ORBITS = (
 )
 
 NORMAL_FORMS = (
-    Mutant("doubling-without-centre-manifold", _NORMAL_FORMS, "third @ q + 3.0 * second @ shift", "third @ q",
+    Mutant("doubling-without-centre-manifold", _NORMAL_FORMS, "third @ right + 3.0 * second @ shift", "third @ right",
            "the centre manifold is taken for its tangent: the coefficient of a period doubling lacks its quadratic terms",
            k.NORMAL_FORMS),
     Mutant("curve-turned-the-other-way", _NORMAL_FORMS, "(0.5 * np.vdot(critical.p, cubic) / turn).real",

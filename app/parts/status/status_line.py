@@ -79,7 +79,7 @@ def regime_hint(regime: Regime, pushed: tuple[int, int] | None, place: Place | N
         meanings.append(_PLACES.get(place.kind, "") if place is not None else "")
         meanings.append(_NOT_ITS_PLACE if place is not None and place.kind == "valley" else "")
     if regime.name == "periodic":
-        meanings.append(_FOLLOWED if regime.followed else _SETTLED)
+        meanings.append(_FOLLOWED if regime.is_approach else _SETTLED)
     else:
         meanings.append(_REGIME_MEANINGS[regime.name] if regime.driven else _UNDRIVEN)
     if regime.lyapunov is not None and regime.name != "periodic":

@@ -1,7 +1,7 @@
 """The knob of a branch: which knobs are continuous, and the coordinate used for continuation.
 
-A branch is a curve of points z = (x/√(2N), p). x is the scaled state (u, w) at drive phase 0 in the scales of its own
-scene, so that x remains of order one when the amplitude A0, and with it the scales, change. p is a coordinate of the
+A branch is a curve of points z = (x/√(2N), ζ). x is the scaled state (u, w) at drive phase 0 in the scales of its own
+scene, so that x remains of order one when the amplitude A0, and with it the scales, change. ζ is a coordinate of the
 knob: its logarithm, the knob itself or, for F0, the static overlap. Arclength is measured in z.
 """
 
@@ -29,9 +29,9 @@ STATIC_OVERLAP = "static overlap"
 
 @dataclass(frozen=True)
 class KnobAxis:
-    """One knob of a scene from `start` to `end`, with its coordinate p (0 at `start`).
+    """One knob of a scene from `start` to `end`, with its coordinate ζ (0 at `start`).
 
-    With `amplitude`, A0 follows the knob, which is f. With `by_overlap`, p is linear in F0^{2/3}, not in F0.
+    With `amplitude`, A0 follows the knob, which is f. With `by_overlap`, ζ is linear in F0^{2/3}, not in F0.
     """
 
     scene: Scene
@@ -64,7 +64,7 @@ class KnobAxis:
 
     @property
     def logarithmic(self) -> bool:
-        """Whether p is proportional to the knob's logarithm."""
+        """Whether ζ is proportional to the knob's logarithm."""
         return QUANTITIES[self.knob].scale == "log"
 
     @property
@@ -84,7 +84,7 @@ class KnobAxis:
 
     @property
     def _power(self) -> float:
-        """The power of the knob in which p is linear, unless it is logarithmic.
+        """The power of the knob in which ζ is linear, unless it is logarithmic.
 
         The chain depends on F0 only through its static overlaps (F0/K)^{2/3}, and smoothly. As functions of F0 itself,
         orbits have an infinite slope at F0 = 0.
@@ -93,31 +93,31 @@ class KnobAxis:
 
     @property
     def _range(self) -> tuple[float, float]:
-        """The smaller end to that power, and the change per unit of p."""
+        """The smaller end to that power, and the change per unit of ζ."""
         low, high = (end**self._power for end in (self.low, self.high))
         return low, (high - low) / _LENGTH_OF_RANGE
 
     def coordinate(self, value: float) -> float:
-        """p of a knob value."""
+        """ζ of a knob value."""
         if self.logarithmic:
             return _LENGTH_OF_FACTOR_E * math.log(value / self.low)
         low, unit = self._range
         return (value**self._power - low) / unit
 
-    def value(self, p: float) -> float:
-        """Knob value at p, limited to the knob's allowed range."""
+    def value(self, zeta: float) -> float:
+        """Knob value at ζ, limited to the knob's allowed range."""
         if self.logarithmic:
-            value = self.low * math.exp(p / _LENGTH_OF_FACTOR_E)
+            value = self.low * math.exp(zeta / _LENGTH_OF_FACTOR_E)
         else:
             low, unit = self._range
-            value = low + p * unit
+            value = low + zeta * unit
             if self.by_overlap:
                 value = max(value, 0.0) ** EXPONENT
         quantity = QUANTITIES[self.knob]
         return min(max(value, quantity.low), quantity.high)
 
     def slope(self, value: float) -> float:
-        """Derivative of the knob with respect to p."""
+        """Derivative of the knob with respect to ζ."""
         if self.logarithmic:
             return value / _LENGTH_OF_FACTOR_E
         return self._range[1] * value ** (1.0 - self._power) / self._power

@@ -16,7 +16,7 @@ from .point import BranchPoint, branch_point, rough_point
 class Between:
     """The orbits between neighbours a and b. Each computed orbit helps to compute the next.
 
-    `near` are P_x and P_p at both. Only one thread may use it at a time.
+    `near` are Φ_x and Φ_ζ at both. Only one thread may use it at a time.
     """
 
     def __init__(self, equations: BranchEquations, a: BranchPoint, b: BranchPoint, near: tuple[Near, Near]) -> None:
@@ -66,7 +66,7 @@ class Between:
         return self._exact[point]
 
     def derivative(self, point: BranchPoint) -> np.ndarray:
-        """The exact P_x of an exact orbit."""
+        """The exact Φ_x of an exact orbit."""
         return self._derivatives[point]
 
     def contacts(self, point: BranchPoint) -> np.ndarray:
@@ -105,7 +105,7 @@ class Between:
         return guess + across(offset, normal), normal, distance
 
     def _near(self, arclength: float) -> Near:
-        """P_x and P_p at this arclength, interpolated between the two nearest orbits at which they are known."""
+        """Φ_x and Φ_ζ at this arclength, interpolated between the two nearest orbits at which they are known."""
         last = len(self._known) - 1
         after = next((i for i in range(1, last) if self._known[i][0] >= arclength), last)
         (s0, before), (s1, behind) = self._known[after - 1 : after + 1]

@@ -20,7 +20,7 @@ _CLOSING_DISTANCE = 1e-7
 
 @dataclass(frozen=True, eq=False)
 class Ending:
-    """The last orbit of a step with P_x and P_p. `ended` and `reason` are "" unless the branch ends there."""
+    """The last orbit of a step with Φ_x and Φ_ζ. `ended` and `reason` are "" unless the branch ends there."""
 
     point: BranchPoint
     near: Near

@@ -1,6 +1,6 @@
-"""The equations of continuation, P(x; p) − x = 0 and a condition on the step.
+"""The equations of continuation, Φ(x; ζ) − x = 0 and a condition on the step.
 
-Jacobian   [[(P_x − 1)√(2N), P_p], [nᵀ]] in z = (x/√(2N), p): P_x is the derivative of the stroboscopic map, and P_p
+Jacobian   [[(Φ_x − 1)√(2N), Φ_ζ], [nᵀ]] in z = (x/√(2N), ζ): Φ_x is the derivative of the stroboscopic map, and Φ_ζ
            a difference of the map in the knob. n is the normal of the plane in which z is sought. The bordered matrix
            stays regular at folds (Keller 1977).
 """
@@ -21,15 +21,15 @@ from .axis import KnobAxis
 from .newton import ROUGH_TOLERANCE, Near, Newton
 from .quick import QuickMap, quick_steps
 
-#: One-sided difference ε in p of the accurate map. Its error from curvature is ε P_pp/2, that from step noise 1e-12/ε.
+#: One-sided difference Δζ of the accurate map. Its error from curvature is Δζ Φ_ζζ/2, that from step noise 1e-12/Δζ.
 _DIFFERENCE = 1e-6
-#: Half of the central difference in p of the quick map.
+#: Half of the central difference in ζ of the quick map.
 _QUICK_DIFFERENCE = 1e-5
 
 
 @dataclass(frozen=True, eq=False)
 class Solved:
-    """A point z on the branch, its flow with the monodromy matrix, the knob derivative P_p and all residuals."""
+    """A point z on the branch, its flow with the monodromy matrix, the knob derivative Φ_ζ and all residuals."""
 
     z: np.ndarray
     flow: Flow
@@ -97,9 +97,9 @@ class BranchEquations:
         return quick.end(self.axis.scene_at(value), x, steps)
 
     def quick_slope(self, z: np.ndarray, steps: int) -> np.ndarray:
-        """P_p (2N,) at z by a central difference of the quick map."""
-        p, x = self.axis.coordinate(self.value(z)), self.state(z)
-        above, below = (self.axis.value(p + step) for step in (_QUICK_DIFFERENCE, -_QUICK_DIFFERENCE))
+        """Φ_ζ (2N,) at z by a central difference of the quick map."""
+        zeta, x = self.axis.coordinate(self.value(z)), self.state(z)
+        above, below = (self.axis.value(zeta + step) for step in (_QUICK_DIFFERENCE, -_QUICK_DIFFERENCE))
         change = self.quick_end(x, above, steps) - self.quick_end(x, below, steps)
         return change / (self.axis.coordinate(above) - self.axis.coordinate(below))
 
@@ -113,7 +113,7 @@ class BranchEquations:
               farthest: float = np.inf) -> Solved:
         """Find the branch's point in the plane through z perpendicular to `normal`, at most `farthest` from z.
 
-        `slope` is P_p nearby, if known. Raises `ComputationError` with the residuals where Newton's method does not
+        `slope` is Φ_ζ nearby, if known. Raises `ComputationError` with the residuals where Newton's method does not
         converge.
         """
         newton = Newton(self, z, normal, farthest)
@@ -121,7 +121,7 @@ class BranchEquations:
         return Solved(newton.z, flow, self.knob_slope(newton.z, flow.end, TOLERANCE), tuple(newton.residuals))
 
     def solve_near(self, z: np.ndarray, normal: np.ndarray, near: Near, farthest: float = np.inf) -> Solved:
-        """Like `solve`, with P_x and P_p of an orbit nearby, so that few further derivatives are needed."""
+        """Like `solve`, with Φ_x and Φ_ζ of an orbit nearby, so that few further derivatives are needed."""
         newton = Newton(self, z, normal, farthest)
         newton.solve_quick(near)
         flow = newton.solve_exact()
@@ -132,7 +132,7 @@ class BranchEquations:
         return self.tangent_of(solved.flow.derivative, solved.knob_slope, towards)
 
     def tangent_of(self, derivative: np.ndarray, slope: np.ndarray, towards: np.ndarray) -> np.ndarray:
-        """Unit tangent of the branch for given P_x and P_p, on the side of `towards`."""
+        """Unit tangent of the branch for given Φ_x and Φ_ζ, on the side of `towards`."""
         return self.tangent_by(self.matrix(derivative, slope, towards), towards)
 
     def tangent_by(self, matrix: np.ndarray, towards: np.ndarray) -> np.ndarray:
@@ -151,9 +151,9 @@ class BranchEquations:
         return matrix
 
     def knob_slope(self, z: np.ndarray, end: np.ndarray, tolerance: float) -> np.ndarray:
-        """P_p (2N,) at z, from where the map of this tolerance leads to `end`."""
-        p = self.axis.coordinate(self.value(z))
-        moved = self.axis.value(p + _DIFFERENCE)
-        if moved == self.axis.value(p):  # at the knob's largest value, use a downward difference
-            moved = self.axis.value(p - _DIFFERENCE)
-        return (self.reused_map(moved, tolerance).end(self.state(z)) - end) / (self.axis.coordinate(moved) - p)
+        """Φ_ζ (2N,) at z, from where the map of this tolerance leads to `end`."""
+        zeta = self.axis.coordinate(self.value(z))
+        moved = self.axis.value(zeta + _DIFFERENCE)
+        if moved == self.axis.value(zeta):  # at the knob's largest value, use a downward difference
+            moved = self.axis.value(zeta - _DIFFERENCE)
+        return (self.reused_map(moved, tolerance).end(self.state(z)) - end) / (self.axis.coordinate(moved) - zeta)

@@ -145,7 +145,7 @@ class HalfContinuation(Iterator[BranchPoint]):
 
     @property
     def _near_last(self) -> Near:
-        """P_x and P_p at the last orbit. Where P_x is not known, it is computed again, bit for bit the same."""
+        """Φ_x and Φ_ζ at the last orbit. Where Φ_x is not known, it is computed again, bit for bit the same."""
         if self._ahead:
             return self._ahead[-1].ending.near
         last = self.half.points[-1]

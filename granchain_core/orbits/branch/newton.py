@@ -1,6 +1,6 @@
 """Newton's method for one orbit of a branch, with few derivatives of the map.
 
-Equation   J Δz = −F,  F = (P(x; p) − x, (z − z0)·n),  J as in equations.py;  after a step J is corrected by Broyden's
+Equation   J Δz = −F,  F = (Φ(x; ζ) − x, (z − z0)·n),  J as in equations.py;  after a step J is corrected by Broyden's
            rank-one update, J ← J + F(z + Δz) Δzᵀ/|Δz|²
 Source     Broyden 1965; Dennis & Schnabel 1983, Numerical Methods for Unconstrained Optimization, chapter 8
 Note       With eleven beads, the accurate map (the flow at 1e-13) takes 2 ms, or 5 ms with its derivative; the quick
@@ -61,7 +61,7 @@ _MOST_CORRECTED_STEPS = 6
 
 @dataclass(frozen=True, eq=False)
 class Near:
-    """P_x (2N, 2N) and P_p (2N,) of an orbit nearby."""
+    """Φ_x (2N, 2N) and Φ_ζ (2N,) of an orbit nearby."""
 
     derivative: np.ndarray
     slope: np.ndarray
@@ -80,7 +80,7 @@ class Equations(Protocol):
         """The bordered matrix."""
 
     def knob_slope(self, z: np.ndarray, end: np.ndarray, tolerance: float) -> np.ndarray:
-        """P_p at z, from where the map leads to `end`."""
+        """Φ_ζ at z, from where the map leads to `end`."""
 
     def reused_map(self, value: float, tolerance: float) -> StroboscopicMap:
         """The map at a knob value."""
@@ -152,7 +152,7 @@ class Newton:
         return flow
 
     def solve_with_derivatives(self, slope: np.ndarray | None = None) -> Flow:
-        """Solve for the orbit itself by steps with derivatives; `residuals` has one entry each. `slope` is P_p nearby.
+        """Solve for the orbit itself by steps with derivatives; `residuals` has one entry each. `slope` is Φ_ζ nearby.
 
         This is for orbits near which no derivative is known, and for those where fewer derivatives have failed. Each
         step but the last is followed by one that reuses its derivative. With `slope`, the first map is computed at the

@@ -4,7 +4,7 @@ Equation   the coefficients a of a fold, c of a period doubling and d of a Neima
            "Criticality"
 Source     Kuznetsov 2004, Elements of Applied Bifurcation Theory, 3rd edition: chapter 4, and the projection method of
            section 5.4
-Note       B and C are central differences of the derivative A, so that no difference is of higher order than the
+Note       B and C are central differences of the derivative M, so that no difference is of higher order than the
            second. They are valid only where the map is smooth: `MapNear.product` raises `NotSmooth` elsewhere.
 """
 
@@ -32,11 +32,11 @@ REASONS = (SEQUENCE_IN_INTERVAL, SEQUENCE_NEAR, DISAGREE, ANOTHER_MULTIPLIER, NO
 EARLIER_REASONS = {"a contact grazes in the same interval of the knob": SEQUENCE_IN_INTERVAL,
                    "a contact grazes within the smallest amplitude": SEQUENCE_NEAR}
 
-#: [branch] Amplitude ξ of the differences of a period doubling or Neimark–Sacker point. Half of it is used on the
+#: [branch] Amplitude γ of the differences of a period doubling or Neimark–Sacker point. Half of it is used on the
 #: second side of the point. Rounding then changes the cubic coefficients of sec2, a few hundred to 20,000, by up to
 #: 0.3.
 _AMPLITUDE = 1e-4
-#: [branch] Amplitude ξ of a fold, which needs no second differences, and of the other kinds where `_AMPLITUDE` does not
+#: [branch] Amplitude γ of a fold, which needs no second differences, and of the other kinds where `_AMPLITUDE` does not
 #: decide.
 _SMALL_AMPLITUDE = 2e-5
 #: Amplitudes by kind, tried in this order.
@@ -68,7 +68,7 @@ class NormalForm:
         nondegenerate; or "not decided".
     coefficient : float
         |a| of a fold, c of a period doubling (supercritical: c > 0), Re d of a Neimark–Sacker point (supercritical:
-        Re d < 0), for ξ in units of the scaled state's root mean square. NaN where it was not computed.
+        Re d < 0), for γ in units of the scaled state's root mean square. NaN where it was not computed.
     error : float
         Difference between two values, one from each side of the point, with different amplitudes. NaN where it was not
         computed.
@@ -98,11 +98,11 @@ class MapNear:
 
 @dataclass(frozen=True, eq=False)
 class _Critical:
-    """The multiplier that passes the unit circle, with its right and left eigenvectors q and p."""
+    """The multiplier that passes the unit circle, with its right and left eigenvectors η and ℓ."""
 
     multiplier: complex
-    q: np.ndarray
-    p: np.ndarray
+    right: np.ndarray
+    left: np.ndarray
 
 
 def normal_form(kind: str, multiplier: complex, sides: tuple[MapNear, MapNear],
@@ -119,7 +119,7 @@ def normal_form(kind: str, multiplier: complex, sides: tuple[MapNear, MapNear],
         The map near a fixed point before the bifurcation and near one after it, close enough for their coefficients to
         agree.
     amplitudes : mapping of str to tuple of float
-        For every kind, the amplitudes ξ of the differences, tried in this order until one decides.
+        For every kind, the amplitudes γ of the differences, tried in this order until one decides.
     """
     form = NormalForm(NOT_DECIDED)
     try:
@@ -128,7 +128,7 @@ def normal_form(kind: str, multiplier: complex, sides: tuple[MapNear, MapNear],
             raise NotSmooth(RESONANCE)
     except NotSmooth as obstacle:
         return NormalForm(NOT_DECIDED, reason=str(obstacle))
-    if kind == "fold":  # the sign of a depends on that of q
+    if kind == "fold":  # the sign of a depends on that of η
         critical[1] = _with_sign_of(critical[1], critical[0])
     for amplitude in amplitudes[kind]:
         try:
@@ -160,16 +160,16 @@ def _critical(kind: str, multiplier: complex, derivative: np.ndarray) -> _Critic
 
     Raises `NotSmooth` if there is none, or if another eigenvalue is at the unit circle.
     """
-    right, q = _nearest(kind, multiplier, derivative)
-    _, p = _nearest(kind, multiplier.conjugate(), derivative.T)
+    eigenvalue, right = _nearest(kind, multiplier, derivative)
+    _, left = _nearest(kind, multiplier.conjugate(), derivative.T)
     others = np.linalg.eigvals(derivative)
-    mine = [int(np.argmin(np.abs(others - right)))]
+    mine = [int(np.argmin(np.abs(others - eigenvalue)))]
     if kind == "neimark_sacker":
-        mine.append(int(np.argmin(np.abs(others - right.conjugate()))))
+        mine.append(int(np.argmin(np.abs(others - eigenvalue.conjugate()))))
     if (np.abs(np.abs(np.delete(others, mine)) - 1.0) < _AT_CIRCLE).any():
         raise NotSmooth(ANOTHER_MULTIPLIER)
-    q = q * np.sqrt(len(q)) / np.linalg.norm(q)
-    return _Critical(right, q, p / np.vdot(q, p))
+    right = right * np.sqrt(len(right)) / np.linalg.norm(right)
+    return _Critical(eigenvalue, right, left / np.vdot(right, left))
 
 
 def _nearest(kind: str, multiplier: complex, matrix: np.ndarray) -> tuple[complex, np.ndarray]:
@@ -184,8 +184,10 @@ def _nearest(kind: str, multiplier: complex, matrix: np.ndarray) -> tuple[comple
 
 
 def _with_sign_of(vectors: _Critical, reference: _Critical) -> _Critical:
-    """`vectors` with the signs chosen so that q points to the same side as the q of `reference`."""
-    return vectors if vectors.q @ reference.q > 0.0 else _Critical(vectors.multiplier, -vectors.q, -vectors.p)
+    """`vectors` with the signs chosen so that η points to the same side as the η of `reference`."""
+    if vectors.right @ reference.right > 0.0:
+        return vectors
+    return _Critical(vectors.multiplier, -vectors.right, -vectors.left)
 
 
 def _resonant(multiplier: complex) -> bool:
@@ -205,29 +207,30 @@ def _differences(near: MapNear, direction: np.ndarray, size: float,
 
 
 def _fold(near: MapNear, critical: _Critical, size: float) -> float:
-    """The coefficient a of ξ²."""
-    second, _ = _differences(near, critical.q, size, critical.q[:, np.newaxis])
-    return float(0.5 * critical.p @ second[:, 0])
+    """The coefficient a of γ²."""
+    second, _ = _differences(near, critical.right, size, critical.right[:, np.newaxis])
+    return float(0.5 * critical.left @ second[:, 0])
 
 
 def _period_doubling(near: MapNear, critical: _Critical, size: float) -> float:
-    """The coefficient c of ξ³."""
-    q, identity = critical.q, np.eye(len(near.x))
-    second, third = _differences(near, q, size, identity)
-    shift = np.linalg.solve(identity - near.derivative, second @ q)
-    return float(critical.p @ (third @ q + 3.0 * second @ shift) / 6.0)
+    """The coefficient c of γ³."""
+    right, identity = critical.right, np.eye(len(near.x))
+    second, third = _differences(near, right, size, identity)
+    shift = np.linalg.solve(identity - near.derivative, second @ right)
+    return float(critical.left @ (third @ right + 3.0 * second @ shift) / 6.0)
 
 
 def _neimark_sacker(near: MapNear, critical: _Critical, size: float) -> float:
-    """The real part of d; with q = a + ib, C(q, q, q̄) = C(a, a, q) + C(b, b, q)."""
-    q, identity = critical.q, np.eye(len(near.x))
+    """The real part of d; with η = η₁ + iη₂, C(η, η, η̄) = C(η₁, η₁, η) + C(η₂, η₂, η)."""
+    right, identity = critical.right, np.eye(len(near.x))
     turn = critical.multiplier / abs(critical.multiplier)
-    (second_a, third_a), (second_b, third_b) = (_differences(near, part, size, identity) for part in (q.real, q.imag))
+    (second_a, third_a), (second_b, third_b) = (_differences(near, part, size, identity)
+                                                for part in (right.real, right.imag))
     second, conjugate = second_a + 1j * second_b, second_a - 1j * second_b
-    shift = np.linalg.solve(identity - near.derivative, second @ q.conj())
-    double = np.linalg.solve(turn**2 * identity - near.derivative, second @ q)
-    cubic = (third_a + third_b) @ q + 2.0 * second @ shift + conjugate @ double
-    return float((0.5 * np.vdot(critical.p, cubic) / turn).real)
+    shift = np.linalg.solve(identity - near.derivative, second @ right.conj())
+    double = np.linalg.solve(turn**2 * identity - near.derivative, second @ right)
+    cubic = (third_a + third_b) @ right + 2.0 * second @ shift + conjugate @ double
+    return float((0.5 * np.vdot(critical.left, cubic) / turn).real)
 
 
 _COEFFICIENTS = {"fold": _fold, "period_doubling": _period_doubling, "neimark_sacker": _neimark_sacker}

@@ -39,9 +39,9 @@ class BranchPoint:
     """A periodic orbit on a branch.
 
     `knob` is in SI. `x` (2N,) is the scaled state (u, w) at phase 0; `tangent` (2N + 1,) is the branch's unit tangent
-    in (x/√(2N), p); `arclength` is measured from the starting orbit. `multipliers` (2N,) are sorted by modulus, largest
+    in (x/√(2N), ζ); `arclength` is measured from the starting orbit. `multipliers` (2N,) are sorted by modulus, largest
     first. The three largest forces are in N. `closings` (N + 1,) count how often each contact closes along the orbit: 0
-    if it is always open, −1 if it is always closed. `slope` (2N,) is the derivative of the map with respect to p.
+    if it is always open, −1 if it is always closed. `slope` (2N,) is the derivative of the map with respect to ζ.
     `residuals` are those of Newton's method, the last being the orbit's; `liouville_error` is the difference between
     ln |det| of the monodromy matrix and ∫ trace. `overlap_extrema` are the extrema of all overlaps
     (kernels/error_control/orbit_record.py). `damped` tells whether the chain loses energy.

@@ -1,7 +1,7 @@
 """Branch switching: from a period doubling to the branch of twice the period.
 
-At a multiplier −1 with eigenvector v, the orbits of twice the period lie at x ± εv + O(ε²), p + O(ε²). Newton's method
-on the doubled map, in the plane at distance ε along v, finds one, because the trivial solution is not in that plane.
+At a multiplier −1 with eigenvector η, the orbits of twice the period lie at x ± γη + O(γ²), ζ + O(γ²). Newton's method
+on the doubled map, in the plane at distance γ along η, finds one, because the trivial solution is not in that plane.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from .half_branch import HalfBranch
 from .point import branch_point
 from .special import SpecialPoint
 
-#: Distances ε along the eigenvector that are tried, in arclength. The knob changes by about ε² times the coefficient of
+#: Distances γ along the eigenvector that are tried, in arclength. The knob changes by about γ² times the coefficient of
 #: the normal form. Next to grazings that coefficient is large, and only the last distances are small enough.
 _DISTANCES = (0.02, 0.005, 0.05, 0.001, 1e-4, 3e-5)
-#: Largest change of the knob's coordinate: of order ε², but possibly with a large factor.
+#: Largest change of the knob's coordinate: of order γ², but possibly with a large factor.
 _LARGEST_KNOB_CHANGE = 0.3
-#: Smallest difference of the orbit's halves, relative to the one expected from ε.
+#: Smallest difference of the orbit's halves, relative to the one expected from γ.
 _LEAST_DOUBLING = 0.5
 
 

@@ -69,7 +69,7 @@ def _orbits(name: str, over: KnobAxis, points: Sequence[BranchPoint],
         "residual": Column(residuals, ("point", "iteration"), "1", "residuals of Newton's method"),
         "state": Column(wide("x", 2 * n), of_state, "1", "scaled state at phase 0"),
         "tangent": Column(wide("tangent", 2 * n + 1), of_tangent, "1", "unit tangent"),
-        "slope": Column(wide("slope", 2 * n), of_state, "1", "change of the map with p"),
+        "slope": Column(wide("slope", 2 * n), of_state, "1", "change of the map with ζ"),
         **multiplier_columns(wide("multipliers", 2 * n, complex), of_state),
         "closings": Column(wide("closings", n + 1, np.int64), ("point", "contact"), "1",
                            "closings of each contact; 0 always open, -1 always closed"), **which})

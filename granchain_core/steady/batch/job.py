@@ -23,7 +23,7 @@ from ...kernels.batch.begin import (
     ORBIT_SLOWEST_CONTRACTION,
 )
 from ...kernels.forces.peaks import HIGHEST
-from ...results.regime import Regime
+from ...results.regime import EXTRAPOLATION, SETTLING, Regime
 from ...scene import Scene
 from ...scene.state import State
 from ..exponent_measurements import ExponentMeasurements
@@ -153,7 +153,7 @@ class BatchJob:
         An extrapolation leads to an orbit whether it is stable or not, and one that is stable with coarse steps may be
         unstable with finer ones. None for other orbits, and for chains too long for multipliers. Raises `Cancelled`.
         """
-        slow = regime.followed and (regime.observed_contraction or 0.0) > _SLOW_CONTRACTION
+        slow = regime.is_approach and (regime.observed_contraction or 0.0) > _SLOW_CONTRACTION
         if regime.period is None or not (slow or grew) or self.scene.N > MOST_BEADS_WITH_MULTIPLIERS:
             return None
         return seen_modulus(self.scene, regime.period, self.scaled.beads_of(y), stop, refine=FINE_STEPS_PER_COARSE)
@@ -242,12 +242,11 @@ def _with_period(regime: Regime, period: int) -> Regime:
 
 
 def _periodic(check: np.ndarray, slowest_decay: float, periods_run: int) -> Regime:
-    """The periodic regime of a coarse run, from its last check; `followed` where extrapolations led to it."""
+    """The periodic regime of a coarse run, from its last check; extrapolations may have led to it."""
     period, contraction, distance = check
     seen = float(contraction) if contraction >= 0.0 else None
     return Regime(name="periodic", period=int(period), observed_contraction=seen, distance=float(distance),
-                  periods_run=periods_run, followed=bool(slowest_decay > 0.0),
-                  followed_by="extrapolation" if slowest_decay > 0.0 else None)
+                  periods_run=periods_run, orbit_found_by=EXTRAPOLATION if slowest_decay > 0.0 else SETTLING)
 
 
 def _to_measure(job: BatchJob, batch: Batch, member: int, periods_run: int, record: np.ndarray) -> BatchJob:

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...integrate import Engine
-from ...results.regime import Regime
+from ...results.regime import NEWTON, Regime
 from ...scene import Scene
 from ..exponent_measurements import MEASURED_PERIODS, ExponentMeasurements
 from ..lyapunov import growth_along
@@ -110,8 +110,8 @@ class Decisions:
         """The decision based on an orbit near the motion, or None if it does not decide."""
         if orbit.approached():
             return Decision(replace(regime, name="periodic", period=orbit.period, multiplier=orbit.modulus,
-                                    observed_contraction=None, distance=orbit.orbit_error, followed=True,
-                                    followed_by="Newton", approaches=None), orbit.point.x)
+                                    observed_contraction=None, distance=orbit.orbit_error,
+                                    orbit_found_by=NEWTON, approaches=None), orbit.point.x)
         self._leaves = self._leaves or orbit.unstable
         if not orbit.unstable or self._departures >= _MOST_DEPARTURES:
             return None
