@@ -23,7 +23,7 @@ def table(rows: Sequence[Statement]) -> str:
 def not_reproduced(rows: Sequence[Statement]) -> str:
     """Return the list of the statements that do not hold, from the rows with “Yes”."""
     differ = [one for one in rows if one.differs.startswith("Yes")]
-    items = [f"{number}. *Figure {', '.join(one.figures)}.* {one.paper} *Here:* {one.differs.removeprefix("Yes. ")}"
+    items = [f"{number}. *Figure {', '.join(one.figures)}.* {one.paper} *Here:* " + one.differs.removeprefix("Yes. ")
              for number, one in enumerate(differ, 1)]
     return "\n".join("\n".join(textwrap.wrap(item, 120, subsequent_indent="   ", break_long_words=False,
                                              break_on_hyphens=False)) for item in items)
