@@ -161,7 +161,7 @@ def bifurcation_diagram(scene: Scene, knob: str, values: Sequence[float] | np.nd
     scene : Scene
         The chain.
     knob : str
-        A continuous knob: "f", "A0", "D", "k", "kappa", "F0", "dimer", "taper", "striker" or "impurity".
+        A continuous knob, one of `granchain_core.orbits.CONTINUOUS`.
     values : sequence of float
         Its values in SI, at most 20,000.
     start : str

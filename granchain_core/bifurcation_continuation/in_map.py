@@ -1,11 +1,8 @@
 """Bifurcation curves in a parameter map: found between neighbouring cells and continued through its rows.
 
-The regimes of two neighbouring cells determine which bifurcation is sought between them. Between periods n and 2n it is
-a period doubling; between a periodic and a quasi-periodic cell, a Neimark–Sacker point. Next to a chaotic cell, all
-three kinds are tried in turn, since a cascade or a subcritical bifurcation may lie within one cell. Next to another
-multiple of n, it is a period doubling, then a fold; in all other cases, the fold at which an orbit ends. An unsettled
-or failed cell gives no information. The orbit of the periodic cell is continued towards its neighbour; the search for
-the point starts where a multiplier is nearest to its critical value.
+The regimes of two neighbouring cells determine which bifurcation is sought between them (`_kinds`; docs/parameter-map.md
+has the table, under "Limits"). The orbit of the periodic cell is continued towards its neighbour; the search for the
+point starts where a multiplier is nearest to its critical value.
 """
 
 from __future__ import annotations

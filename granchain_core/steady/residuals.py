@@ -38,9 +38,9 @@ def least_displacement(x: np.ndarray, beta: float) -> float:
     return _LEAST_DISPLACEMENT * float(np.abs(x[len(x) // 2 :]).max()) / beta
 
 
-def orbit_change(change: np.ndarray, x: np.ndarray, rate: float) -> float:
+def orbit_change(change: np.ndarray, x: np.ndarray, beta: float) -> float:
     """The larger of the changes of displacements and of w, each relative to its size in x (2N,).
 
-    Displacements have a least size (`least_displacement`).
+    Displacements have a least size (`least_displacement`), which depends on the scaled drive frequency `beta`.
     """
-    return relative_change(change, x, least_displacement(x, rate))
+    return relative_change(change, x, least_displacement(x, beta))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import textwrap
 from collections.abc import Sequence
 from pathlib import Path
@@ -24,14 +23,10 @@ def table(rows: Sequence[Statement]) -> str:
 def not_reproduced(rows: Sequence[Statement]) -> str:
     """Return the list of the statements that do not hold, from the rows with “Yes”."""
     differ = [one for one in rows if one.differs.startswith("Yes")]
-    items = [f"{number}. *Figure {', '.join(one.figures)}.* {one.paper} *Here:* {_reason(one.differs)}"
+    items = [f"{number}. *Figure {', '.join(one.figures)}.* {one.paper} *Here:* " + one.differs.removeprefix("Yes. ")
              for number, one in enumerate(differ, 1)]
     return "\n".join("\n".join(textwrap.wrap(item, 120, subsequent_indent="   ", break_long_words=False,
                                              break_on_hyphens=False)) for item in items)
-
-
-def _reason(differs: str) -> str:
-    return re.sub(r"^Yes, by", "By", differs.removeprefix("Yes. "))
 
 
 def gallery() -> str:

@@ -29,7 +29,7 @@ STATIC_OVERLAP = "static overlap"
 
 @dataclass(frozen=True)
 class KnobAxis:
-    """One knob of a scene from `start` to `end`, with its coordinate ζ (0 at `start`).
+    """One knob of a scene from `start` to `end`, with its coordinate ζ (0 at the smaller end).
 
     With `amplitude`, A0 follows the knob, which is f. With `by_overlap`, ζ is linear in F0^{2/3}, not in F0.
     """

@@ -104,7 +104,7 @@ class Newton:
     def __init__(self, equations: Equations, z: np.ndarray, normal: np.ndarray, farthest: float = np.inf) -> None:
         self.equations, self.start, self.normal, self.farthest = equations, z, normal, farthest
         self.z, self.residuals = z, list[float]()
-        self.matrix, self.steps, self._rate = np.empty(0), equations.quick_steps(z), equations.drive_rate(z)
+        self.matrix, self.steps, self._beta = np.empty(0), equations.quick_steps(z), equations.drive_rate(z)
         self._quick_end_here: np.ndarray | None = None
 
     def solve_quick(self, near: Near) -> None:
@@ -241,7 +241,7 @@ class Newton:
     def _residual(self, end: np.ndarray) -> float:
         """Relative residual of z, from where a map leads to `end`."""
         x = self.equations.state(self.z)
-        return orbit_change(end - x, x, self._rate)
+        return orbit_change(end - x, x, self._beta)
 
     def _record(self, end: np.ndarray) -> float:
         """Like `_residual`, but also append it to `residuals`."""
