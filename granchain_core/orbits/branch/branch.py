@@ -239,7 +239,7 @@ def continue_branch(scene: Scene, knob: str, start: float, end: float, period: i
     scene : Scene
         The chain; its tension must not be cut.
     knob : str
-        "f", "A0", "D", "k", "kappa", "F0", "dimer", "taper", "striker" or "impurity".
+        A continuous knob, one of `CONTINUOUS` (`granchain_core.orbits`).
     start, end : float
         Values of the knob in SI between which the branch is followed; the first orbit is at `start`.
     period : int, optional

@@ -163,10 +163,10 @@ def _critical(kind: str, multiplier: complex, derivative: np.ndarray) -> _Critic
     right, q = _nearest(kind, multiplier, derivative)
     _, p = _nearest(kind, multiplier.conjugate(), derivative.T)
     others = np.linalg.eigvals(derivative)
-    mine = [int(np.argmin(np.abs(others - right)))]
+    of_this_kind = [int(np.argmin(np.abs(others - right)))]
     if kind == "neimark_sacker":
-        mine.append(int(np.argmin(np.abs(others - right.conjugate()))))
-    if (np.abs(np.abs(np.delete(others, mine)) - 1.0) < _AT_CIRCLE).any():
+        of_this_kind.append(int(np.argmin(np.abs(others - right.conjugate()))))
+    if (np.abs(np.abs(np.delete(others, of_this_kind)) - 1.0) < _AT_CIRCLE).any():
         raise NotSmooth(ANOTHER_MULTIPLIER)
     q = q * np.sqrt(len(q)) / np.linalg.norm(q)
     return _Critical(right, q, p / np.vdot(q, p))
