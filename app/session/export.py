@@ -55,7 +55,10 @@ def trains_csv(run: Run) -> str:
 def curve_csv(curves: Mapping[str, Sequence[CurvePoint]]) -> str:
     """Return the resonance curves, one row per point: largest forces, and the regime with its evidence.
 
-    `claim` is the stated relative error of the output force. The cells of unknown numbers are empty.
+    Scripts read the columns, so their names do not change, although files and JSON have others (`Curve.to_xarray`,
+    `granchain curve --json`): `force_N` is the largest output force, `elastic_part` that of its elastic part,
+    `at_the_driver` the largest input force [N], and `claim` the stated relative error of the output force (`error`
+    in JSON). The cells of unknown numbers are empty.
     """
     all_points = [(start, point) for start, points in curves.items() for point in points]
     evidence = evidence_columns([point.regime for _, point in all_points], "frequency")

@@ -17,7 +17,8 @@ class Row:
     """One method at one setting: largest displacement error over the largest displacement, seconds, evaluations.
 
     `value` is the setting as a number. A row with a `failure` has neither error nor time. `wall_s` is the processor
-    time of the computing thread, on which other load hardly has an effect.
+    time of the computing thread, on which other load hardly has an effect; in other results, a field of this name is
+    wall-clock time. Files and the command line's JSON have the name too, so it does not change.
     """
 
     method: str
@@ -42,7 +43,8 @@ class WorkPrecision(Labelled):
     agreement : float
         Largest difference between the two over the largest displacement; NaN while it is unknown.
     rows : list of Row
-        One for each method and setting: `method`, `setting`, `error`, `wall_s` [s], `rhs`, and `failure`, a sentence.
+        One for each method and setting: `method`, `setting`, `error`, `wall_s` (processor time [s]), `rhs`, and
+        `failure`, a sentence.
     lesson : NaiveComparison or None
         The force as naive methods compute it.
     disagreement : str
@@ -77,7 +79,7 @@ class WorkPrecision(Labelled):
             **column("method", "", "name of the method", object), **column("setting", "", "its setting", object),
             **column("value", "1", "its setting as a number"),
             **column("error", "1", "largest error of a displacement over the largest displacement"),
-            **column("wall_s", "s", "time of ten drive periods"),
+            **column("wall_s", "s", "processor time of ten drive periods, on the computing thread"),
             **column("rhs", "1", "evaluations of the equations of motion", np.int64),
             **column("failure", "", "why there is neither error nor time; empty where there are", object)}),)
 

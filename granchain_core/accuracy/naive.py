@@ -76,7 +76,8 @@ def naive_comparison(scene: Scene, stop: Stop) -> NaiveComparison:
             try:
                 force = output_force(scene, PlainSteps(method.name, steps=steps), stop)[first:]
             except ComputationError as problem:
-                result.lines.append(NaiveLine(method.name, steps, float("inf"), np.zeros(0), problem.sentence))
+                result.lines.append(NaiveLine(method.name, steps=steps, error=float("inf"), force=np.zeros(0),
+                                              failure=problem.sentence))
                 continue
             error = float(np.abs(force - true).max()) / largest if largest > 0.0 else 0.0
             result.lines.append(NaiveLine(method.name, steps, error, force))

@@ -156,8 +156,10 @@ def _row(scene: Scene, choice: MeasuredSetting, exact: np.ndarray, stop: Stop) -
     try:
         best = _fastest(stop, measure)
     except (ComputationError, BadInput) as problem:
-        return Row(choice.method, choice.label, float("inf"), 0.0, 0, choice.value, str(problem))
-    return Row(choice.method, choice.label, _distance(best.displacement, exact), best.seconds, best.rhs, choice.value)
+        return Row(choice.method, setting=choice.label, error=float("inf"), wall_s=0.0, rhs=0, value=choice.value,
+                   failure=str(problem))
+    return Row(choice.method, setting=choice.label, error=_distance(best.displacement, exact), wall_s=best.seconds,
+               rhs=best.rhs, value=choice.value)
 
 
 def _faster(before: Row, scene: Scene, choice: MeasuredSetting, exact: np.ndarray, stop: Stop) -> Row:

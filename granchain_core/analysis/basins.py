@@ -40,8 +40,8 @@ class Basins(Labelled):
     attractors : list of Attractor
         The steady states that were found, the one with the most starts first.
     number : numpy.ndarray of int, shape (len(y), len(x))
-        Index in `attractors` of each start's attractor, from 0; −1 where the computation failed or was stopped. The
-        command's JSON has the same numbers. Tables and files count from 1, with 0 where there is no attractor.
+        Index in `attractors` of each start's attractor, from 0; −1 where the computation failed or was stopped. Tables
+        and files count from 1 (docs/analysis.md, "Basins").
 
     Examples
     --------

@@ -234,7 +234,8 @@ def _point(value: float, chain: Scene, start: State | None, keep: int, stop: Sto
         settling = run_until_settled(chain, start, stop)
         engine, strobes, error = _refined(settling) or (settling.engine, settling.engine.periods(keep)[0][1:], None)
     except ComputationError as failed:
-        return StrobePoint(value, Regime.unsettled(0), np.zeros((0, 2, chain.N)), start, failed.sentence)
+        return StrobePoint(value, regime=Regime.unsettled(0), strobes=np.zeros((0, 2, chain.N)), state=start,
+                           failure=failed.sentence)
     strobes = settling.engine.scaled.scales.states(strobes)
     kept = np.resize(strobes, (keep, *strobes.shape[1:]))  # the strobes of an orbit are repeated
     return StrobePoint(value, settling.regime, kept, engine.state, strobe_error=error)

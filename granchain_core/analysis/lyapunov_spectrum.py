@@ -158,8 +158,8 @@ class LyapunovSpectrum(Labelled):
 
     def summary(self) -> list[str]:
         """The leading exponents and the dimension."""
-        shown = [f"{e:+.4f} ± {s:.4f}" for e, s in zip(self.exponents[:4], self.errors, strict=False)]
-        return [f"leading exponents per drive period: {', '.join(shown)}",
+        largest = [f"{e:+.4f} ± {s:.4f}" for e, s in zip(self.exponents[:4], self.errors, strict=False)]
+        return [f"leading exponents per drive period: {', '.join(largest)}",
                 f"Kaplan–Yorke dimension of the section: {self.dimension_words()}",
                 f"{self.resolved} of {len(self.exponents)} resolved, over {self.periods} periods"]
 
@@ -238,8 +238,8 @@ def lyapunov_spectrum(scene: Scene, periods: int = 400, start: State | None = No
     # the factorization sorts them only in the limit: close ones may be out of order
     order = np.concatenate([np.argsort(-exponents[:resolved], kind="stable"), np.arange(resolved, len(x))])
     mean_trace = float(traces[_ALIGNMENT_PERIODS:].mean())
-    return LyapunovSpectrum(scene, exponents[order], errors[order], resolved, periods, mean_trace,
-                            settling.regime.name)
+    return LyapunovSpectrum(scene, exponents=exponents[order], errors=errors[order], resolved=resolved, periods=periods,
+                            mean_trace=mean_trace, regime=settling.regime.name)
 
 
 def _growth(stroboscopic_map: StroboscopicMap, x: np.ndarray, periods: int,

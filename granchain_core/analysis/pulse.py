@@ -194,9 +194,10 @@ def pulse(run: Run) -> Pulse:
     velocity = np.array([run.velocity[: passed[i], i].max() for i in range(scene.N)])
     speed_error = 0.5 * speed[1:-1] * (late[2:] + late[:-2])
     width_error = speed_error + _WIDTH_ERROR_OVER_CHANGE * (half_change / half)[1:-1]
-    return Pulse(run, contacts, time, force, speed, speed * half, velocity,
-                 _ERROR_OVER_CHANGE * float((force_change / force).max()),
-                 _ERROR_OVER_CHANGE * float(time_change.max()), _largest(speed_error), _largest(width_error))
+    return Pulse(run, contact=contacts, time=time, force=force, speed_beads_s=speed, width=speed * half,
+                 velocity=velocity, sampling_error=_ERROR_OVER_CHANGE * float((force_change / force).max()),
+                 sampling_error_time=_ERROR_OVER_CHANGE * float(time_change.max()),
+                 sampling_error_speed=_largest(speed_error), sampling_error_width=_largest(width_error))
 
 
 def _first_maximum(run: Run, contact: int) -> int | None:

@@ -123,7 +123,7 @@ class RotationNumber(Labelled):
 
     @property
     def nearest_fraction(self) -> Fraction | None:
-        """The fraction j/q, q at most 60, that is nearest to ρ; None where there is no value."""
+        """The fraction j/q, q at most `LARGEST_DENOMINATOR`, that is nearest to ρ; None where there is no value."""
         return None if self.value is None else Fraction(self.value).limit_denominator(LARGEST_DENOMINATOR)
 
     @property
@@ -218,7 +218,8 @@ def rotation_number(scene: Scene, periods: int = 4000, start: State | None = Non
     settled = run_until_settled(scene, start, stop)
     if settled.regime.name != "quasi-periodic":
         return _result(scene, settled.regime, periods,
-                       Winding(None, None, 1, f"the motion is {settled.regime.name}, not quasi-periodic"), None)
+                       Winding(None, error=None, curves=1,
+                               reason=f"the motion is {settled.regime.name}, not quasi-periodic"), None)
     reported = progress or (lambda _: None)
     engine = _engine(scene, _LONGER, settled.engine.state, settled.stop)
     longer, _ = _recorded(engine, periods, lambda part: reported(part / 3))
@@ -258,14 +259,16 @@ def _compared(longer: Winding, shorter: Winding) -> tuple[Winding, float | None]
     if shorter.value is None:
         return shorter, None
     if longer.value is None:
-        return Winding(None, None, shorter.curves, f"steps twice as long give none: {longer.reason}"), None
+        return Winding(None, error=None, curves=shorter.curves,
+                       reason=f"steps twice as long give none: {longer.reason}"), None
     if longer.curves != shorter.curves:
         reason = f"with steps twice as long there are {longer.curves} curves instead of {shorter.curves}"
-        return Winding(None, None, shorter.curves, reason), None
+        return Winding(None, error=None, curves=shorter.curves, reason=reason), None
     return shorter, IRREGULAR * folded(longer.value - shorter.value)
 
 
 def _result(scene: Scene, regime: Regime, periods: int, winding: Winding, step_error: float | None) -> RotationNumber:
     convergence = np.full((LENGTHS, 3), np.nan) if winding.convergence is None else winding.convergence
-    return RotationNumber(scene, regime, winding.value, winding.error, step_error, winding.curves, periods,
-                          winding.projections, winding.reason, convergence)
+    return RotationNumber(scene, regime=regime, value=winding.value, average_error=winding.error, step_error=step_error,
+                          curves=winding.curves, periods=periods, projections=winding.projections,
+                          reason=winding.reason, convergence=convergence)

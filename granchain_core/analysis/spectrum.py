@@ -204,7 +204,8 @@ def spectrum(run: Run, force: str = "output") -> Spectrum:
     lines, half = (cosines(some, period is not None) for some in (values, values[::2]))
     aliasing = 2.0 * float(np.abs(lines[: len(half) // 2] - half[: len(half) // 2]).max())
     frequency = np.arange(len(lines)) * run.scene.f * run.samples / len(values)
-    return Spectrum(run, force, frequency, np.abs(lines), np.angle(lines), period, aliasing)
+    return Spectrum(run, force=force, frequency=frequency, amplitude=np.abs(lines), phase=np.angle(lines),
+                    period=period, aliasing=aliasing)
 
 
 def transfer(run: Run) -> Transfer:
@@ -242,7 +243,8 @@ def transfer(run: Run) -> Transfer:
     a, b = out.error / out.amplitude[strong], into.error / into.amplitude[strong]  # relative errors of both lines
     gain_error = np.where(b < 1.0, gain * (a + b) / np.where(b < 1.0, 1.0 - b, 1.0), math.nan)
     phase_error = np.where(a + b < 1.0, np.arcsin(np.minimum(a + b, 1.0)), math.pi)
-    return Transfer(into.frequency[strong], gain, np.angle(np.exp(1j * turned)), gain_error, phase_error, run)
+    return Transfer(into.frequency[strong], gain=gain, phase=np.angle(np.exp(1j * turned)), gain_error=gain_error,
+                    phase_error=phase_error, run=run)
 
 
 def _record(run: Run, values: np.ndarray) -> tuple[np.ndarray, int | None]:

@@ -16,6 +16,7 @@ from fractions import Fraction
 
 import numpy as np
 
+from ..steady.regime_criteria import LONGEST_LOCKED_PERIOD
 from .birkhoff import average, fourier_coefficient, turns
 from .strobe_lines import AT_MULTIPLE, Basic, basic_frequency, curves_of, fraction_at, lines_of
 
@@ -29,7 +30,7 @@ _AT_REST = 1e-9
 _PROJECTED_LINES = 3
 #: [rotation] Largest denominator of a fraction with which a rotation number is compared: the longest period that a
 #: regime may have.
-LARGEST_DENOMINATOR = 60
+LARGEST_DENOMINATOR = LONGEST_LOCKED_PERIOD
 #: [rotation] Minimum number of passes, P |qρ − j|, of the states near a fraction from one of the places of a locked
 #: motion to the next.
 _FEWEST_PASSES = 4.0
@@ -94,7 +95,7 @@ def winding_of(states: np.ndarray) -> Winding:
 
 
 def _none(curves: int, reason: str) -> Winding:
-    return Winding(None, None, curves, reason)
+    return Winding(None, error=None, curves=curves, reason=reason)
 
 
 def _embedded(states: np.ndarray) -> np.ndarray:
@@ -113,8 +114,8 @@ def _on_one_curve(embedded: np.ndarray, lines: np.ndarray, curves: int) -> Windi
         return _none(curves, "the states repeat, or there are more curves than can be detected")
     basic = basic_frequency(lines, count)
     if basic is None:
-        shown = ", ".join(f"{line:.6f}" for line in lines[:_PROJECTED_LINES])
-        return _none(curves, f"the strongest lines of their spectrum ({shown} per period) and the others are not "
+        strongest = ", ".join(f"{line:.6f}" for line in lines[:_PROJECTED_LINES])
+        return _none(curves, f"the strongest lines of their spectrum ({strongest} per period) and the others are not "
                              "multiples of one frequency: there is a third frequency, the motion is chaotic, or it is "
                              "locked to a long period")
     increments = [(steps, multiple) for steps, multiple in _projections(embedded, lines, basic) if steps is not None]
@@ -129,7 +130,8 @@ def _on_one_curve(embedded: np.ndarray, lines: np.ndarray, curves: int) -> Windi
     steps, multiple = increments[0]
     convergence = np.array([_at_length(steps[: count >> k], multiple, basic.frequency) for k in range(LENGTHS)][::-1])
     error = max(_STATED * max(*errors, convergence[-1, 2]), _ROUNDING)
-    return Winding(folded(rotations[0]), float(error), curves, "", len(rotations), convergence)
+    return Winding(folded(rotations[0]), error=float(error), curves=curves, reason="", projections=len(rotations),
+                   convergence=convergence)
 
 
 def _projections(embedded: np.ndarray, lines: np.ndarray, basic: Basic) -> list[tuple[np.ndarray | None, int]]:

@@ -246,9 +246,9 @@ def _attractor(group: list[Candidate], origins: list[Origin]) -> Attractor:
         maxima = np.max([member.result.maxima for member in group], axis=0)
     regime = _regime([member.result.regime for member in group])
     state = first.result.state if first.orbit is None else first.orbit.state
-    return Attractor(best.scene, regime, float(maxima[0]), float(maxima[1]), float(maxima[2]),
-                     ForceErrors.of(best.errors), state, first.orbit,
-                     [origins[member.result.number] for member in group])
+    return Attractor(best.scene, regime=regime, max_input_force=float(maxima[0]), max_output_force=float(maxima[1]),
+                     max_output_force_elastic=float(maxima[2]), force_errors=ForceErrors.of(best.errors), state=state,
+                     orbit=first.orbit, origins=[origins[member.result.number] for member in group])
 
 
 def _regime(regimes: list[Regime]) -> Regime:

@@ -91,8 +91,8 @@ def _curve(at: Columns, layout: str, about: dict[str, Any]) -> Measured:
     repeated = f", means of up to {count.max()} repeats with their extremes" if count.max() > 1 else ""
     understood = (f"{len(points)} points, {points[0]:g} to {points[-1]:g} Hz, force {mean.min():g} to {mean.max():g} N"
                   f"{repeated}, {'with' if both is not None else 'no'} errors; {layout}")
-    return Measured(points, mean, both, understood, low, high, count,
-                    np.sqrt(spread / np.maximum(count - 1, 1)), **about)
+    return Measured(points, force=mean, error=both, understood=understood, low=low, high=high, repeats=count,
+                    scatter=np.sqrt(spread / np.maximum(count - 1, 1)), **about)
 
 
 def _shaker(at: Columns, layout: str, about: dict[str, Any]) -> Shaker:

@@ -47,7 +47,8 @@ class Misfit:
         rms, size = (float(np.sqrt(np.mean(one**2))) for one in (gaps, measured))
         index = int(np.argmax(np.abs(gaps)))
         signed = float(gaps[index])
-        return Misfit(rms, abs(signed), float(gaps.mean()), rms / size if size > 0.0 else None, signed, index)
+        return Misfit(rms, largest=abs(signed), mean=float(gaps.mean()), relative=rms / size if size > 0.0 else None,
+                      signed=signed, index=index)
 
     def words(self, place: str = "") -> str:
         """Return the numbers in words; `place` says where the largest difference is."""

@@ -102,5 +102,5 @@ class CurveTarget(Compared):
         failed = ~np.isfinite(model)
         enlarged[failed] = sigma[failed]
         residuals = np.where(failed, FAILED, model_minus_measured(model, self.measured.force) / enlarged)
-        return Evaluation(residuals, float(2.0 * np.log(enlarged / sigma).sum()),
-                          tuple(regime_and_period(p.regime) for p in curve.points), model, curve)
+        return Evaluation(residuals, log_variance=float(2.0 * np.log(enlarged / sigma).sum()),
+                          regimes=tuple(regime_and_period(p.regime) for p in curve.points), model=model, curve=curve)

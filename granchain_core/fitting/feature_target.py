@@ -64,7 +64,8 @@ class FeatureTarget(Compared):
             nearest = min(of_kind[feature.is_resonance], key=lambda f: abs(f - feature.frequency), default=math.nan)
             model.append(nearest)
             residuals.append((nearest - feature.frequency if math.isfinite(nearest) else width) / self.sigma)
-        return Evaluation(np.array(residuals), 0.0, tuple(p.regime.name for p in curve.points), np.array(model), curve)
+        return Evaluation(np.array(residuals), log_variance=0.0, regimes=tuple(p.regime.name for p in curve.points),
+                          model=np.array(model), curve=curve)
 
 
 def extrema(points: Sequence[CurvePoint], peaks: bool) -> list[float]:

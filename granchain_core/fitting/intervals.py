@@ -77,8 +77,8 @@ def profile(problem: Problem, best: np.ndarray, j: int, scale: float, degrees_of
                                           for sign in (-1.0, 1.0))
     parameter = problem.free[j]
     along = sorted(rises)
-    return Profile(tuple(parameter.value(x) for x in along), tuple(rises[x] for x in along), parameter.value(low),
-                   parameter.value(high), open_low, open_high)
+    return Profile(tuple(parameter.value(x) for x in along), rises=tuple(rises[x] for x in along),
+                   low=parameter.value(low), high=parameter.value(high), open_low=open_low, open_high=open_high)
 
 
 def _ridge(problem: Problem, best: np.ndarray, j: int, top: float) -> tuple[np.ndarray, float]:

@@ -57,11 +57,12 @@ def overlay(series: Series, run: Run, sensors: Sensors = _PERFECT) -> Overlay | 
         return None
     swing = None if series.displacement is None else series.displacement - series.displacement.mean()
     if run.regime.name != "periodic":
-        return Overlay(series.time, forces, None, swing, sensors)
+        return Overlay(series.time, forces=forces, rms=None, displacement=swing, sensors=sensors)
     trains = {name: Train.of(run, name) for name in forces}
     width = float(np.median(np.diff(series.time)))
     late = moved(series.time, forces, trains, width, len(run.time) - 1, sensors)
     rms = {name: Misfit.of(trains[name].recorded(series.time + late, width, sensors), values).rms
            for name, values in forces.items()}
     length = next(iter(trains.values())).length
-    return Overlay(series.time + late - np.ceil(late / length) * length, forces, rms, swing, sensors)
+    return Overlay(series.time + late - np.ceil(late / length) * length, forces=forces, rms=rms, displacement=swing,
+                   sensors=sensors)

@@ -47,7 +47,7 @@ class Fit(Labelled):
     probability : float or None
         Probability of a χ² at least as large if the model were true; None if the data's errors are not known.
     verdict : str
-        "can", "cannot" or "not known".
+        Whether the model can describe the data: "can" (compatible), "cannot" (incompatible) or "not known" (undecided).
     sentence : str
         The verdict with its evidence.
     evaluation : Evaluation

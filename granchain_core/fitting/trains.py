@@ -43,11 +43,11 @@ class Train:
         """
         time, force = run.time - run.time[0], getattr(run, name)
         contact = 0 if name == "input_force" else run.scene.N
-        mine = run.jumps.contact == contact
-        closed, opened = run.jumps.time[mine] - run.time[0], _releases(run, contact)
+        of_contact = run.jumps.contact == contact
+        closed, opened = run.jumps.time[of_contact] - run.time[0], _releases(run, contact)
         at = np.concatenate([closed, opened[0]])
         before = np.concatenate([np.zeros(len(closed)), opened[1]])
-        after = np.concatenate([run.jumps.force[mine], np.zeros(len(opened[0]))])
+        after = np.concatenate([run.jumps.force[of_contact], np.zeros(len(opened[0]))])
         inside = (at > 0.0) & (at < time[-1])
         at, before, after = at[inside], before[inside], after[inside]
         order = np.argsort(np.concatenate([time, at, at]), kind="stable")  # samples, then before, then after

@@ -39,7 +39,7 @@ def probability_of(problem: Problem, x: np.ndarray, data: int) -> float | None:
 
 
 def verdict_of(probability: float | None) -> str:
-    """The verdict from the probability of a χ² as large: "can", "cannot", or "not known" if that is None."""
+    """Whether the model can describe the data, from the probability of a χ² as large; "not known" if that is None."""
     return "not known" if probability is None else "can" if probability >= CANNOT else "cannot"
 
 

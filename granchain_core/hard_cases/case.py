@@ -88,5 +88,6 @@ def run_case(case: Case, quick: bool) -> list[Check]:
     except (ComputationError, BadInput) as problem:
         measurements = [Measurement("could not be computed", math.nan, 0.0, str(problem))]
     spent = time.perf_counter() - began
-    return [Check(case.name, f.name, f.value, f.limit, bool(f.value <= f.limit), spent if i == 0 else 0.0,
-                  case.hard, case.naive, case.oracle, f.note) for i, f in enumerate(measurements)]
+    return [Check(case.name, measurement=f.name, value=f.value, limit=f.limit, passed=bool(f.value <= f.limit),
+                  seconds=spent if i == 0 else 0.0, what_is_hard=case.hard, naive=case.naive, oracle=case.oracle,
+                  note=f.note) for i, f in enumerate(measurements)]

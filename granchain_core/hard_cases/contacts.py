@@ -34,9 +34,9 @@ def brushed_picture() -> Picture:
     depths = np.linspace(-7.0, -2.0, 21)
     cases = touches.draw(2_000, 5, True)
     cases[:, touches.DEPTH] = np.abs(cases[:, touches.DEPTH])
-    seen = touches.run(cases, True)[:, touches.CLOSINGS] == 1
+    detected = touches.run(cases, True)[:, touches.CLOSINGS] == 1
     logs = np.log10(cases[:, touches.DEPTH])
-    ours = np.array([seen[np.abs(logs - d) < 0.25].mean() for d in depths])
+    ours = np.array([detected[np.abs(logs - d) < 0.25].mean() for d in depths])
     traces = [Trace("granchain", ours)]
     for looks in (100, 1000):
         # a touch of depth d lasts 2·arccos(1 − d)/2π of a period, and is detected if a sample falls into it

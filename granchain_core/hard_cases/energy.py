@@ -212,13 +212,13 @@ def switched_picture() -> Picture:
     In this limit, the velocity jumps and w does not.
     """
     chosen, beads, samples = scene("sec2").evolve(N=4), 4, 2000
-    engine, shown = Engine(chosen, dop853_setting(1e-12), samples), 100
+    engine, recorded = Engine(chosen, dop853_setting(1e-12), samples), 100
     engine.grid_index = engine.grid // 4
     engine.evaluate()  # the driver is at its amplitude now; the beads, and w, have not changed
-    ours = engine.record(shown).velocity.sum(axis=1)
+    ours = engine.record(recorded).velocity.sum(axis=1)
     chain = PlainChain.of(chosen)
-    naive = rk4(plain_slope(chain), np.zeros(2 * beads), 0.25 * chain.period, chain.period / samples / 2, 2 * shown)
-    rest, after = np.zeros(2), np.arange(shown + 1)
+    naive = rk4(plain_slope(chain), np.zeros(2 * beads), 0.25 * chain.period, chain.period / samples / 2, 2 * recorded)
+    rest, after = np.zeros(2), np.arange(recorded + 1)
     traces = [Trace(label, np.concatenate([rest, momentum]) / np.abs(ours).max()) for label, momentum in (
         ("granchain", ours), ("plain RK4, 4000 steps a period", naive[::2, beads:].sum(axis=1)))]
     return Picture(np.concatenate([[-20.0, 0.0], after]) / samples, "drive periods since the jump",

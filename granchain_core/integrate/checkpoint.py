@@ -68,9 +68,10 @@ def checkpoint(engine: Engine) -> Checkpoint:
     if error_control:
         work: ErrorControl = engine.stepper.work
         control = np.array([*work.next_step, *work.scale])
-    return Checkpoint(engine.scaled.scene.digest, setting.method, float(setting.refine), setting.tolerance,
-                      engine.samples, engine.y.copy(), engine.stepper.slope.copy(), control, engine.grid_index,
-                      float(engine.elapsed))
+    return Checkpoint(engine.scaled.scene.digest, method=setting.method, refine=float(setting.refine),
+                      tolerance=setting.tolerance, samples=engine.samples, y=engine.y.copy(),
+                      slope=engine.stepper.slope.copy(), control=control, grid_index=engine.grid_index,
+                      elapsed=float(engine.elapsed))
 
 
 def resumed(scene: Scene, kept: Checkpoint, stop: Stop | None = None) -> Engine:

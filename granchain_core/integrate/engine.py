@@ -254,5 +254,5 @@ class Engine:
         self.y[:], self.stepper.slope[:] = before, slope
 
     def _failure(self, status: int, done: float, bead: int, step: int | None) -> Failure:
-        return Failure(status, self.elapsed + done, bead, step, self.counts.by_name, self.scaled.scene,
-                       self.setting.method)
+        return Failure(status, periods=self.elapsed + done, bead=bead, step=step, cost=self.counts.by_name,
+                       scene=self.scaled.scene, method=self.setting.method)

@@ -52,8 +52,8 @@ class Failure:
         when = f"after {place}"
         if self.status == NOT_FINITE:
             where = "" if self.step is None else f" in step {self.step} of its period"
-            return ComputationError(not_finite(f"at {place}{where}", self.bead), "not-finite", self.bead or None, time,
-                                    self.step, self.cost)
+            return ComputationError(not_finite(f"at {place}{where}", self.bead), status="not-finite",
+                                    bead=self.bead or None, time=time, step=self.step, cost=self.cost)
         if self.status == STEP_TOO_SMALL:
             return ComputationError(f"The step of {self.method} became too small {when}; ask for less accuracy than "
                                     f"{self.scene.accuracy:g}, or for {_FIXED_STEPS}.",

@@ -95,11 +95,11 @@ class Computations:
         coarser = self.settings[-1]
         self._see_growth(coarser, float(differences[0]))
         self.rounding = _ROUNDING_FACTOR * self.growth * np.finfo(float).eps * float(np.sqrt(steps))
-        seen = differences
+        errors = differences
         if self._before is not None:
-            seen = np.maximum(seen, self._before / self._falls(coarser, setting))
+            errors = np.maximum(errors, self._before / self._falls(coarser, setting))
         regular = METHODS[setting.method].converges_regularly and not self.cuts_tension
-        self.stated = np.maximum((REGULAR if regular else IRREGULAR) * seen, np.maximum(least_errors, self.rounding))
+        self.stated = np.maximum((REGULAR if regular else IRREGULAR) * errors, np.maximum(least_errors, self.rounding))
         self._before = differences
         self.settings.append(setting)
 

@@ -128,11 +128,12 @@ def prepared(record: ForceRecord, scene: Scene, offset: float | str = 0.0, gap: 
     elif float(np.abs(record.force).min()) > _NEAR_ZERO * float(np.abs(record.force).max()) and scene.F0 == 0.0:
         notes.append(f"the force is nowhere below {np.abs(record.force).min():.3g} N: if that is the sensor's offset, "
                      "subtract it with --offset median, or --offset with its value (offset= in Python)")
-    moved = ForceRecord(record.time, record.force - zero, record.output, record.place, record.understood)
+    moved = ForceRecord(record.time, force=record.force - zero, output=record.output, place=record.place,
+                        understood=record.understood)
     bridged = _bridged(moved, gap, notes)
     _check_sampling(moved, scene, sensors)
-    return ForceRecord(bridged.time, bridged.force, bridged.output, bridged.place, bridged.understood, tuple(notes),
-                       bridged.put_in)
+    return ForceRecord(bridged.time, force=bridged.force, output=bridged.output, place=bridged.place,
+                       understood=bridged.understood, notes=tuple(notes), put_in=bridged.put_in)
 
 
 def _offset(record: ForceRecord, offset: float | str) -> float:
@@ -160,7 +161,7 @@ def _bridged(record: ForceRecord, gap: str, notes: list[str]) -> ForceRecord:
         raise BadInput(f"{gaps.where}: a gap in a record with an output force can only be interpolated, since there is "
                        "no output force for inserted samples.")
     time, force, put_in = with_zeros(record.time, record.force, gaps.before, gaps.usual)
-    return ForceRecord(time, force, None, record.place, record.understood, put_in=put_in)
+    return ForceRecord(time, force=force, output=None, place=record.place, understood=record.understood, put_in=put_in)
 
 
 def shortest_pulse(scene: Scene, force: float) -> float:

@@ -130,8 +130,9 @@ def _from_rest(scene: Scene, period: int | None, stop: Stop | None) -> tuple[Orb
 
 def _point(value: float, orbit: Orbit | None, failure: str) -> ObserverPoint:
     if orbit is None or orbit.observer_multipliers is None:
-        return ObserverPoint(value, complex(math.nan), complex(math.nan), None, failure)
-    return ObserverPoint(value, complex(orbit.observer_multipliers[0]), complex(orbit.multipliers[0]), orbit.period, "")
+        return ObserverPoint(value, observer=complex(math.nan), chain=complex(math.nan), period=None, failure=failure)
+    return ObserverPoint(value, observer=complex(orbit.observer_multipliers[0]), chain=complex(orbit.multipliers[0]),
+                         period=orbit.period, failure="")
 
 
 def _locate(scene: Scene, knob: str, a: ObserverPoint, b: ObserverPoint, orbit: Orbit,

@@ -143,10 +143,10 @@ def _newton_step(stroboscopic_map: StroboscopicMap, x: np.ndarray, flow: Flow) -
 def _orbit(scene: Scene, n: int, stroboscopic_map: StroboscopicMap, newton: Iterated, observer: bool) -> Orbit:
     """The orbit at the fixed point that Newton's method found, with its multipliers."""
     x, flow = newton.z, newton.flow
-    off = monodromy = observer_monodromy = None
+    liouville_error = monodromy = observer_monodromy = None
     if _dense(x):
         monodromy, multipliers = flow.derivative, sorted_multipliers(flow.derivative)
-        off = liouville_if_known(multipliers, flow.log_determinant)
+        liouville_error = liouville_if_known(multipliers, flow.log_determinant)
         observer_monodromy = stroboscopic_map(x, observer=True).derivative if observer else None
         observer_multipliers = None if observer_monodromy is None else sorted_multipliers(observer_monodromy)
     else:
@@ -155,5 +155,7 @@ def _orbit(scene: Scene, n: int, stroboscopic_map: StroboscopicMap, newton: Iter
         multipliers = leading_multipliers(stroboscopic_map, x)
         observer_multipliers = leading_multipliers(stroboscopic_map, x, observer=True) if observer else None
     scaled = stroboscopic_map.engine.scaled
-    return Orbit(scene, n, scaled.to_si(scaled.embed(x)), newton.residuals[-1], tuple(newton.residuals), multipliers,
-                 off, flow.contact_events, observer_multipliers, monodromy, observer_monodromy)
+    return Orbit(scene, n, state=scaled.to_si(scaled.embed(x)), residual=newton.residuals[-1],
+                 newton_residuals=tuple(newton.residuals), multipliers=multipliers, liouville_error=liouville_error,
+                 contact_events=flow.contact_events, observer_multipliers=observer_multipliers, monodromy=monodromy,
+                 observer_monodromy=observer_monodromy)

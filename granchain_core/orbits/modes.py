@@ -67,7 +67,8 @@ def mode(orbit: Orbit, rank: int = 0, samples: int = 48, stop: Stop | None = Non
         imaginary, imaginary_end = _carried(orbit, x, vector.imag, size, samples, stop)
         displacement, end = displacement + 1j * imaginary, end + 1j * imaginary_end
     closure = float(np.abs(end - value * vector).max() / np.abs(vector).max())
-    return Mode(complex(value), orbit.period, samples, displacement / np.abs(displacement).max(), closure)
+    return Mode(complex(value), period=orbit.period, samples=samples,
+                displacement=displacement / np.abs(displacement).max(), closure=closure)
 
 
 def eigenpair(stroboscopic_map: StroboscopicMap, x: np.ndarray, rank: int,

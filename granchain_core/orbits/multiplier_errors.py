@@ -52,11 +52,11 @@ def errors_of(multipliers: np.ndarray, derivative: np.ndarray, change: np.ndarra
 
     values, left, right = eig(derivative, left=True, right=True)
     with np.errstate(divide="ignore", invalid="ignore"):
-        seen = np.abs(np.einsum("ki,kl,li->i", left.conj(), change, right))
+        first_order = np.abs(np.einsum("ki,kl,li->i", left.conj(), change, right))
         bound = _between(left, change, right)
         rounding = np.finfo(float).eps * _between(left, derivative, right)
         overlap = np.abs((left.conj() * right).sum(axis=0))
-        errors = (np.maximum(_CAUTION_FACTOR * seen, _LEAST_FRACTION * bound) + rounding) / overlap
+        errors = (np.maximum(_CAUTION_FACTOR * first_order, _LEAST_FRACTION * bound) + rounding) / overlap
     errors[np.isnan(errors)] = np.inf
     return np.asarray(errors[np.abs(multipliers[:, None] - values[None, :]).argmin(axis=1)])
 

@@ -82,8 +82,8 @@ def response(orbit: Orbit) -> Response:
     transmission = run.max_output_force / run.max_input_force if run.max_input_force > 0.0 else 0.0
     measured = (strong, periods) == (1, 1) and transmission >= STOP_BAND_FRACTION
     in_step = returning >= RETURNS_IN_STEP if measured else None
-    return Response(strong, periods, in_step, None if begin is None else _phase(begin), _phase(peak), returning,
-                    transmission)
+    return Response(strong, periods=periods, in_step=in_step, contact_phase=None if begin is None else _phase(begin),
+                    peak_phase=_phase(peak), returning=returning, transmission=transmission)
 
 
 def _phase(sample: int) -> float:

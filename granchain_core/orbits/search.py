@@ -42,7 +42,7 @@ _PERIODS_BETWEEN_STARTS = 5
 _RECORDED_PERIODS = 400
 #: Distance between an orbit and a settled motion below which the orbit counts as the motion's own.
 OWN_ORBIT_DISTANCE = 1e-3
-#: Number of section states that are averaged: a multiple of all short periods.
+#: Number of late section states of which every n-th is averaged, n being the period.
 _STATES_OF_MEAN = 120
 
 

@@ -140,10 +140,10 @@ def _states() -> Numbers:
 
 def _trains() -> Numbers:
     """Compute the presets at 90 and 50 Hz, then 100 Hz from rest with the amplitudes of `_two_solutions`."""
-    shown = [_settle(STATES[f]) for f in (90.0, 100.0)]
+    presets = [_settle(STATES[f]) for f in (90.0, 100.0)]
     twice = scene(STATES[100.0]).evolve(f=100.0)
     gentle = [settle(chain, rest(chain)) for chain in (twice.evolve(A0=a, kappa=KAPPA) for a in (RIG_AMPLITUDE, 10e-6))]
-    groups = shown, gentle, [settle(twice, rest(twice))]
+    groups = presets, gentle, [settle(twice, rest(twice))]
     return [" or ".join(sorted({_words(one.regime) for one in group})) for group in groups]
 
 
@@ -154,10 +154,10 @@ def _two_solutions() -> Numbers:
     gentle = [attractors(twice.evolve(A0=a, kappa=KAPPA), 32) for a in (RIG_AMPLITUDE, 10e-6)]
     counts = {float(len(states)) for states in gentle}
     hard = settle(twice, rest(twice))
-    shown = attractors(preset, 32)
+    of_preset = attractors(preset, 32)
     return [counts.pop() if len(counts) == 1 else math.nan,
             " or ".join(sorted({_words(one.regime) for states in gentle for one in states})), _words(hard.regime),
-            float(len(shown)), " or ".join(sorted({_words(one.regime) for one in shown}))]
+            float(len(of_preset)), " or ".join(sorted({_words(one.regime) for one in of_preset}))]
 
 
 def _contact() -> Numbers:

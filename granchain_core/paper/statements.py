@@ -31,8 +31,8 @@ class Statement:
         """Return the entries that differ from the computed ones in a word, or by more than the last digit."""
         if len(numbers) != len(self.computed):
             return [f"{self.key}: {len(numbers)} values for {len(self.computed)} in bold"]
-        return [f"{self.key}: {shown} is {value}" for shown, value in zip(self.computed, numbers, strict=True)
-                if not (shown == value if isinstance(value, str) else abs(float(shown) - value) <= unit_of(shown))]
+        return [f"{self.key}: {text} is {value}" for text, value in zip(self.computed, numbers, strict=True)
+                if not (text == value if isinstance(value, str) else abs(float(text) - value) <= unit_of(text))]
 
 
 def unit_of(number: str) -> float:

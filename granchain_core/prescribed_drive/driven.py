@@ -206,12 +206,12 @@ def _driven(chain: MovedChain, signal: Signal, finest: Refined, between: np.ndar
     balance = residual(motion.energy, chain.scaled.static_energy)
     assert balance is not None, "the chain has an account"
     inward, outward, elastic = (float(force) for force in maxima)
-    return Driven(scene, signal, scales.displacements(motion.displacement), scales.velocities(motion.velocity),
-                  scales.forces(motion.force), inward, outward, elastic,
+    return Driven(scene, signal=signal, displacement=scales.displacements(motion.displacement),
+                  velocity=scales.velocities(motion.velocity), force=scales.forces(motion.force),
+                  max_input_force=inward, max_output_force=outward, max_output_force_elastic=elastic,
                   force_errors=ForceErrors.of(np.array(errors)), displacement_error=float(error),
                   energy_residual=balance, status="done" if error <= scene.accuracy else "accuracy-not-reached",
-                  cost=Cost.of(spent.seconds, chain.counts, RK4_SPLIT),
-                  interpolation_error=float(between[0]))
+                  cost=Cost.of(spent.seconds, chain.counts, RK4_SPLIT), interpolation_error=float(between[0]))
 
 
 def formula_errors(scene: Scene, signal: Signal, growth: float, displacement: float, maxima: np.ndarray) -> np.ndarray:

@@ -159,12 +159,12 @@ class Regime:
 
         If a batch extrapolated a motion to its orbit without multipliers, its assumed contraction is not evidence.
         """
-        shown = self.period or self.approaches or 1
+        period = self.period or self.approaches or 1
         if self.multiplier is not None:
-            return f"|μ| {modulus_words(self.multiplier)}" + ("" if shown == 1 else f" per {shown} periods")
+            return f"|μ| {modulus_words(self.multiplier)}" + ("" if period == 1 else f" per {period} periods")
         if self.observed_contraction is None or self.is_approach:
             return ""
-        interval = "period" if shown == 1 else f"{shown} periods"
+        interval = "period" if period == 1 else f"{period} periods"
         return f"transient shrinks to {modulus_words(self.observed_contraction)} every {interval}"
 
     @property
@@ -176,7 +176,7 @@ class Regime:
                 return f"period {self.period}, orbit found after {self.periods_run} periods of approach{evidence}"
             return f"period {self.period}, settled within {self.periods_run} periods{evidence}"
         if not self.driven:
-            return "not driven: the motion from its start"
+            return "transient without a drive, from its start"
         if self.name == "unsettled":
             towards = f", on its way to period {self.approaches}{evidence}" if self.approaches else ""
             return f"not settled after {self.periods_run} periods{towards}"

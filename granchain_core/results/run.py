@@ -88,8 +88,8 @@ class Jumps:
 
     def of(self, contact: int) -> tuple[np.ndarray, np.ndarray]:
         """Return the times and forces of the jumps of one contact."""
-        mine = self.contact == contact
-        return self.time[mine], self.force[mine]
+        of_contact = self.contact == contact
+        return self.time[of_contact], self.force[of_contact]
 
     def axis(self) -> dict[str, Column]:
         """Return the axis of the jumps, numbered from 0."""
@@ -278,5 +278,6 @@ def _jumps(engine: Engine, first_sample: int) -> Jumps:
     """Return the jumps of the engine's last record, in SI units."""
     rows, scene = engine.closings, engine.scaled.scene
     period = (first_sample + rows[:, 0].astype(np.int64)) // engine.samples
-    return Jumps((period + rows[:, 1] / (2.0 * np.pi)) * scene.period, rows[:, 2].astype(np.int64),
-                 engine.scaled.scales.forces(rows[:, 3]), engine.closings_missing, engine.unresolved)
+    return Jumps((period + rows[:, 1] / (2.0 * np.pi)) * scene.period, contact=rows[:, 2].astype(np.int64),
+                 force=engine.scaled.scales.forces(rows[:, 3]), missing=engine.closings_missing,
+                 unresolved=engine.unresolved)

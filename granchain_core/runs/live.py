@@ -150,8 +150,9 @@ def joined(pieces: list[Run]) -> Run:
     def rows(name: str) -> np.ndarray:
         return np.concatenate([getattr(p, name)[(i > 0) :] for i, p in enumerate(pieces)])
 
-    cost = Cost(sum(p.cost.wall_s for p in pieces), sum(p.cost.steps for p in pieces),
-                sum(p.cost.rhs for p in pieces), sum(p.cost.events for p in pieces), pieces[-1].cost.method)
+    cost = Cost(sum(p.cost.wall_s for p in pieces), steps=sum(p.cost.steps for p in pieces),
+                rhs=sum(p.cost.rhs for p in pieces), events=sum(p.cost.events for p in pieces),
+                method=pieces[-1].cost.method)
     return replace(
         pieces[-1], cost=cost, time=rows("time"), displacement=rows("displacement"), velocity=rows("velocity"),
         force=rows("force"), drive_displacement=rows("drive_displacement"),

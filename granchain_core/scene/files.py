@@ -24,6 +24,8 @@ TABLES = {"chain": ("pattern", "impurities", "start_velocity", "reference_overla
 #: Further entries of a scene file: texts, and the place in the list of scenes.
 WORDS = ("parent", "title", "look_at", "question", "paper", "order")
 _BEAD = tuple(field.name for field in fields(Bead))
+#: Names of the entry with the number of a bead: the present one and that of older files.
+_SITE = ("site", "place")
 
 
 def toml_of(path: Path) -> dict[str, Any]:
@@ -117,26 +119,29 @@ def _bead(entry: Any, name: str) -> dict[str, Any]:
     return values
 
 
-def _place(entry: dict[str, Any], name: str) -> int:
-    place = entry.get("place")
-    if not isinstance(place, int) or isinstance(place, bool) or place < 1:
-        raise BadInput(f"an entry of {name} needs place, the number of a bead from 1 on, not {str(place)[:40]!r}.")
-    return place
+def _site(entry: dict[str, Any], name: str) -> int:
+    """Return the number of an entry's bead, `site` as in the knobs; `place` is its name in older files."""
+    if all(name in entry for name in _SITE):
+        raise BadInput(f"an entry of {name} has site and place, which mean the same; give one of them.")
+    site = entry.get("site", entry.get("place"))
+    if not isinstance(site, int) or isinstance(site, bool) or site < 1:
+        raise BadInput(f"an entry of {name} needs site, the number of a bead from 1 on, not {str(site)[:40]!r}.")
+    return site
 
 
 def _impurity(entry: Any, beads: list[dict[str, Any]]) -> list[Any]:
-    """Return place and bead; values that the entry does not give are those of the pattern's bead at that place."""
-    values = _table(entry, "impurities", ("place", *_BEAD))
-    place = _place(values, "impurities")
-    own = {name: value for name, value in values.items() if name != "place"}
-    return [place, {**beads[(place - 1) % len(beads)], **own}] if beads else [place, own]
+    """Return site and bead; values that the entry does not give are those of the pattern's bead at that site."""
+    values = _table(entry, "impurities", (*_SITE, *_BEAD))
+    site = _site(values, "impurities")
+    own = {name: value for name, value in values.items() if name not in _SITE}
+    return [site, {**beads[(site - 1) % len(beads)], **own}] if beads else [site, own]
 
 
 def _start(entry: Any) -> list[Any]:
-    values = _table(entry, "start_velocity", ("place", "velocity"))
+    values = _table(entry, "start_velocity", (*_SITE, "velocity"))
     if "velocity" not in values:
         raise BadInput("an entry of start_velocity has no velocity [m/s].")
-    return [_place(values, "start_velocity"), values["velocity"]]
+    return [_site(values, "start_velocity"), values["velocity"]]
 
 
 def _range(knob: str, ends: Any) -> list[Any]:

@@ -70,8 +70,9 @@ def growth_of(batch: Batch, member: int) -> MeasuredGrowth:
     periods, state, y = len(growth), batch.state, batch.state.motion.y
     strobes = state.record.strobes[member, : periods + 1]
     last = np.arange(periods - LONGEST_PERIOD + 1, periods + 1) % STROBES_KEPT
-    return MeasuredGrowth(growth.copy(), strobes[1:, :, 1:-1].copy(), state.record.maxima[member, last, :3].copy(),
-                          strobes[-1].ravel().copy(), y[:, state.pairs.neighbour[member]] - y[:, member])
+    return MeasuredGrowth(growth.copy(), strobes=strobes[1:, :, 1:-1].copy(),
+                          maxima=state.record.maxima[member, last, :3].copy(), y=strobes[-1].ravel().copy(),
+                          offset=y[:, state.pairs.neighbour[member]] - y[:, member])
 
 
 @functools.cache

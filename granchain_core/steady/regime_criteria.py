@@ -70,9 +70,9 @@ def window_changes(strobes: np.ndarray, window: int, windows: int, longest: int)
     There are `windows` of them, of `window` strobes each; `strobes` (P, 2, N) has at least windows·window + longest.
     Returns lists, because a regime is decided number by number, for which an array takes longer.
     """
-    seen, workspace = np.zeros((longest, windows)), np.zeros((_STATES_AT_ONCE, *strobes.shape[1:]))
-    periodicity.window_changes(np.ascontiguousarray(strobes), window, np.zeros(2), workspace, seen)
-    changes: list[list[float]] = seen.tolist()
+    largest, workspace = np.zeros((longest, windows)), np.zeros((_STATES_AT_ONCE, *strobes.shape[1:]))
+    periodicity.window_changes(np.ascontiguousarray(strobes), window, np.zeros(2), workspace, largest)
+    changes: list[list[float]] = largest.tolist()
     return changes
 
 

@@ -79,13 +79,14 @@ def _read(file: File) -> Branch:
     special_place = _places(file, "special/arm", len(special), len(header["arms"]))
     half_branches = []
     for number, half in enumerate(header["arms"]):
-        mine = [p for p, where in zip(points, place, strict=True) if where == number]
-        if not mine:
+        points_here = [p for p, where in zip(points, place, strict=True) if where == number]
+        if not points_here:
             raise Refused(f"half-branch {number} has no orbits")
         extrema = file.numbers(f"turns/{number}", (*file.shape(f"turns/{number}")[:1], _EXTREMUM))
-        object.__setattr__(mine[-1], "overlap_extrema", extrema)
-        here = [s for s, where in zip(special, special_place, strict=True) if where == number]
-        half_branches.append(HalfBranch(half["direction"], mine, here, half["step"], half["ended"], half["reason"]))
+        object.__setattr__(points_here[-1], "overlap_extrema", extrema)
+        special_here = [s for s, where in zip(special, special_place, strict=True) if where == number]
+        half_branches.append(HalfBranch(half["direction"], points=points_here, special=special_here, step=half["step"],
+                                        ended=half["ended"], reason=half["reason"]))
     return Branch(axis, header["period"], tuple(half_branches))
 
 

@@ -64,7 +64,8 @@ def _read(file: File) -> Curve:
     proven = _evidence(file, shape)
     points = [_point(scene, *one) for one in zip(numbers.T, periods, names, outcomes, proven, strict=True)]
     amplitude = Amplitude.from_json(file.json("amplitude")) if file.stated("amplitude") else None
-    return Curve(scene, one_of("start", file.text("start"), CURVE_STARTS), points, file.number("wall_s"), amplitude)
+    return Curve(scene, start=one_of("start", file.text("start"), CURVE_STARTS), points=points,
+                 wall_s=file.number("wall_s"), amplitude=amplitude)
 
 
 def _evidence(file: File, shape: tuple[int, ...]) -> list[dict[str, Any]]:
@@ -107,5 +108,7 @@ def _point(scene: Scene, numbers: np.ndarray, period: int, name: str, outcome: s
            proven: dict[str, Any]) -> CurvePoint:
     frequency, input_force, output_force, elastic, *errors = map(float, numbers)
     regime = Regime.from_json({"name": name, "period": int(period) or None, **proven})
-    return CurvePoint(frequency, output_force, elastic, input_force, regime,
-                      ForceErrors(*(or_none(error) for error in errors)), rest(scene), status=outcome)
+    return CurvePoint(frequency, max_output_force=output_force, max_output_force_elastic=elastic,
+                      max_input_force=input_force, regime=regime,
+                      force_errors=ForceErrors(*(or_none(error) for error in errors)), state=rest(scene),
+                      status=outcome)

@@ -214,7 +214,7 @@ def test_a_scene_without_a_drive_has_a_picture_and_no_steady_state() -> None:
     """Its picture is the motion from the start; analyses that need an orbit are refused with a sentence."""
     chain = scene("impact").evolve(N=5)
     shown = settle(chain, samples=96)
-    assert shown.regime.sentence == "not driven: the motion from its start" and shown.run.velocity[0, 0] == pytest.approx(0.01)
+    assert shown.regime.sentence == "transient without a drive, from its start" and shown.run.velocity[0, 0] == pytest.approx(0.01)
     assert not shown.run.drive_displacement.any() and shown.run.displacement_error < chain.accuracy
     exact = run(chain, periods=0, record=1, samples=96)
     np.testing.assert_allclose(shown.run.displacement, exact.displacement, atol=2e-6 * np.abs(exact.displacement).max())

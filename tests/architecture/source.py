@@ -1,10 +1,10 @@
-"""Read the imports of the project's Python files, for the tests of its architecture."""
+"""Read the imports and the named parts of the project's Python files, for the tests of its architecture."""
 
 from __future__ import annotations
 
 import ast
 import functools
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
@@ -54,3 +54,13 @@ def imports_in(path: Path, everywhere: bool = True) -> tuple[Import, ...]:
             found.append(Import(".".join([*above, *([node.module] if node.module else [])]),
                                 tuple((alias.name, alias.asname or alias.name) for alias in node.names)))
     return tuple(found)
+
+
+def named_parts(path: Path) -> Iterator[tuple[str, ast.stmt]]:
+    """Yield the functions, methods and constants of a file by name; `__init__` goes by the name of its class."""
+    for node in parsed(path).body:
+        for part in node.body if isinstance(node, ast.ClassDef) else (node,):
+            if isinstance(part, ast.FunctionDef):
+                yield node.name if part.name == "__init__" else part.name, part  # type: ignore[union-attr]
+            elif isinstance(part, ast.Assign | ast.AnnAssign):
+                yield ast.unparse(part.targets[0] if isinstance(part, ast.Assign) else part.target), part

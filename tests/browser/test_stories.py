@@ -28,14 +28,14 @@ def shows(page: Page, story: Story, number: int) -> None:
     step = story.steps[number - 1]
     badge = page.locator("#foot #regime")
     expect(badge).not_to_contain_text("preview")
-    regime = "not driven" if step.expect.regime == UNDRIVEN else step.expect.regime
+    regime = "transient without a drive" if step.expect.regime == UNDRIVEN else step.expect.regime
     period = re.compile(rf"period {step.expect.period}(,|$)")  # the evidence behind it is hidden if there is no room
     expect(badge).to_contain_text(period if step.expect.period else regime)
     began = "start: a given state" if step.via else "start: from rest"
     expect(page.locator('select[title="where the steady state starts"] option').first).to_have_text(began)
     curve = page.locator("#curvebar")
     words = "there is no resonance curve"
-    expect(curve).to_contain_text(words) if regime == "not driven" else expect(curve).not_to_contain_text(words)
+    expect(curve).to_contain_text(words) if regime == "transient without a drive" else expect(curve).not_to_contain_text(words)
     # The line joins samples, and the peak may be between two: up to 0.7 % higher at 96 per period in these scenes.
     allowed = max(TOLERANCE, 7e-3) if step.expect.period else IRREGULAR_TOLERANCE
     page.wait_for_function(f"([told, allowed]) => Math.abs(({FORCE})() / told - 1) < allowed",

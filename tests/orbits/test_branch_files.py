@@ -34,13 +34,13 @@ def assert_same(one: Branch, other: Branch) -> None:
     """Assert equality to the last bit, including special points and next steps."""
     assert [arm.step for arm in one.half_branches] == [arm.step for arm in other.half_branches]
     assert [arm.reason for arm in one.half_branches] == [arm.reason for arm in other.half_branches]
-    for mine, its in zip([*one.points, *(p for s in one.special for p in (s.before, s.after))],
-                         [*other.points, *(p for s in other.special for p in (s.before, s.after))], strict=True):
+    for first_point, second_point in zip([*one.points, *(p for s in one.special for p in (s.before, s.after))],
+                                         [*other.points, *(p for s in other.special for p in (s.before, s.after))], strict=True):
         for name in ("x", "tangent", "multipliers", "closings", "slope"):
-            np.testing.assert_array_equal(getattr(mine, name), getattr(its, name))
+            np.testing.assert_array_equal(getattr(first_point, name), getattr(second_point, name))
         for name in ("knob", "arclength", "residuals", "liouville_error", "max_input_force", "max_output_force",
                      "max_output_force_elastic"):
-            assert getattr(mine, name) == getattr(its, name)
+            assert getattr(first_point, name) == getattr(second_point, name)
     special = [[(s.kind, s.knob, s.interval, s.multiplier, s.contact, s.gained, str(s.normal_form)) for s in b.special]
                for b in (one, other)]
     assert special[0] == special[1]
@@ -76,11 +76,11 @@ def test_points_one_by_one_are_those_of_both_threads(whole: Branch) -> None:
 
 
 def test_a_cancelled_branch_stays_whole_and_can_be_continued(whole: Branch) -> None:
-    branch, stop, seen = begun(), Stop(), []
+    branch, stop, grown = begun(), Stop(), []
 
     def cancel(arm: object) -> None:
-        seen.append(arm)
-        if len(seen) == 3:
+        grown.append(arm)
+        if len(grown) == 3:
             stop.set()
 
     with pytest.raises(Cancelled):
@@ -178,8 +178,8 @@ def test_the_command_goes_on_from_its_file(tmp_path: Path, capsys: pytest.Captur
 
 
 def test_only_a_doubling_is_switched_at() -> None:
-    found = granchain_core.branch(scene("sec2"), "f", 340.0, 348.0, 1)
-    grazing = next(s for s in found.special if s.kind == "grazing")
+    branch = granchain_core.branch(scene("sec2"), "f", 340.0, 348.0, 1)
+    grazing = next(s for s in branch.special if s.kind == "grazing")
     assert grazing.contact == 1 and grazing.gained == "open interval"
     with pytest.raises(BadInput, match="not at a grazing"):
-        switch_to_doubled(found, grazing)
+        switch_to_doubled(branch, grazing)

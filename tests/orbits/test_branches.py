@@ -49,10 +49,10 @@ def special_point(branch: Branch, kind: str, number: int = 0) -> SpecialPoint:
 def departure_after_disturbance(branch: Branch, point: BranchPoint, disturbed: float = 1e-4) -> float:
     """Return the relative difference in output force between the orbit and the motion of the slightly disturbed chain.
     """
-    state, shown = branch.state(point), branch.axis.scene_at(point.knob).evolve(accuracy=_ASKED)
+    state, chain = branch.state(point), branch.axis.scene_at(point.knob).evolve(accuracy=_ASKED)
     start = State(state.displacement * (1.0 + disturbed), state.velocity)
-    found = settle(shown, start).run.max_output_force_elastic
-    return abs(found / point.max_output_force_elastic - 1.0)
+    settled_force = settle(chain, start).run.max_output_force_elastic
+    return abs(settled_force / point.max_output_force_elastic - 1.0)
 
 
 def test_a_branch_goes_through_folds_and_is_right_everywhere(folded: Branch) -> None:
@@ -104,10 +104,10 @@ def test_the_folds_are_where_up_and_down_sweeps_jump(folded: Branch) -> None:
 
 def test_forces_along_an_orbit_are_those_of_a_run(doubling: Branch) -> None:
     for point in (doubling.points[0], doubling.points[-1]):
-        shown = doubling.axis.scene_at(point.knob).evolve(accuracy=1e-10)
-        found = run(shown, periods=0, record=1, samples=8, start=doubling.state(point))
+        chain = doubling.axis.scene_at(point.knob).evolve(accuracy=1e-10)
+        recorded = run(chain, periods=0, record=1, samples=8, start=doubling.state(point))
         for name in ("max_input_force", "max_output_force", "max_output_force_elastic"):
-            assert getattr(point, name) == pytest.approx(getattr(found, name), rel=2e-6)  # the run's own peaks: 1e-6
+            assert getattr(point, name) == pytest.approx(getattr(recorded, name), rel=2e-6)  # the run's own peaks: 1e-6
 
 
 def test_a_doubling_has_a_doubled_branch_that_leads_to_the_next_one(doubling: Branch) -> None:
@@ -118,17 +118,17 @@ def test_a_doubling_has_a_doubled_branch_that_leads_to_the_next_one(doubling: Br
     # two orbits at one frequency: an unstable one of period 1, and one that alternates about it
     assert begun.period == 2 and seed.stable and not once.stable
     assert np.abs(once.x - seed.x).max() > 1e-3 * np.abs(seed.x).max()
-    found = Continuation(begun).run()
-    assert found.half_branches[0].ended == "merged" and "half a period later" in found.half_branches[0].reason
-    assert check_branch(found) == [] and all(p.stable for p in found.points)
-    last = found.special[-1]
+    doubled = Continuation(begun).run()
+    assert doubled.half_branches[0].ended == "merged" and "half a period later" in doubled.half_branches[0].reason
+    assert check_branch(doubled) == [] and all(p.stable for p in doubled.points)
+    last = doubled.special[-1]
     widths = [s.interval[1] - s.interval[0] for s in (last, meeting)]
     assert last.kind == "period_doubling" and last.knob == pytest.approx(meeting.knob, abs=sum(widths))
     assert last.normal_form is None and parting.criticality == "subcritical" and meeting.criticality == "supercritical"
     with pytest.raises(BadInput, match="merges with that of half its period"):
-        switch_to_doubled(found, last)
-    middle = min(found.points, key=lambda p: abs(p.knob - 247.0))
-    settled_there = settle(found.axis.scene_at(middle.knob).evolve(accuracy=_ASKED))
+        switch_to_doubled(doubled, last)
+    middle = min(doubled.points, key=lambda p: abs(p.knob - 247.0))
+    settled_there = settle(doubled.axis.scene_at(middle.knob).evolve(accuracy=_ASKED))
     assert settled_there.regime.period == 2
     assert settled_there.run.max_output_force_elastic == pytest.approx(middle.max_output_force_elastic, rel=1e-5)
 
@@ -157,8 +157,8 @@ def test_special_points_scale_with_the_chain(doubling: Branch) -> None:
     state = doubling.state(first)
     start = State(s * state.displacement, s**1.25 * state.velocity)
     other = granchain_core.branch(scene("sec2").scaled(s), "f", s**0.25 * first.knob, s**0.25 * 250.0, 1, start)
-    mine, its = special_point(doubling, "period_doubling"), special_point(other, "period_doubling")
-    assert its.knob / s**0.25 == pytest.approx(mine.knob, rel=1.1e-5)  # the half widths of both intervals
+    unscaled, scaled = special_point(doubling, "period_doubling"), special_point(other, "period_doubling")
+    assert scaled.knob / s**0.25 == pytest.approx(unscaled.knob, rel=1.1e-5)  # the half widths of both intervals
 
 
 @pytest.mark.parametrize(("knob", "start", "end", "changes"), [
@@ -166,33 +166,33 @@ def test_special_points_scale_with_the_chain(doubling: Branch) -> None:
     ("kappa", 0.001, 0.003, {"f": 2000.0}), ("F0", 1.0, 2.0, {"f": 2000.0}),
 ])
 def test_every_continuous_knob_can_be_followed(knob: str, start: float, end: float, changes: dict[str, float]) -> None:
-    shown = scene("sec2").evolve(N=3, **changes)
-    found = granchain_core.branch(shown, knob, start, end, 1)
-    assert found.half_branches[0].ended == "reached" and check_branch(found) == []
-    last = found.points[-1]
-    direct = orbit(shown.evolve(**{knob: end}), 1, found.state(last))
+    chain = scene("sec2").evolve(N=3, **changes)
+    branch = granchain_core.branch(chain, knob, start, end, 1)
+    assert branch.half_branches[0].ended == "reached" and check_branch(branch) == []
+    last = branch.points[-1]
+    direct = orbit(chain.evolve(**{knob: end}), 1, branch.state(last))
     # both are fixed points of the same map to 1e-11; near a grazing, Newton's basins are small, so it starts there
-    np.testing.assert_allclose(direct.state.displacement, found.state(last).displacement, rtol=1e-8)
-    assert last.knob == end and found.points[0].knob == start
+    np.testing.assert_allclose(direct.state.displacement, branch.state(last).displacement, rtol=1e-8)
+    assert last.knob == end and branch.points[0].knob == start
 
 
 def test_a_preloaded_chain_has_no_special_points_at_small_drive() -> None:
     """All contacts stay closed and the chain is nearly linear, so resonances cause no special points."""
-    shown = scene("sec2").evolve(F0=50.0, A0=1e-7, N=4)
-    found = granchain_core.branch(shown, "f", 800.0, 1500.0, 1)
-    assert found.special == [] and check_branch(found) == []
-    assert all((p.closings == -1).all() and p.stable for p in found.points)
+    chain = scene("sec2").evolve(F0=50.0, A0=1e-7, N=4)
+    branch = granchain_core.branch(chain, "f", 800.0, 1500.0, 1)
+    assert branch.special == [] and check_branch(branch) == []
+    assert all((p.closings == -1).all() and p.stable for p in branch.points)
 
 
 def test_beyond_a_torus_point_the_chain_leaves_its_orbit() -> None:
-    found = granchain_core.branch(scene("sec2"), "f", 2010.0, 1940.0, 1)
-    assert check_branch(found) == []
-    torus = special_point(found, "neimark_sacker")
+    branch = granchain_core.branch(scene("sec2"), "f", 2010.0, 1940.0, 1)
+    assert check_branch(branch) == []
+    torus = special_point(branch, "neimark_sacker")
     assert torus.multiplier is not None and torus.multiplier.imag > 0.1
-    stable = [p for p in found.points if p.knob > torus.knob and p.stable][-1]
-    unstable = found.points[-1]
+    stable = [p for p in branch.points if p.knob > torus.knob and p.stable][-1]
+    unstable = branch.points[-1]
     assert unstable.unstable_multipliers == 2
-    assert departure_after_disturbance(found, stable) < 1e-4 and departure_after_disturbance(found, unstable) > 1e-3
+    assert departure_after_disturbance(branch, stable) < 1e-4 and departure_after_disturbance(branch, unstable) > 1e-3
 
 
 def closed_loop() -> tuple[Scene, float, int]:
@@ -201,11 +201,11 @@ def closed_loop() -> tuple[Scene, float, int]:
 
 
 def test_an_isola_closes_on_itself() -> None:
-    shown, frequency, period = closed_loop()
-    found = granchain_core.branch(shown.evolve(f=frequency), "f", 100.0, 3000.0, period, both=True)
-    assert [half.ended for half in found.half_branches] == ["closed"] and check_branch(found) == []
-    assert "the orbit there is the starting one" in found.half_branches[0].reason
-    assert sum(s.kind == "fold" for s in found.special) % 2 == 0
+    chain, frequency, period = closed_loop()
+    branch = granchain_core.branch(chain.evolve(f=frequency), "f", 100.0, 3000.0, period, both=True)
+    assert [half.ended for half in branch.half_branches] == ["closed"] and check_branch(branch) == []
+    assert "the orbit there is the starting one" in branch.half_branches[0].reason
+    assert sum(s.kind == "fold" for s in branch.special) % 2 == 0
 
 
 def again(begun: Branch) -> Branch:
@@ -216,8 +216,8 @@ def again(begun: Branch) -> Branch:
 @pytest.fixture(scope="module")
 def isola() -> tuple[Branch, HalfBranch]:
     """A branch begun on the isola, and the half-branch that is kept if both are continued alternately."""
-    shown, frequency, period = closed_loop()
-    begun = begin_branch(shown.evolve(f=frequency), "f", 100.0, 3000.0, period, both=True)
+    chain, frequency, period = closed_loop()
+    begun = begin_branch(chain.evolve(f=frequency), "f", 100.0, 3000.0, period, both=True)
     alternately = Continuation(again(begun))
     for _ in alternately:
         pass

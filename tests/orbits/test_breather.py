@@ -53,8 +53,8 @@ def slopes(t: float, y: np.ndarray) -> np.ndarray:
 def flow(x: np.ndarray, times: np.ndarray) -> np.ndarray:
     """Return states and tangents (times, 2·WHOLE, 1 + 2·WHOLE) from x at t = 0."""
     start = np.column_stack([x, np.eye(2 * WHOLE)]).ravel()
-    found = solve_ivp(slopes, (0.0, 1.0), start, "DOP853", times, rtol=1e-11, atol=1e-13)
-    return found.y.T.reshape(len(times), 2 * WHOLE, -1)
+    solution = solve_ivp(slopes, (0.0, 1.0), start, "DOP853", times, rtol=1e-11, atol=1e-13)
+    return solution.y.T.reshape(len(times), 2 * WHOLE, -1)
 
 
 @functools.cache
@@ -79,8 +79,8 @@ def whole() -> Whole:
 
 
 def test_the_whole_chain_has_the_same_motion_on_both_sides_of_a_bead_that_stands_still() -> None:
-    found = orbit(CHAIN, 1)
-    ours = run(CHAIN.evolve(accuracy=1e-9), periods=0, record=1, samples=256, start=found.state)
+    breather = orbit(CHAIN, 1)
+    ours = run(CHAIN.evolve(accuracy=1e-9), periods=0, record=1, samples=256, start=breather.state)
     amplitude = 0.5 * np.ptp(ours.displacement, axis=0)
     # SciPy's tolerance, over a period of a motion whose disturbances hardly grow
     assert whole().amplitude[:HALF] == pytest.approx(amplitude, rel=1e-7)

@@ -108,13 +108,13 @@ def test_the_closed_curve_grows_as_the_root_of_the_distance(torus: Branch) -> No
     for frequency in (1965.0, 1948.0):
         point = granchain_core.branch(scene("sec2"), "f", frequency, frequency - 0.1, 1).points[0]
         values, vectors = np.linalg.eig(equations.stroboscopic_map(frequency)(point.x).derivative)
-        mine = int(np.argmax(np.where(values.imag > 0.0, np.abs(values), 0.0)))
-        right = vectors[:, mine] * np.sqrt(len(values)) / np.linalg.norm(vectors[:, mine])
-        left = np.linalg.inv(vectors)[mine] / (np.linalg.inv(vectors)[mine] @ right)
-        expected.append(np.sqrt((1.0 - abs(values[mine])) / form.coefficient))
+        leading = int(np.argmax(np.where(values.imag > 0.0, np.abs(values), 0.0)))
+        right = vectors[:, leading] * np.sqrt(len(values)) / np.linalg.norm(vectors[:, leading])
+        left = np.linalg.inv(vectors)[leading] / (np.linalg.inv(vectors)[leading] @ right)
+        expected.append(np.sqrt((1.0 - abs(values[leading])) / form.coefficient))
         x, steps = point.x + 2.0 * 0.8 * expected[-1] * right.real, equations.quick_steps(equations.point(point.x, frequency))
         squares = []
-        for _ in range(int(3.0 / (abs(values[mine]) - 1.0))):
+        for _ in range(int(3.0 / (abs(values[leading]) - 1.0))):
             x = equations.quick_end(x, frequency, steps)
             squares.append(abs(left @ (x - point.x)) ** 2)
         radii.append(np.sqrt(np.mean(squares[-300:])))

@@ -37,38 +37,38 @@ def section(name: str, periods: int, **knobs: float) -> Section:
 @pytest.mark.parametrize("rank", [0, 3])
 def test_a_mode_comes_back_as_its_multiplier_says(name: str, knobs: dict[str, float], rank: int) -> None:
     orbit = orbit_of(name, **knobs)
-    found = mode(orbit, rank)
-    assert abs(found.multiplier) == pytest.approx(abs(orbit.multipliers[rank]), rel=1e-6)
-    assert found.closure < 1e-6  # measured 2e-9 to 2e-7, for ε = 1e-5 and noise of 1e-13/ε
-    first, last = found.displacement[0], found.displacement[-1]
-    assert np.abs(last - found.multiplier * first).max() < 1e-5 * np.abs(found.displacement).max()
-    assert np.abs(found.displacement).max() == pytest.approx(1.0)
-    assert found.displacement.shape == (orbit.period * found.samples + 1, orbit.scene.N)
+    floquet_mode = mode(orbit, rank)
+    assert abs(floquet_mode.multiplier) == pytest.approx(abs(orbit.multipliers[rank]), rel=1e-6)
+    assert floquet_mode.closure < 1e-6  # measured 2e-9 to 2e-7, for ε = 1e-5 and noise of 1e-13/ε
+    first, last = floquet_mode.displacement[0], floquet_mode.displacement[-1]
+    assert np.abs(last - floquet_mode.multiplier * first).max() < 1e-5 * np.abs(floquet_mode.displacement).max()
+    assert np.abs(floquet_mode.displacement).max() == pytest.approx(1.0)
+    assert floquet_mode.displacement.shape == (orbit.period * floquet_mode.samples + 1, orbit.scene.N)
 
 
-def linear_matrix(shown: Scene) -> np.ndarray:
+def linear_matrix(chain: Scene) -> np.ndarray:
     """Return A of ẋ = A x for a chain whose contacts are springs 1.5 K √δ0 and dashpots D, with x = (u, v) in SI units.
     """
-    n, mass = shown.N, shown.masses()
+    n, mass = chain.N, chain.masses()
     joins = np.eye(n + 1, n, -1) - np.eye(n + 1, n)  # overlap of contact c = u_{c-1} − u_c
-    spring = 1.5 * shown.contact_stiffness() * np.sqrt(shown.static_overlap())
-    stiffness, damping = joins.T @ np.diag(spring) @ joins, shown.D * joins.T @ joins
+    spring = 1.5 * chain.contact_stiffness() * np.sqrt(chain.static_overlap())
+    stiffness, damping = joins.T @ np.diag(spring) @ joins, chain.D * joins.T @ joins
     return np.block([[np.zeros((n, n)), np.eye(n)], [-stiffness / mass[:, None], -damping / mass[:, None]]])
 
 
 def test_the_mode_of_a_preloaded_chain_is_that_of_its_linear_equations() -> None:
     # with a strong preload and a tiny drive, the chain is linear up to A0/δ0, and δ(t) = exp(A t) v
-    shown = scene("sec2").evolve(F0=50.0, A0=1e-10, N=5, D=20.0, f=2000.0)
-    found = mode(granchain_core.orbit(shown, period=1), samples=8)
-    matrix = linear_matrix(shown)
+    chain = scene("sec2").evolve(F0=50.0, A0=1e-10, N=5, D=20.0, f=2000.0)
+    floquet_mode = mode(granchain_core.orbit(chain, period=1), samples=8)
+    matrix = linear_matrix(chain)
     values, vectors = np.linalg.eig(matrix)
     # its eigenvalue is the one whose exponential over a period is the multiplier
-    place = np.argmin(np.abs(np.exp(values * shown.period) - found.multiplier))
-    eigenvalue, shape = values[place], vectors[: shown.N, place]
-    times = np.arange(9) / 8 * shown.period
+    place = np.argmin(np.abs(np.exp(values * chain.period) - floquet_mode.multiplier))
+    eigenvalue, shape = values[place], vectors[: chain.N, place]
+    times = np.arange(9) / 8 * chain.period
     expected = np.exp(eigenvalue * times)[:, None] * shape
-    factor = np.vdot(expected, found.displacement) / np.vdot(expected, expected)
-    assert np.abs(found.displacement - factor * expected).max() < 1e-3
+    factor = np.vdot(expected, floquet_mode.displacement) / np.vdot(expected, expected)
+    assert np.abs(floquet_mode.displacement - factor * expected).max() < 1e-3
 
 
 def test_a_mode_that_is_not_there_is_refused() -> None:
@@ -90,13 +90,13 @@ def test_an_orbits_section_is_its_own_points_at_every_phase() -> None:
 
 
 def test_a_section_is_the_run_sampled_once_a_period() -> None:
-    shown = scene("rig").evolve(f=90.0)
-    *_, found = iter_section(shown, None, 6)
-    record = LiveChain(shown, samples=48).advance(6 * 48)
+    chain = scene("rig").evolve(f=90.0)
+    *_, whole_section = iter_section(chain, None, 6)
+    record = LiveChain(chain, samples=48).advance(6 * 48)
     for phase in (0, 13):
         expected = np.stack([record.displacement[phase:-1:48, 4], record.velocity[phase:-1:48, 4]], axis=1)
         # two runs of the fixed-step method, the second with half the step
-        assert (np.abs(found.points(5, phase) - expected).max(axis=0) < 1e-3 * np.abs(expected).max(axis=0)).all()
+        assert (np.abs(whole_section.points(5, phase) - expected).max(axis=0) < 1e-3 * np.abs(expected).max(axis=0)).all()
 
 
 def test_a_section_grows_and_earlier_points_stay() -> None:
@@ -108,8 +108,8 @@ def test_a_section_grows_and_earlier_points_stay() -> None:
 
 def test_a_section_starts_at_the_given_state() -> None:
     state = settle(scene("sec2")).state
-    *_, found = iter_section(scene("sec2"), state, 5)
-    points = found.points(3, 0)
+    *_, whole_section = iter_section(scene("sec2"), state, 5)
+    points = whole_section.points(3, 0)
     assert (np.ptp(points, axis=0) < 1e-3 * np.abs(points).max(axis=0)).all()  # already on the orbit
 
 
@@ -119,19 +119,19 @@ def test_long_chains_keep_fewer_periods() -> None:
 
 
 def test_a_search_finds_the_unstable_orbit_that_chaos_passes_by() -> None:
-    shown = scene("rig").evolve(f=140.0)
-    state = settle(shown).state
-    found = search_orbit(shown, 1, state, section("rig", 900, f=140.0).strobes()[400:])
-    assert not found.stable and found.residual < 1e-9
-    assert orbit_section(found).points(3, 0)[0] == pytest.approx([found.state.displacement[2], found.state.velocity[2]], rel=1e-6)
+    chain = scene("rig").evolve(f=140.0)
+    state = settle(chain).state
+    unstable_orbit = search_orbit(chain, 1, state, section("rig", 900, f=140.0).strobes()[400:])
+    assert not unstable_orbit.stable and unstable_orbit.residual < 1e-9
+    assert orbit_section(unstable_orbit).points(3, 0)[0] == pytest.approx([unstable_orbit.state.displacement[2], unstable_orbit.state.velocity[2]], rel=1e-6)
 
 
 def test_the_orbit_a_doubling_left_unstable_is_found_from_the_middle() -> None:
-    shown = scene("sec2").evolve(f=1576.0)
+    chain = scene("sec2").evolve(f=1576.0)
     followed = orbit_of("sec2", f=1576.0)
-    found = search_orbit(shown, 2, followed.state, section("sec2", 200, f=1576.0).strobes()[100:])
+    unstable_orbit = search_orbit(chain, 2, followed.state, section("sec2", 200, f=1576.0).strobes()[100:])
     assert followed.period == 4 and followed.stable
-    assert found.period < 4 and not found.stable
+    assert unstable_orbit.period < 4 and not unstable_orbit.stable
 
 
 def test_an_orbit_has_its_least_period() -> None:
@@ -142,10 +142,10 @@ def test_an_orbit_has_its_least_period() -> None:
 
 
 def test_a_search_without_success_says_where_it_looked() -> None:
-    shown = scene("rig").evolve(f=140.0, kappa=0.0)
+    chain = scene("rig").evolve(f=140.0, kappa=0.0)
     state = State(np.full(11, 1e-6), np.zeros(11))
     with pytest.raises(ComputationError, match="no orbit of 1 drive periods from the present state or from 0 places"):
-        search_orbit(shown, 1, state, np.zeros((0, 2, 11)))
+        search_orbit(chain, 1, state, np.zeros((0, 2, 11)))
 
 
 def test_the_stop_flag_ends_sections_modes_and_searches() -> None:

@@ -22,7 +22,7 @@ CHAINS = {"sec2": scene("sec2"), "1:2": scene("sec2").evolve(f=615.0), "fig12-90
 
 
 @pytest.fixture(scope="module", params=CHAINS)
-def found(request: pytest.FixtureRequest) -> Orbit:
+def known_orbit(request: pytest.FixtureRequest) -> Orbit:
     return orbit(CHAINS[request.param])
 
 
@@ -40,15 +40,15 @@ def of_a_coarser_map(chain: Scene, exact: Orbit, tolerance: float) -> tuple[np.n
 
 
 @pytest.mark.parametrize("tolerance", [1e-10, 1e-11, 1e-12])
-def test_coarser_maps_are_as_near_as_they_say(found: Orbit, tolerance: float) -> None:
+def test_coarser_maps_are_as_near_as_they_say(known_orbit: Orbit, tolerance: float) -> None:
     """Multipliers at 1e-13 serve as exact ones. The bound is also narrow enough to be useful."""
-    shown, errors = of_a_coarser_map(found.scene, found, tolerance)
-    distances = np.abs(shown[:, None] - found.multipliers[None, :])
-    mine, theirs = linear_sum_assignment(distances)
-    assert np.all(distances[mine, theirs] <= errors[mine])
-    assert found.multiplier_errors is not None
-    assert found.multiplier_errors[0] < errors[0] < 1e-3
-    assert found.multiplier_errors.max() < 1e-5
+    coarser, errors = of_a_coarser_map(known_orbit.scene, known_orbit, tolerance)
+    distances = np.abs(coarser[:, None] - known_orbit.multipliers[None, :])
+    by_coarser_map, by_flow = linear_sum_assignment(distances)
+    assert np.all(distances[by_coarser_map, by_flow] <= errors[by_coarser_map])
+    assert known_orbit.multiplier_errors is not None
+    assert known_orbit.multiplier_errors[0] < errors[0] < 1e-3
+    assert known_orbit.multiplier_errors.max() < 1e-5
 
 
 def test_the_error_follows_a_known_change_of_the_derivative() -> None:
@@ -63,24 +63,24 @@ def test_where_two_multipliers_meet_nothing_is_claimed() -> None:
     assert np.all(errors > 1e-6)
 
 
-def test_as_near_to_the_circle_as_its_error_is_not_decided(found: Orbit) -> None:
-    assert found.stability_certain
-    leading = np.append(1.0 + 1e-9, found.multipliers[1:])
-    undecided = replace(found, multipliers=leading)
+def test_as_near_to_the_circle_as_its_error_is_not_decided(known_orbit: Orbit) -> None:
+    assert known_orbit.stability_certain
+    leading = np.append(1.0 + 1e-9, known_orbit.multipliers[1:])
+    undecided = replace(known_orbit, multipliers=leading)
     undecided.__dict__["multiplier_errors"] = np.full(len(leading), 1e-8)
     assert not undecided.stability_certain
     assert undecided.stability_words() == "stability not decided (|μ| 1.000000 ± 1e-08)"
-    assert undecided.summary()[0] == f"period {found.period}, {undecided.stability_words()}"
-    assert found.stability_words() in found.summary()[0] and found.stability_words() in ("stable", "unstable")
-    second = replace(found, multipliers=np.array([0.99, 0.98, 0.1, 0.1]))
+    assert undecided.summary()[0] == f"period {known_orbit.period}, {undecided.stability_words()}"
+    assert known_orbit.stability_words() in known_orbit.summary()[0] and known_orbit.stability_words() in ("stable", "unstable")
+    second = replace(known_orbit, multipliers=np.array([0.99, 0.98, 0.1, 0.1]))
     second.__dict__["multiplier_errors"] = np.array([1e-9, 0.05, 1e-9, 1e-9])
     assert not second.stability_certain  # it is not the largest one, but may be outside
     second.__dict__["multiplier_errors"] = np.array([1e-9, 0.01, 1e-9, 1e-9])
     assert second.stability_certain
-    outside = replace(found, multipliers=np.array([1.2, 1.0, 0.1, 0.1]))
+    outside = replace(known_orbit, multipliers=np.array([1.2, 1.0, 0.1, 0.1]))
     outside.__dict__["multiplier_errors"] = np.full(4, 0.05)
     assert outside.stability_certain and outside.stability_words() == "unstable"  # one outside is enough
-    assert not replace(found, monodromy=None).stability_certain
+    assert not replace(known_orbit, monodromy=None).stability_certain
 
 
 def test_the_command_line_prints_and_saves_the_errors(capsys: pytest.CaptureFixture[str]) -> None:

@@ -31,13 +31,13 @@ CASES = sorted({key.split("/")[0] for key in _STORED})
 _EXPONENT = {"linear": 0.0, "none": 0.0, "tsuji": 0.25, "kuwabara-kono": 0.5}
 
 
-def shear(shown: Scene, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def shear(chain: Scene, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return (v − w, T) at scaled displacements u and phase 0, for equal beads."""
-    n, a = shown.N, _EXPONENT[shown.dissipation]
-    rate = np.sqrt(shown.K * np.sqrt(shown.A0) / shown.bead(1).mass)
-    strength = 0.0 if shown.dissipation == "none" else shown.D / (shown.bead(1).mass * rate)
-    strength *= (shown.A0 / shown.reference_overlap) ** a
-    static = shown.static_overlap() / shown.A0 if shown.F0 > 0 else np.zeros(n + 1)
+    n, a = chain.N, _EXPONENT[chain.dissipation]
+    rate = np.sqrt(chain.K * np.sqrt(chain.A0) / chain.bead(1).mass)
+    strength = 0.0 if chain.dissipation == "none" else chain.D / (chain.bead(1).mass * rate)
+    strength *= (chain.A0 / chain.reference_overlap) ** a
+    static = chain.static_overlap() / chain.A0 if chain.F0 > 0 else np.zeros(n + 1)
     d = np.maximum(-np.diff(np.concatenate([[0.0], u, [0.0]])) + static, 0.0)
     primitive, slope = strength * d ** (a + 1) / (a + 1), strength * np.where(d > 0, d**a, 0.0)
     joins = np.vstack([np.zeros(n), np.eye(n)]) - np.vstack([np.eye(n), np.zeros(n)])  # ∂δ_c/∂u_i
@@ -48,12 +48,12 @@ def shear(shown: Scene, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def product_map(name: str) -> tuple[np.ndarray, np.ndarray]:
     """Return end state and derivative of granchain's map in (u, v), from the stored start."""
-    shown = recorded_scene(record(name)["scene"])
-    start, n = _STORED[f"{name}/start"], shown.N
-    before, first = shear(shown, start[:n])
-    flow = StroboscopicMap(shown, record(name)["scene"]["periods"])(
+    chain = recorded_scene(record(name)["scene"])
+    start, n = _STORED[f"{name}/start"], chain.N
+    before, first = shear(chain, start[:n])
+    flow = StroboscopicMap(chain, record(name)["scene"]["periods"])(
         np.concatenate([start[:n], start[n:] - before]))
-    after, last = shear(shown, flow.end[:n])
+    after, last = shear(chain, flow.end[:n])
     end = np.concatenate([flow.end[:n], flow.end[n:] + after])
     return end, last @ np.linalg.solve(first.T, flow.derivative.T).T
 
@@ -63,14 +63,14 @@ def record(name: str) -> dict:
     return json.loads(str(_STORED[f"{name}/record"]))
 
 
-def column_error(found: np.ndarray, exact: np.ndarray) -> float:
+def column_error(computed: np.ndarray, exact: np.ndarray) -> float:
     """Return the largest difference in any column, relative to the column's largest entry."""
-    return float((np.abs(found - exact).max(axis=0) / np.abs(exact).max(axis=0)).max())
+    return float((np.abs(computed - exact).max(axis=0) / np.abs(exact).max(axis=0)).max())
 
 
-def multiplier_error(found: np.ndarray, exact: np.ndarray) -> float:
+def multiplier_error(computed: np.ndarray, exact: np.ndarray) -> float:
     """Return the largest distance between eigenvalues, paired one to one."""
-    distance = np.abs(np.linalg.eigvals(found)[:, None] - np.linalg.eigvals(exact)[None, :])
+    distance = np.abs(np.linalg.eigvals(computed)[:, None] - np.linalg.eigvals(exact)[None, :])
     return float(distance[linear_sum_assignment(distance)].max())
 
 
@@ -110,9 +110,9 @@ def test_a_bead_that_meets_a_dashpot_has_the_closed_form_which_a_naive_tangent_m
     assert closed @ jump @ np.array([[1.0, closing], [0.0, 1.0]]) == pytest.approx(exact, abs=1e-14)
 
     flow = dashpot_wall(damping, period)(np.array([u, v]))
-    found = np.array([[1.0, 0.0], [-damping, 1.0]]) @ flow.derivative  # w = v before the closing
+    derivative = np.array([[1.0, 0.0], [-damping, 1.0]]) @ flow.derivative  # w = v before the closing
     assert flow.end - [0.0, damping * flow.end[0]] == pytest.approx(end, abs=1e-12)
-    assert found == pytest.approx(exact, abs=1e-10)
+    assert derivative == pytest.approx(exact, abs=1e-10)
     assert flow.log_determinant == pytest.approx(-damping * rest, abs=1e-10)
     # Liouville's formula does not show the error, but the columns are wrong by 68 % and 20 % of their largest entries.
     assert np.linalg.det(naive) == pytest.approx(np.exp(flow.log_determinant), rel=1e-10)

@@ -35,7 +35,7 @@ def near(derivative: Derivative, x: list[float]) -> MapNear:
     return MapNear(point, derivative(point), lambda y, columns: derivative(y) @ columns)
 
 
-def found(kind: str, multiplier: complex, family: Callable[[float], MapNear]) -> NormalForm:
+def form_of(kind: str, multiplier: complex, family: Callable[[float], MapNear]) -> NormalForm:
     """Return the normal form of a family of maps at its critical value 0."""
     return normal_form(kind, multiplier, (family(-_BESIDE), family(_BESIDE)))
 
@@ -53,13 +53,13 @@ def logistic(beta: float) -> MapNear:
 
 
 def test_the_logistic_map_doubles_supercritically() -> None:
-    form = found("period_doubling", -1.0, logistic)  # c = (f″/2)² + f‴/6 with f″ = −6
+    form = form_of("period_doubling", -1.0, logistic)  # c = (f″/2)² + f‴/6 with f″ = −6
     assert form.criticality == SUPERCRITICAL and form.reason == ""
     assert form.coefficient == pytest.approx(9.0, abs=form.error + 1e-6) and form.error < 1e-3
 
 
 def test_a_cubic_of_the_other_sign_doubles_subcritically() -> None:
-    form = found("period_doubling", -1.0, linear_and(-1.0, -1.0))
+    form = form_of("period_doubling", -1.0, linear_and(-1.0, -1.0))
     assert form.criticality == SUBCRITICAL and form.coefficient == pytest.approx(-1.0, abs=1e-5)
 
 
@@ -73,13 +73,13 @@ def test_the_coefficient_is_that_of_henons_cycle() -> None:
     """Its 2-cycle, x = ((1 − b) ± √(4a − 3(1 − b)²))/(2a), is at γ² = β/c where the multiplier is −1 − β."""
     b = 0.3
     critical = 0.75 * (1.0 - b) ** 2
-    form = found("period_doubling", -1.0, lambda beta: henon(critical + beta))
+    form = form_of("period_doubling", -1.0, lambda beta: henon(critical + beta))
     beyond = critical * (1.0 + 1e-5)
     values, vectors = np.linalg.eig(henon(beyond).derivative)
-    mine = int(np.argmin(values))
-    right = vectors[:, mine] * np.sqrt(2.0) / np.linalg.norm(vectors[:, mine])
+    smallest = int(np.argmin(values))
+    right = vectors[:, smallest] * np.sqrt(2.0) / np.linalg.norm(vectors[:, smallest])
     half_width = np.sqrt(4.0 * beyond - 3.0 * (1.0 - b) ** 2) / (2.0 * beyond)
-    expected = (-1.0 - values[mine]) / (half_width / right[0]) ** 2
+    expected = (-1.0 - values[smallest]) / (half_width / right[0]) ** 2
     assert form.criticality == SUPERCRITICAL
     assert form.coefficient == pytest.approx(expected, rel=1e-4)  # higher orders: the distance 1e-5
 
@@ -97,7 +97,7 @@ def turning(angle: float, cubic: complex) -> Callable[[float], MapNear]:
 
 @pytest.mark.parametrize(("cubic", "criticality"), [(-0.7 + 3.0j, SUPERCRITICAL), (0.4 - 5.0j, SUBCRITICAL)])
 def test_a_closed_curve_is_attracting_or_repelling(cubic: complex, criticality: str) -> None:
-    form = found("neimark_sacker", np.exp(1.0j), turning(1.0, cubic))
+    form = form_of("neimark_sacker", np.exp(1.0j), turning(1.0, cubic))
     assert form.criticality == criticality
     assert form.coefficient == pytest.approx(4.0 * cubic.real, rel=1e-4)  # z = 2γ, since η = (1, ∓i) has the norm √2
 
@@ -105,7 +105,7 @@ def test_a_closed_curve_is_attracting_or_repelling(cubic: complex, criticality: 
 @pytest.mark.parametrize("k", [3, 4])
 def test_a_strong_resonance_is_not_decided(k: int) -> None:
     angle = 2.0 * np.pi / k + 1e-3
-    form = found("neimark_sacker", np.exp(1j * angle), turning(angle, -1.0))
+    form = form_of("neimark_sacker", np.exp(1j * angle), turning(angle, -1.0))
     assert (form.criticality, form.reason) == (NOT_DECIDED, RESONANCE) and np.isnan(form.coefficient)
 
 
@@ -116,13 +116,13 @@ def delayed(r: float) -> MapNear:
 
 def test_the_curve_of_the_delayed_logistic_map_has_the_radius_that_the_coefficient_gives() -> None:
     """Beyond r = 2, where the map rotates by 60°, |γ|² = −β/Re d with β = |μ| − 1."""
-    form = found("neimark_sacker", np.exp(1j * np.pi / 3.0), lambda beta: delayed(2.0 + beta))
+    form = form_of("neimark_sacker", np.exp(1j * np.pi / 3.0), lambda beta: delayed(2.0 + beta))
     assert form.criticality == SUPERCRITICAL
     for beyond in (1e-3, 4e-3):
         r = 2.0 + beyond
         values, vectors = np.linalg.eig(delayed(r).derivative)
-        mine = int(np.argmax(values.imag))
-        right = vectors[:, mine] * np.sqrt(2.0) / np.linalg.norm(vectors[:, mine])
+        upper = int(np.argmax(values.imag))
+        right = vectors[:, upper] * np.sqrt(2.0) / np.linalg.norm(vectors[:, upper])
         left = np.linalg.inv(np.column_stack([right, right.conj()]))[0]
         x, y = 0.5 + 0.02, 0.5
         squares = []
@@ -130,7 +130,7 @@ def test_the_curve_of_the_delayed_logistic_map_has_the_radius_that_the_coefficie
             x, y = r * x * (1.0 - y), x
             if step >= 30_000:
                 squares.append(abs(left @ np.array([x - 1.0 + 1.0 / r, y - 1.0 + 1.0 / r])) ** 2)
-        expected = -(abs(values[mine]) - 1.0) / form.coefficient
+        expected = -(abs(values[upper]) - 1.0) / form.coefficient
         assert np.mean(squares) == pytest.approx(expected, rel=0.05)  # the next order: |z|² itself
 
 
@@ -140,20 +140,20 @@ def folding(quadratic: float, beta: float) -> Callable[[float], MapNear]:
 
 
 def test_a_fold_is_nondegenerate_where_its_quadratic_coefficient_is_not_zero() -> None:
-    form = found("fold", 1.0, folding(2.5, 1e-3))
+    form = form_of("fold", 1.0, folding(2.5, 1e-3))
     assert form.criticality == NONDEGENERATE and form.coefficient == pytest.approx(2.5, rel=1e-6)
-    form = found("fold", 1.0, linear_and(-1.0, 1.0))  # a pitchfork
+    form = form_of("fold", 1.0, linear_and(-1.0, 1.0))  # a pitchfork
     assert (form.criticality, form.reason) == (NOT_DECIDED, DISAGREE)
 
 
 def test_no_sign_is_stated_without_evidence() -> None:
-    grazing = found("period_doubling", -1.0, linear_and(1.0, -1.0, power=1.5))  # its third derivative is unbounded
+    grazing = form_of("period_doubling", -1.0, linear_and(1.0, -1.0, power=1.5))  # its third derivative is unbounded
     assert (grazing.criticality, grazing.reason) == (NOT_DECIDED, DISAGREE)
-    none = found("period_doubling", -1.0, linear_and(0.0, -1.0))
+    none = form_of("period_doubling", -1.0, linear_and(0.0, -1.0))
     assert (none.criticality, none.reason) == (NOT_DECIDED, DISAGREE)
-    two = found("period_doubling", -1.0, lambda _: near(lambda x: np.diag([-1.0, 1.0]), [0.0, 0.0]))
+    two = form_of("period_doubling", -1.0, lambda _: near(lambda x: np.diag([-1.0, 1.0]), [0.0, 0.0]))
     assert (two.criticality, two.reason) == (NOT_DECIDED, ANOTHER_MULTIPLIER)
-    pair = found("period_doubling", -1.0, turning(3.0, -1.0))
+    pair = form_of("period_doubling", -1.0, turning(3.0, -1.0))
     assert (pair.criticality, pair.reason) == (NOT_DECIDED, NO_MULTIPLIER)
 
 
@@ -170,5 +170,5 @@ def test_no_state_beyond_a_grazing_is_used(smooth_to: float, criticality: str, r
 
         return MapNear(smooth.x, smooth.derivative, product)
 
-    form = found("period_doubling", -1.0, side)
+    form = form_of("period_doubling", -1.0, side)
     assert (form.criticality, form.reason) == (criticality, reason)

@@ -40,6 +40,6 @@ def test_newtons_method_goes_on_to_the_maps_own_rounding() -> None:
         def __call__(self, x: np.ndarray, observer: bool = False, directions: np.ndarray | None = None) -> Flow:
             return Flow(0.5 * (x + 1.0), 0.5 * np.eye(len(x)), 0.0, np.zeros((0, 2)))
 
-    found = find_orbit._iterate(Half(), np.full(4, 1.0 + 1e-8))
-    assert found.residuals[0] == pytest.approx(5e-9, rel=1e-6) and found.residuals[-1] <= 1e-11
-    assert np.abs(found.z - 1.0).max() < 1e-14
+    newton = find_orbit._iterate(Half(), np.full(4, 1.0 + 1e-8))
+    assert newton.residuals[0] == pytest.approx(5e-9, rel=1e-6) and newton.residuals[-1] <= 1e-11
+    assert np.abs(newton.z - 1.0).max() < 1e-14

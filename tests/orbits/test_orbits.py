@@ -40,9 +40,9 @@ def test_newton_ends_at_the_maps_own_rounding_in_a_few_iterations(frequency: flo
 
 @pytest.mark.parametrize("name", [*CHAINS, "rigid"])
 def test_the_determinant_of_the_derivative_is_liouvilles(name: str) -> None:
-    shown = scene("sec2").evolve(**(CHAINS | {"rigid": {"wall": "rigid", "N": 3}})[name])
-    stroboscopic_map = StroboscopicMap(shown, 1)
-    flow = stroboscopic_map(0.1 * np.random.default_rng(1).standard_normal(2 * shown.N))
+    chain = scene("sec2").evolve(**(CHAINS | {"rigid": {"wall": "rigid", "N": 3}})[name])
+    stroboscopic_map = StroboscopicMap(chain, 1)
+    flow = stroboscopic_map(0.1 * np.random.default_rng(1).standard_normal(2 * chain.N))
     sign, logarithm = np.linalg.slogdet(flow.derivative)
     assert sign > 0
     # ∫ trace is a quadrature of order 8 of a function with kinks at the events, where steps begin and end
@@ -52,9 +52,9 @@ def test_the_determinant_of_the_derivative_is_liouvilles(name: str) -> None:
 @pytest.mark.parametrize("name", CHAINS)
 def test_every_column_of_the_derivative_is_a_finite_difference_of_the_map(name: str) -> None:
     # Contacts open and close; a missing saltation would show here, but not in the determinant.
-    shown = scene("sec2").evolve(f=615.0, N=4, **CHAINS[name])
-    stroboscopic_map = StroboscopicMap(shown, 1)
-    x = 0.3 * np.random.default_rng(2).standard_normal(2 * shown.N)
+    chain = scene("sec2").evolve(f=615.0, N=4, **CHAINS[name])
+    stroboscopic_map = StroboscopicMap(chain, 1)
+    x = 0.3 * np.random.default_rng(2).standard_normal(2 * chain.N)
     exact = stroboscopic_map(x).derivative
     step = 1e-6  # the central difference errs by step² and by the map's 1e-12/step
     for column in range(len(x)):
@@ -67,9 +67,9 @@ def test_every_column_of_the_derivative_is_a_finite_difference_of_the_map(name: 
 def test_a_preloaded_chain_has_the_multipliers_of_its_linear_modes() -> None:
     # With a small drive and a strong preload, every contact is a spring 1.5 K √δ0 and a dashpot D, and the monodromy
     # matrix is the matrix exponential of the linear equations; the drive amplitude changes it by about A0/δ0.
-    shown = scene("sec2").evolve(F0=50.0, A0=1e-10, N=5, D=20.0, f=2000.0)
-    orbit = granchain_core.orbit(shown, period=1)
-    assert np.abs(orbit.multipliers) == pytest.approx(np.abs(linear_multipliers(shown)), rel=1e-4)
+    chain = scene("sec2").evolve(F0=50.0, A0=1e-10, N=5, D=20.0, f=2000.0)
+    orbit = granchain_core.orbit(chain, period=1)
+    assert np.abs(orbit.multipliers) == pytest.approx(np.abs(linear_multipliers(chain)), rel=1e-4)
 
 
 def test_an_orbit_is_found_again_with_twice_its_period_and_squared_multipliers() -> None:
@@ -118,15 +118,15 @@ def test_an_orbit_whose_displacements_vanish_at_phase_0_is_found() -> None:
 
     Relative to the displacements there, rounding kept the residual at 1e-7, and Newton's method was reported to fail.
     """
-    found = granchain_core.orbit(VANISHING)
-    assert found.period == 1 and found.stable and found.residual < 1e-9
-    assert found.liouville_error is not None and abs(found.liouville_error) < 1e-8
+    orbit = granchain_core.orbit(VANISHING)
+    assert orbit.period == 1 and orbit.stable and orbit.residual < 1e-9
+    assert orbit.liouville_error is not None and abs(orbit.liouville_error) < 1e-8
 
 
 def test_its_branch_is_found_too() -> None:
     """Relative to displacements at phase 0, the residual of the seed used to stay at 1e-7, and there was no branch."""
-    found = granchain_core.branch(VANISHING, "f", VANISHING.f, VANISHING.f + 0.5, 1)
-    assert found.half_branches[0].ended == "reached" and check_branch(found) == []
+    branch = granchain_core.branch(VANISHING, "f", VANISHING.f, VANISHING.f + 0.5, 1)
+    assert branch.half_branches[0].ended == "reached" and check_branch(branch) == []
 
 
 def test_its_multiplier_is_right_where_the_chain_settles() -> None:
@@ -135,20 +135,20 @@ def test_its_multiplier_is_right_where_the_chain_settles() -> None:
     stroboscopic_map = StroboscopicMap(VANISHING, 1)
     x = stroboscopic_map.inner(stroboscopic_map.engine.scaled.from_si(granchain_core.orbit(VANISHING).state))
     for period in (1, 2):
-        found = orbit_of(VANISHING, period, x, Stop())
-        assert found is not None and found.period == 1 and found.point.residual < 1e-9
-        assert found.modulus == pytest.approx(exact, abs=1e-4) and found.distance_of_motion < 1e-6
+        settled_orbit = orbit_of(VANISHING, period, x, Stop())
+        assert settled_orbit is not None and settled_orbit.period == 1 and settled_orbit.point.residual < 1e-9
+        assert settled_orbit.modulus == pytest.approx(exact, abs=1e-4) and settled_orbit.distance_of_motion < 1e-6
 
 
 def test_period_1_of_a_motion_without_a_period_is_taken_with_a_reason(capsys: pytest.CaptureFixture[str]) -> None:
     """sec2 is quasi-periodic at 1700 Hz; the unstable orbit of period 1 is not the motion from rest."""
     chain = scene("sec2").evolve(f=1700.0)
-    found = granchain_core.orbit(chain)
+    orbit = granchain_core.orbit(chain)
     reason = "period 1 was assumed, because the motion from rest is quasi-periodic"
-    assert found.period == 1 and found.period_note == reason and reason in found.summary()
-    started = granchain_core.orbit(chain, start=found.state)
+    assert orbit.period == 1 and orbit.period_note == reason and reason in orbit.summary()
+    started = granchain_core.orbit(chain, start=orbit.state)
     assert started.period_note == "period 1 was assumed, because a start was given without a period"
-    assert granchain_core.orbit(chain, 1, found.state).period_note == ""
+    assert granchain_core.orbit(chain, 1, orbit.state).period_note == ""
     assert main(["orbit", "sec2", "--set", "f=1700", "--json"]) == 0
     written, said = capsys.readouterr()
     assert json.loads(written)["period_note"] == reason and reason in said
@@ -157,5 +157,5 @@ def test_period_1_of_a_motion_without_a_period_is_taken_with_a_reason(capsys: py
 
 
 def test_the_period_of_a_settled_motion_needs_no_reason() -> None:
-    found = granchain_core.orbit(scene("sec2").evolve(N=2, f=2000.0))
-    assert found.period == 1 and found.period_note == ""
+    orbit = granchain_core.orbit(scene("sec2").evolve(N=2, f=2000.0))
+    assert orbit.period == 1 and orbit.period_note == ""

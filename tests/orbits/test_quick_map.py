@@ -32,8 +32,8 @@ def whole() -> Branch:
 @pytest.mark.parametrize("knob", ["f", "D", "F0", "k", "A0"])
 def test_the_quick_map_and_its_slope_are_those_of_the_exact_one(knob: str) -> None:
     start = {"f": 700.0, "D": 100.0, "F0": 1.0, "k": 1e4, "A0": 5e-7}[knob]
-    shown = scene("sec2").evolve(N=3, f=700.0, F0=1.0 if knob == "F0" else 0.0, k=1e4)
-    equations = BranchEquations(KnobAxis.of(shown, knob, start, 1.2 * start), 1)
+    chain = scene("sec2").evolve(N=3, f=700.0, F0=1.0 if knob == "F0" else 0.0, k=1e4)
+    equations = BranchEquations(KnobAxis.of(chain, knob, start, 1.2 * start), 1)
     x = np.linspace(0.9, -0.4, 6)
     z = equations.point(x, 1.1 * start)
     steps = equations.quick_steps(z)
@@ -71,10 +71,10 @@ def test_a_wrong_quick_map_makes_no_wrong_orbit(whole: Branch, wrong: float, mon
     end = BranchEquations.quick_end
     monkeypatch.setattr(BranchEquations, "quick_end",
                         lambda self, x, value, steps: end(self, x, value, steps) + wrong * np.cos(np.arange(len(x))))
-    found = branch(scene("sec2"), "f", 340.0, 341.0, 1)
-    equations = BranchEquations(found.axis, 1)
-    assert len(found.points) > 1
-    for one in found.points:
+    computed = branch(scene("sec2"), "f", 340.0, 341.0, 1)
+    equations = BranchEquations(computed.axis, 1)
+    assert len(computed.points) > 1
+    for one in computed.points:
         assert relative_change(equations.stroboscopic_map(one.knob).end(one.x) - one.x, one.x) <= 1e-10
 
 
@@ -92,9 +92,9 @@ def test_contacts_that_never_open_or_never_close_have_their_own_counts() -> None
 
 def test_a_branch_that_comes_back_to_the_least_value_of_its_knob_ends_there() -> None:
     """At that value, the knob cannot decrease further, although its coordinate can."""
-    found = branch(scene("sec2"), "k", 0.0, 1e5, 1, most_points=100)
-    assert found.half_branches[0].ended == "returned" and found.points[-1].knob == 0.0
-    assert (found.column("knob")[1:-1] > 0.0).all()
+    computed = branch(scene("sec2"), "k", 0.0, 1e5, 1, most_points=100)
+    assert computed.half_branches[0].ended == "returned" and computed.points[-1].knob == 0.0
+    assert (computed.column("knob")[1:-1] > 0.0).all()
 
 
 def test_the_prediction_is_exact_on_a_parabola() -> None:
@@ -125,7 +125,7 @@ def test_an_orbit_needs_one_exact_derivative(monkeypatch: pytest.MonkeyPatch) ->
         return call(self, x)
 
     monkeypatch.setattr(StroboscopicMap, "__call__", counted)
-    found = followed()
-    orbits = len(found.points) + len({id(p) for s in found.special for p in (s.before, s.after)} - {
-        id(p) for p in found.points})
+    computed = followed()
+    orbits = len(computed.points) + len({id(p) for s in computed.special for p in (s.before, s.after)} - {
+        id(p) for p in computed.points})
     assert orbits > 10 and sum(exact) < 1.8 * orbits  # including the seed and the settled start

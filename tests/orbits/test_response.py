@@ -20,8 +20,8 @@ def at(frequency: float) -> Scene:
 def test_an_orbit_of_the_first_peak_is_in_step_those_of_valleys_are_not_and_others_are_not_measured(
         frequency: float, ratio: tuple[int, int], in_step: bool | None) -> None:
     # docs/lecture.md, `sec2`: peaks 1:1 … 1:5 and the valleys between them; the stop band begins at 1970 Hz
-    found = response(orbit(at(frequency)))
-    assert (found.strong, found.periods) == ratio and found.in_step is in_step
+    pulses = response(orbit(at(frequency)))
+    assert (pulses.strong, pulses.periods) == ratio and pulses.in_step is in_step
 
 
 def test_at_the_first_peak_the_push_meets_the_reflected_pulse() -> None:

@@ -47,27 +47,27 @@ class GivenOrbits:
         return point
 
 
-def found(multipliers: Multipliers, turn: float | None = None) -> list[SpecialPoint]:
+def points_between(multipliers: Multipliers, turn: float | None = None) -> list[SpecialPoint]:
     """Return the special points between both ends."""
     return special_between(GivenOrbits(multipliers, turn))  # type: ignore[arg-type]
 
 
 def test_a_multiplier_that_passes_one_without_a_turn_is_not_called_a_fold() -> None:
-    special, = found(lambda s: [0.9 + 0.2 * s, 0.5, 0.1, 0.1])
+    special, = points_between(lambda s: [0.9 + 0.2 * s, 0.5, 0.1, 0.1])
     assert special.kind == "multiplier_one" and special.kind_words == "multiplier +1 without a fold"
     assert special.knob == pytest.approx(1000.5, abs=0.01) and special.multiplier == pytest.approx(1.0, abs=0.01)
     assert special.normal_form is None
 
 
 def test_a_fold_is_still_a_fold() -> None:
-    special, = found(lambda s: [0.92 + 0.2 * s, 0.5, 0.1, 0.1], turn=0.4)
+    special, = points_between(lambda s: [0.92 + 0.2 * s, 0.5, 0.1, 0.1], turn=0.4)
     assert special.kind == "fold" and special.multiplier == pytest.approx(1.0, abs=0.01)
 
 
 @pytest.mark.parametrize("doubling", [0.3, 0.62])
 def test_a_period_doubling_is_found_though_another_multiplier_comes_back_in_the_same_step(doubling: float) -> None:
     """The number of multipliers outside the unit circle is 1 at both ends."""
-    special = found(lambda s: [1.05 - 0.1 * s, -1.0 - 0.2 * (s - doubling), 0.1, 0.1])
+    special = points_between(lambda s: [1.05 - 0.1 * s, -1.0 - 0.2 * (s - doubling), 0.1, 0.1])
     kinds = {one.kind: one.knob for one in special}
     assert len(special) == 2 and set(kinds) == {"period_doubling", "multiplier_one"}
     assert kinds["period_doubling"] == pytest.approx(1000.0 + doubling, abs=0.01)
@@ -88,9 +88,9 @@ def test_a_grazing_says_on_which_side_of_the_knob_a_contact_closes_more_often(
 
 
 def test_both_are_reported_where_they_pass_within_one_narrow_interval() -> None:
-    special = found(lambda s: [1.05 - 0.1 * s, -1.0 - 0.2 * (s - 0.5), 0.1, 0.1])
+    special = points_between(lambda s: [1.05 - 0.1 * s, -1.0 - 0.2 * (s - 0.5), 0.1, 0.1])
     assert sorted(one.kind for one in special) == ["multiplier_one", "period_doubling"]
 
 
 def test_a_pair_that_becomes_real_outside_is_no_period_doubling() -> None:
-    assert found(lambda s: [-1.2 + np.emath.sqrt(0.01 * (s - 0.4)), -1.2 - np.emath.sqrt(0.01 * (s - 0.4)), 0.1, 0.1]) == []
+    assert points_between(lambda s: [-1.2 + np.emath.sqrt(0.01 * (s - 0.4)), -1.2 - np.emath.sqrt(0.01 * (s - 0.4)), 0.1, 0.1]) == []

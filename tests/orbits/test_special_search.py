@@ -17,9 +17,9 @@ def followed() -> Branch:
     return branch(scene("sec2"), "f", 340.0, 358.55, 1)
 
 
-def fingerprint(found: list[SpecialPoint]) -> list[tuple[object, ...]]:
+def fingerprint(special_points: list[SpecialPoint]) -> list[tuple[object, ...]]:
     """Return kind, contact and gained interval of special points, without their places."""
-    return [(one.kind, one.contact, one.gained) for one in found]
+    return [(one.kind, one.contact, one.gained) for one in special_points]
 
 
 @pytest.fixture(scope="module")
@@ -76,9 +76,9 @@ def test_the_ends_of_every_interval_are_exact(fast: Branch) -> None:
 
 @pytest.mark.parametrize("knob", ["f", "D", "F0", "k"])
 def test_a_map_that_is_used_again_is_a_new_one_to_the_last_bit(knob: str) -> None:
-    shown = scene("sec2").evolve(N=3, f=700.0, F0=1.0 if knob == "F0" else 0.0)
+    chain = scene("sec2").evolve(N=3, f=700.0, F0=1.0 if knob == "F0" else 0.0)
     start = {"f": 700.0, "D": 100.0, "F0": 1.0, "k": 0.0}[knob]
-    axis = special_search.KnobAxis.of(shown, knob, start, 1.1 * start if start else 1e4)
+    axis = special_search.KnobAxis.of(chain, knob, start, 1.1 * start if start else 1e4)
     equations = BranchEquations(axis, 1)
     x = np.linspace(0.9, -0.4, 6)
     equations.reused_map(axis.end, 1e-9)(x)

@@ -24,17 +24,17 @@ from granchain_core.scene.state import rest
 @pytest.mark.parametrize("changes", [{}, {"f": 1130.0}, {"kappa": 0.001}, {"F0": 0.5}, {"wall": "rigid", "N": 3},
                                      {"dissipation": "none", "N": 4}])
 def test_tangents_in_w_and_tangents_in_v_with_saltation_are_one_derivative(changes: dict[str, object]) -> None:
-    shown = scene("sec2").evolve(**changes)
-    stroboscopic_map = StroboscopicMap(shown, 1)
-    x = 0.3 * np.random.default_rng(3).standard_normal(2 * shown.N)
+    chain = scene("sec2").evolve(**changes)
+    stroboscopic_map = StroboscopicMap(chain, 1)
+    x = 0.3 * np.random.default_rng(3).standard_normal(2 * chain.N)
     first, second = stroboscopic_map(x).derivative, stroboscopic_map.derivative_by_saltation(x)
     assert len(stroboscopic_map.contact_events) > 0  # contacts must open and close, otherwise there are no jumps
     assert np.abs(first - second).max() < 1e-9 * np.abs(first).max()
 
 
 def test_a_missing_saltation_shows_in_the_columns_and_not_in_the_determinant() -> None:
-    shown = scene("sec2").evolve(N=3)
-    stroboscopic_map = StroboscopicMap(shown, 1)
+    chain = scene("sec2").evolve(N=3)
+    stroboscopic_map = StroboscopicMap(chain, 1)
     x = 0.3 * np.random.default_rng(4).standard_normal(6)
     right = stroboscopic_map(x)
     wrong = stroboscopic_map.derivative_by_saltation(x, jumps=False)
@@ -62,8 +62,8 @@ def test_a_scene_that_cuts_tension_is_refused_in_one_sentence() -> None:
 
 @pytest.mark.parametrize("columns", [1, 8, 9])
 def test_directions_are_products_with_the_derivative(columns: int) -> None:
-    shown = scene("sec2").evolve(N=5)
-    stroboscopic_map, rng = StroboscopicMap(shown, 1), np.random.default_rng(5)
+    chain = scene("sec2").evolve(N=5)
+    stroboscopic_map, rng = StroboscopicMap(chain, 1), np.random.default_rng(5)
     x, directions = 0.3 * rng.standard_normal(10), rng.standard_normal((10, columns))
     assert stroboscopic_map(x, directions=directions).derivative == pytest.approx(stroboscopic_map(x).derivative @ directions, abs=1e-12)
 
@@ -84,10 +84,10 @@ def test_the_flow_with_and_without_tangents_ends_at_the_same_place_with_the_same
 
 def test_a_long_chain_has_the_leading_multipliers_of_its_linear_modes() -> None:
     # as for the short chain, but only from products with single directions; the drive changes them by about A0/δ0
-    shown = scene("sec2").evolve(N=200, F0=50.0, A0=1e-10, D=1000.0, f=2000.0)
-    orbit = granchain_core.orbit(shown, period=1, start=rest(shown))
+    chain = scene("sec2").evolve(N=200, F0=50.0, A0=1e-10, D=1000.0, f=2000.0)
+    orbit = granchain_core.orbit(chain, period=1, start=rest(chain))
     assert orbit.residual <= 1e-9 and orbit.liouville_error is None
-    exact = linear_multipliers(shown)[: len(orbit.multipliers)]
+    exact = linear_multipliers(chain)[: len(orbit.multipliers)]
     assert np.abs(orbit.multipliers) == pytest.approx(np.abs(exact), rel=1e-4)
 
 
@@ -108,8 +108,8 @@ def test_multipliers_of_any_matrix_are_sorted_by_modulus() -> None:
 
 def test_a_contact_that_rounding_closes_again_at_once_does_not_stop_the_flow() -> None:
     # After a release at t = 34.3 this contact closes again 5e-13 later; no step may become too small to move t.
-    shown = scene("sec2").evolve(N=1, D=30.0, f=403.89217825350806)
-    stroboscopic_map = StroboscopicMap(shown, 3)
+    chain = scene("sec2").evolve(N=1, D=30.0, f=403.89217825350806)
+    stroboscopic_map = StroboscopicMap(chain, 3)
     x = np.array([-0.05948783164245709, 0.15173847516946406])
     assert np.all(np.isfinite(stroboscopic_map.end(x)))
     assert stroboscopic_map.engine.counts.steps < 10_000

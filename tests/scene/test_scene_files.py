@@ -41,6 +41,13 @@ def test_an_impurity_and_moving_beads_are_those_of_the_page(files: Path) -> None
     assert chain.velocities_at_start()[:3] == pytest.approx([0.02, 0.01, 0.0])
 
 
+def test_place_in_older_files_means_site(files: Path) -> None:
+    text = (files / "light-sixth.toml").read_text(encoding="utf-8")
+    (files / "older.toml").write_text(text.replace("site = ", "place = "), encoding="utf-8")
+    present, older = scene(files / "light-sixth.toml"), scene(files / "older.toml")
+    assert (older.impurities, older.start_velocity) == (present.impurities, present.start_velocity)
+
+
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_the_examples_run_and_their_files_know_the_scene(name: str, files: Path) -> None:
     chain = scene(files / name)
@@ -93,10 +100,11 @@ def test_a_file_needs_no_parent(tmp_path: Path) -> None:
     ('parent = "sec2"\n[chain]\npattern = 3', "pattern must be a list of tables in braces, not '3'."),
     ('parent = "sec2"\n[chain]\npattern = [{ mas = 1 }]', "Unknown name in pattern 'mas'; the nearest is 'mass'"),
     ('parent = "sec2"\n[chain]\npattern = [{ mass = 1.0 }]', "a bead of pattern has no radius"),
-    ('parent = "sec2"\n[chain]\nimpurities = [{ mass = 1.0 }]', "an entry of impurities needs place"),
-    ('parent = "sec2"\n[chain]\nimpurities = [{ place = 3, mass = -1.0 }]', "impurities mass must be a finite number above 0"),
+    ('parent = "sec2"\n[chain]\nimpurities = [{ mass = 1.0 }]', "an entry of impurities needs site"),
+    ('parent = "sec2"\n[chain]\nimpurities = [{ site = 3, mass = -1.0 }]', "impurities mass must be a finite number above 0"),
     ('parent = "sec2"\n[chain]\nimpurities = [{ place = 30, mass = 1.0 }]', "name bead 30, and its beads are 1 to 11."),
-    ('parent = "sec2"\n[chain]\nstart_velocity = [{ place = 1 }]', "has no velocity [m/s]."),
+    ('parent = "sec2"\n[chain]\nimpurities = [{ site = 3, place = 3, mass = 1.0 }]', "has site and place, which mean the same"),
+    ('parent = "sec2"\n[chain]\nstart_velocity = [{ site = 1 }]', "has no velocity [m/s]."),
     ('parent = "sec2"\n[chain]\nreference_overlap = 0', "reference_overlap must be a finite number above 0"),
     ('parent = "sec2"\n[ranges]\nf = [3.0, 2.0]', "the range of f must be two ascending numbers"),
     ("parent = ", "mine.toml: the text is not TOML; invalid value (at "), ("#" * (MOST_BYTES + 1), f"at most {MOST_BYTES} bytes"),

@@ -20,7 +20,7 @@ FREQUENCIES = [400.0, 590.0, 620.0, 1240.0, 1576.0, 1590.0, 1600.0, 1610.0, 1620
 def results(frequencies: list[float]) -> dict[float, SteadyState]:
     """Return the results of batches at these frequencies of section 2's chain."""
     scenes = (scene("sec2").evolve(f=f) for f in frequencies)
-    return {found.scene.f: found for found in batch_module.batch_results(scenes, Stop())}
+    return {result.scene.f: result for result in batch_module.batch_results(scenes, Stop())}
 
 
 def test_what_is_extrapolated_is_what_the_chain_was_going_to() -> None:
@@ -30,15 +30,15 @@ def test_what_is_extrapolated_is_what_the_chain_was_going_to() -> None:
     by_batch, periodic = results(FREQUENCIES), 0
     for f in FREQUENCIES:
         settling = run_until_settled(scene("sec2").evolve(f=f), None, None)
-        found = by_batch[f]
-        assert found.regime.name == settling.regime.name
-        if found.regime.period is None:
+        result = by_batch[f]
+        assert result.regime.name == settling.regime.name
+        if result.regime.period is None:
             continue
         periodic += 1
-        assert found.regime.period == settling.regime.period
-        top = settling.engine.periods(found.regime.period)[1][:, 1].max() * settling.engine.scaled.scales.force
+        assert result.regime.period == settling.regime.period
+        top = settling.engine.periods(result.regime.period)[1][:, 1].max() * settling.engine.scaled.scales.force
         # the fixed-step method's own error at these steps is a few 1e-5 of the displacement, more on steep flanks
-        assert found.maxima[1] == pytest.approx(top, rel=2e-3)
+        assert result.maxima[1] == pytest.approx(top, rel=2e-3)
     assert periodic >= 9
 
 
@@ -50,23 +50,23 @@ def test_a_computed_multiplier_is_kept_and_is_what_the_errors_rest_on(monkeypatc
     to 1e-4 for the map; coarse steps change |μ| by as much.
     """
     monkeypatch.setattr("granchain_core.steady.batch.job._SLOW_CONTRACTION", 0.5)
-    extrapolated = [found for found in results([391.0, 392.0, 394.0, 397.0]).values()
-                    if found.regime.orbit_found_by == "extrapolation"]
+    extrapolated = [result for result in results([391.0, 392.0, 394.0, 397.0]).values()
+                    if result.regime.orbit_found_by == "extrapolation"]
     assert extrapolated
-    for found in extrapolated:
-        exact = settle(found.scene.evolve(accuracy=1e-6))
-        assert found.regime.is_approach
-        assert found.regime.multiplier == pytest.approx(exact.regime.multiplier, abs=1e-3)
-        assert found.errors is not None and found.errors.max() < 2e-4
-        assert found.maxima[1] == pytest.approx(exact.run.max_output_force, rel=found.errors[1])
+    for result in extrapolated:
+        exact = settle(result.scene.evolve(accuracy=1e-6))
+        assert result.regime.is_approach
+        assert result.regime.multiplier == pytest.approx(exact.regime.multiplier, abs=1e-3)
+        assert result.errors is not None and result.errors.max() < 2e-4
+        assert result.maxima[1] == pytest.approx(exact.run.max_output_force, rel=result.errors[1])
 
 
 def test_what_batches_call_quasi_periodic_was_measured_twice(monkeypatch: pytest.MonkeyPatch) -> None:
     """At 1640 Hz from rest, 200 periods with a zero exponent are not enough, as for a chain alone."""
     real, measured = batch_module.put_with_neighbour, []
     monkeypatch.setattr(batch_module, "put_with_neighbour", lambda *words: measured.append(True) or real(*words))
-    found = results([1640.0])[1640.0]
-    assert (found.regime.name, found.undecided) == ("quasi-periodic", False) and len(measured) >= 2
+    result = results([1640.0])[1640.0]
+    assert (result.regime.name, result.undecided) == ("quasi-periodic", False) and len(measured) >= 2
 
 
 def test_up_and_down_sweeps_differ_at_1600_hz() -> None:
@@ -81,10 +81,10 @@ def test_an_unstable_orbit_is_not_drawn_as_periodic() -> None:
     """For the rig between 134 and 160 Hz, the fixed-step method shows that motions that batches call periodic are
     stable.
     """
-    found = [point for point in resonance_curve(scene("rig"), np.linspace(134.0, 160.0, 14)).points
-             if point.regime.name == "periodic"]
-    assert len(found) >= 1  # few are: most of these motions are chaotic or quasi-periodic
-    for point in found:
+    periodic = [point for point in resonance_curve(scene("rig"), np.linspace(134.0, 160.0, 14)).points
+                if point.regime.name == "periodic"]
+    assert len(periodic) >= 1  # few are: most of these motions are chaotic or quasi-periodic
+    for point in periodic:
         kick = 1e-3 * np.abs(point.state.displacement).max() * np.where(np.arange(11) % 2, 1.0, -1.0)
         start = type(point.state)(point.state.displacement + kick, point.state.velocity)
         settling = run_until_settled(scene("rig").evolve(f=point.frequency), start, None)

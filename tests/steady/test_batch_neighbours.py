@@ -29,15 +29,15 @@ MEMBERS_OF_PAIRS = range(0, BATCH_SIZE - 1, 2)
 
 def results(scenes: list[Scene]) -> dict[tuple[float, float], SteadyState]:
     """Return the results of one batch, by the scenes' knobs."""
-    return {(found.scene.f, found.scene.A0): found for found in batch_results(iter(scenes), Stop())}
+    return {(result.scene.f, result.scene.A0): result for result in batch_results(iter(scenes), Stop())}
 
 
-def fingerprint(found: SteadyState) -> tuple[object, ...]:
+def fingerprint(result: SteadyState) -> tuple[object, ...]:
     """Return everything in a result, in a form that compares bit by bit."""
     errors = [None if one is None else float(one).hex() for one in
-              (found.force_errors.input, found.force_errors.output, found.force_errors.elastic)]
-    return (found.regime.name, found.regime.period, found.regime.periods_run, found.regime.lyapunov, found.undecided,
-            [float(top).hex() for top in found.maxima], errors)
+              (result.force_errors.input, result.force_errors.output, result.force_errors.elastic)]
+    return (result.regime.name, result.regime.period, result.regime.periods_run, result.regime.lyapunov, result.undecided,
+            [float(top).hex() for top in result.maxima], errors)
 
 
 def arrays_of(group: tuple) -> Iterator[np.ndarray]:
@@ -53,12 +53,12 @@ def test_a_scene_alone_and_among_others_is_the_same() -> None:
     together = results(SCENES)
     shuffled = SCENES.copy()
     random.Random(1).shuffle(shuffled)
-    for (f, a), found in results(shuffled).items():
-        assert fingerprint(found) == fingerprint(together[f, a]), (f, a)
+    for (f, a), result in results(shuffled).items():
+        assert fingerprint(result) == fingerprint(together[f, a]), (f, a)
     for alone in SCENES[::3]:
-        (found,) = results([alone]).values()
-        assert fingerprint(found) == fingerprint(together[alone.f, alone.A0]), (alone.f, alone.A0)
-    assert len({found.regime.name for found in together.values()}) > 1
+        (result,) = results([alone]).values()
+        assert fingerprint(result) == fingerprint(together[alone.f, alone.A0]), (alone.f, alone.A0)
+    assert len({result.regime.name for result in together.values()}) > 1
 
 
 def test_a_curve_does_not_depend_on_how_many_threads_compute_it() -> None:
@@ -66,10 +66,10 @@ def test_a_curve_does_not_depend_on_how_many_threads_compute_it() -> None:
     one, three = (resonance_curve(scene("sec2"), np.linspace(1100.0, 2000.0, 25), workers=count) for count in (1, 3))
     for name in ("frequency", "max_input_force", "max_output_force", "max_output_force_elastic"):
         assert one.column(name).tobytes() == three.column(name).tobytes(), name
-    for mine, other in zip(one.points, three.points, strict=True):
-        assert (mine.regime, mine.force_errors, mine.status) == (other.regime, other.force_errors, other.status)
+    for by_one_thread, by_three in zip(one.points, three.points, strict=True):
+        assert (by_one_thread.regime, by_one_thread.force_errors, by_one_thread.status) == (by_three.regime, by_three.force_errors, by_three.status)
         for part in ("displacement", "velocity"):
-            assert getattr(mine.state, part).tobytes() == getattr(other.state, part).tobytes()
+            assert getattr(by_one_thread.state, part).tobytes() == getattr(by_three.state, part).tobytes()
     assert len({point.regime.name for point in one.points}) > 1
 
 
@@ -176,7 +176,7 @@ def test_nothing_that_was_in_the_arrays_before_a_scene_is_read(preload: float, s
         return state
 
     as_built = results(scenes)
-    assert preload or len({found.regime.name for found in as_built.values()}) > 1  # exponents were measured
+    assert preload or len({result.regime.name for result in as_built.values()}) > 1  # exponents were measured
     monkeypatch.setattr(integrate_batch, "_empty_state", filled)
-    for knobs, found in results(scenes).items():
-        assert fingerprint(found) == fingerprint(as_built[knobs]), knobs
+    for knobs, result in results(scenes).items():
+        assert fingerprint(result) == fingerprint(as_built[knobs]), knobs

@@ -91,8 +91,8 @@ def test_a_chain_that_fails_alone_has_run_what_its_batch_ran(monkeypatch: pytest
     monkeypatch.setattr(module, "settle_to_forces", fails)
     chain = scene("sec2").evolve(N=3)
     left = SteadyState(chain, np.zeros(3), Regime.unsettled(620), None, rest(chain), undecided=True)
-    found = module.settled_alone(left, Stop())
-    assert (found.failure, found.regime.periods_run) == ("made to fail", 620)
+    result = module.settled_alone(left, Stop())
+    assert (result.failure, result.regime.periods_run) == ("made to fail", 620)
 
 
 def test_a_failing_frequency_does_not_lose_the_curve(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -109,9 +109,9 @@ def test_a_failing_frequency_does_not_lose_the_curve(monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(module, "settle_to_forces", fails_at_600)
     # with a tension cut, points are computed one by one from rest too
     for start, chain in (("up", scene("sec2")), ("rest", scene("sec2").evolve(tension="cut"))):
-        found = resonance_curve(chain.evolve(N=3), [500.0, 600.0, 700.0], start)
-        assert [p.failure for p in found.points] == ["", "made to fail", ""]
-        forces = found.column("max_output_force")
+        curve = resonance_curve(chain.evolve(N=3), [500.0, 600.0, 700.0], start)
+        assert [p.failure for p in curve.points] == ["", "made to fail", ""]
+        forces = curve.column("max_output_force")
         assert np.isnan(forces[1])
         assert np.isfinite(forces[[0, 2]]).all()
 
@@ -120,32 +120,32 @@ def test_a_failing_frequency_does_not_lose_the_curve(monkeypatch: pytest.MonkeyP
 @pytest.mark.parametrize("count", [2, 20])
 def test_a_curve_of_the_stiffest_foundation_is_computed_or_says_why_not(start: str, count: int) -> None:
     """k = 1e10 N/m is valid, and every point has a force or a sentence, whatever its neighbours do."""
-    found = resonance_curve(scene("sec2").evolve(k=1e10, N=2), np.linspace(2000.0, 2500.0, count), start)
-    assert len(found.points) == count
-    assert all(p.failure or np.isfinite(p.max_output_force) for p in found.points)
-    assert not any(p.failure for p in found.points), found.points[0].failure
+    curve = resonance_curve(scene("sec2").evolve(k=1e10, N=2), np.linspace(2000.0, 2500.0, count), start)
+    assert len(curve.points) == count
+    assert all(p.failure or np.isfinite(p.max_output_force) for p in curve.points)
+    assert not any(p.failure for p in curve.points), curve.points[0].failure
 
 
 @pytest.mark.parametrize("start", ["rest", "up", "down"])
 def test_a_cancelled_curve_keeps_what_it_has(start: str) -> None:
     """If it is stopped after the third point, it keeps these points and soon ends."""
-    seen: list[float] = []
+    frequencies: list[float] = []
     stop = Stop()
 
     def look(point: CurvePoint) -> None:
-        seen.append(point.frequency)
-        if len(seen) >= 3:
+        frequencies.append(point.frequency)
+        if len(frequencies) >= 3:
             stop.set()
 
-    found = resonance_curve(scene("sec2").evolve(N=3), np.linspace(300.0, 900.0, 60), start, stop=stop, on_point=look)
-    assert 3 <= len(found.points) < 60
-    assert sorted(seen) == [p.frequency for p in found.points]
+    curve = resonance_curve(scene("sec2").evolve(N=3), np.linspace(300.0, 900.0, 60), start, stop=stop, on_point=look)
+    assert 3 <= len(curve.points) < 60
+    assert sorted(frequencies) == [p.frequency for p in curve.points]
 
 
 def test_a_start_that_overflows_is_named_by_its_bead() -> None:
     """A batch only reports that a motion is no longer finite; settled alone, the chain's failure has bead and time."""
     chain = scene("sec2").evolve(N=2, f=2000.0)
     pressed = State(np.array([0.0, 1.0]), np.zeros(2))
-    (found,) = settle_starts([Start(chain, pressed, 7)], Stop())
-    assert (found.status, found.number) == ("not-finite", 7)
-    assert re.match(r"The motion of bead \d stopped being a finite number at about ", found.failure)
+    (result,) = settle_starts([Start(chain, pressed, 7)], Stop())
+    assert (result.status, result.number) == ("not-finite", 7)
+    assert re.match(r"The motion of bead \d stopped being a finite number at about ", result.failure)

@@ -45,8 +45,8 @@ def swing(size: float, period: float, measurement: int = 0) -> np.ndarray:
 def decided(*means: float) -> list[str | None]:
     """Return the name that each of several measurements decides."""
     measurements = ExponentMeasurements()
-    found = [measurements.add(growth(mean), OFFSET, CURVE, 400 + 200 * i) for i, mean in enumerate(means)]
-    return [regime.name if regime else None for regime in found]
+    regimes = [measurements.add(growth(mean), OFFSET, CURVE, 400 + 200 * i) for i, mean in enumerate(means)]
+    return [regime.name if regime else None for regime in regimes]
 
 
 @pytest.mark.parametrize(("means", "names"), [
@@ -92,9 +92,9 @@ def test_longer_blocks_measure_a_slower_swing() -> None:
     """An oscillation in 45 periods is longer than a block of 36, but shorter than one of 76."""
     measurements = ExponentMeasurements()
     assert measurements.add(swing(0.1, 45.0), OFFSET, CURVE, 400) is None and measurements.latest is None
-    found = measurements.add(swing(0.1, 45.0, 1), OFFSET, CURVE, 600)
-    assert found is not None and found.name == "quasi-periodic", "it is as long as two that agree"
-    assert found.lyapunov is not None and abs(found.lyapunov[0]) <= 3.0 * found.lyapunov[1] < 0.01
+    regime = measurements.add(swing(0.1, 45.0, 1), OFFSET, CURVE, 600)
+    assert regime is not None and regime.name == "quasi-periodic", "it is as long as two that agree"
+    assert regime.lyapunov is not None and abs(regime.lyapunov[0]) <= 3.0 * regime.lyapunov[1] < 0.01
 
 
 @pytest.mark.parametrize("periods", [200, 420])
@@ -104,9 +104,9 @@ def test_the_standard_error_is_that_of_the_mean(periods: int) -> None:
     The scatter of 4000 squares is 2 %.
     """
     dice = np.random.default_rng(5)
-    found = np.array([mean_and_error(block_means(dice.standard_normal(periods), EXPONENT_BLOCKS)) for _ in range(4000)])
-    assert found[:, 0].std() == pytest.approx(np.sqrt((found[:, 1] ** 2).mean()), rel=0.03)
-    assert found[:, 0].std() == pytest.approx(1.0 / np.sqrt(periods), rel=0.08), "hardly a period is lost at the ends"
+    means_and_errors = np.array([mean_and_error(block_means(dice.standard_normal(periods), EXPONENT_BLOCKS)) for _ in range(4000)])
+    assert means_and_errors[:, 0].std() == pytest.approx(np.sqrt((means_and_errors[:, 1] ** 2).mean()), rel=0.03)
+    assert means_and_errors[:, 0].std() == pytest.approx(1.0 / np.sqrt(periods), rel=0.08), "hardly a period is lost at the ends"
 
 
 @pytest.mark.parametrize(("mean", "name", "parts"), [(0.008, "chaotic", 4), (-0.008, "unsettled", 4), (0.003, "quasi-periodic", 1)])

@@ -24,8 +24,8 @@ def test_a_batch_leaves_long_orbits_to_a_chain_alone() -> None:
 def test_an_approach_slower_than_the_bias_of_a_torus_is_measured_until_it_shows() -> None:
     """Its mean exponent is −0.008 over 220 to 420 periods, which a torus may have as well; |μ| is 0.8 to 0.9."""
     chain = scene("sec2").evolve(A0=8e-7)
-    found = [settle(chain.evolve(f=1226.208)).regime, resonance_curve(chain, [1226.208]).points[0].regime]
-    assert [(one.name, one.period) for one in found] == [("periodic", 18)] * 2
+    regimes = [settle(chain.evolve(f=1226.208)).regime, resonance_curve(chain, [1226.208]).points[0].regime]
+    assert [(one.name, one.period) for one in regimes] == [("periodic", 18)] * 2
 
 
 def test_a_slow_approach_with_a_zero_exponent_is_left_to_a_chain_alone(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -33,8 +33,8 @@ def test_a_slow_approach_with_a_zero_exponent_is_left_to_a_chain_alone(monkeypat
     without the rule, a batch would label it quasi-periodic.
     """
     frequencies = [1206.2, 1206.22, 1206.28, 1206.3]
-    found = [point.regime for point in resonance_curve(scene("sec2"), frequencies).points]
-    assert [(one.name, one.period) for one in found] == [("periodic", 6)] * 4
+    regimes = [point.regime for point in resonance_curve(scene("sec2"), frequencies).points]
+    assert [(one.name, one.period) for one in regimes] == [("periodic", 6)] * 4
     monkeypatch.setattr(jobs_in_batch, "is_almost_periodic", lambda strobes: False)
     without = [point.regime.name for point in resonance_curve(scene("sec2"), frequencies).points]
     assert "quasi-periodic" in without

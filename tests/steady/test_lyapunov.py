@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from tangent_exponents import by_tangents
 
 from granchain_core import Scene, State, scene
 from granchain_core.execution.stop import Stop
@@ -13,7 +14,6 @@ from granchain_core.integrate import Engine, MethodSetting
 from granchain_core.integrate.batch import Batch
 from granchain_core.integrate.scaling import ScaledChain, scale_chain
 from granchain_core.kernels.batch_size import BATCH_SIZE
-from granchain_core.orbits.stroboscopic_map import StroboscopicMap
 from granchain_core.steady.lyapunov import MeasuredGrowth, block_means, growth_along, growth_of, put_with_neighbour
 from granchain_core.steady.regime_criteria import mean_and_error
 from granchain_core.steady.settling.advance import run_until_settled
@@ -24,7 +24,7 @@ QUASI = scene("sec2").evolve(f=1640.0)
 
 def in_pairs(scenes: list[tuple[ScaledChain, np.ndarray]], batch: Batch, periods: int = 220) -> list[MeasuredGrowth | None]:
     """Measure the growth of scenes, each in two lanes of a batch; None if it is not finite."""
-    found: list[MeasuredGrowth | None] = [None] * len(scenes)
+    measured: list[MeasuredGrowth | None] = [None] * len(scenes)
     for lane in range(BATCH_SIZE):
         batch.empty(lane)
     for number, (scaled, y) in enumerate(scenes):
@@ -32,36 +32,21 @@ def in_pairs(scenes: list[tuple[ScaledChain, np.ndarray]], batch: Batch, periods
     for _ in scenes:
         lane, finite = batch.run()
         if finite and np.isfinite(batch.growth(lane)).all():
-            found[lane // 2] = growth_of(batch, lane)
+            measured[lane // 2] = growth_of(batch, lane)
         batch.empty(lane)
         batch.empty(lane + 1)
-    return found
+    return measured
 
 
-def by_tangents(shown: Scene, state: State, blocks: int, block: int, count: int = 2) -> tuple[np.ndarray, np.ndarray]:
-    """Return the `count` largest exponents per period and their standard errors, from dop853's motion and tangents."""
-    stroboscopic_map = StroboscopicMap(shown, 1)
-    x = stroboscopic_map.inner(stroboscopic_map.engine.scaled.from_si(state))
-    frame, _ = np.linalg.qr(np.random.default_rng(3).standard_normal((len(x), count)))
-    growth = []
-    for _ in range((blocks + 1) * block):
-        flow = stroboscopic_map(x)
-        frame, triangle = np.linalg.qr(flow.derivative @ frame)
-        x = flow.end
-        growth.append(np.log(np.abs(np.diag(triangle))))
-    means = np.array(growth)[block:].reshape(blocks, block, count).mean(axis=1)
-    return means.mean(axis=0), means.std(axis=0, ddof=1) / np.sqrt(blocks)
-
-
-def by_neighbour(shown: Scene, state: State) -> list[tuple[float, float]]:
+def by_neighbour(chain: Scene, state: State) -> list[tuple[float, float]]:
     """Return mean and standard error from the neighbour of a single chain and from one in a batch."""
-    engine = Engine(shown, MethodSetting("rk4-split"), 1)
+    engine = Engine(chain, MethodSetting("rk4-split"), 1)
     engine.start(state)
-    scaled = scale_chain(shown)
-    (pair,) = in_pairs([(scaled, scaled.from_si(state))], Batch(shown, Stop()))
+    scaled = scale_chain(chain)
+    (pair,) = in_pairs([(scaled, scaled.from_si(state))], Batch(chain, Stop()))
     assert pair is not None
-    found = growth_along(engine, 220)[0], pair.growth
-    return [mean_and_error(block_means(growth[20:], 10)) for growth in found]
+    alone_and_in_batch = growth_along(engine, 220)[0], pair.growth
+    return [mean_and_error(block_means(growth[20:], 10)) for growth in alone_and_in_batch]
 
 
 def test_a_chaotic_chain_has_the_exponent_of_its_tangent_flow() -> None:

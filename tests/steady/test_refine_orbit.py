@@ -15,10 +15,10 @@ pytestmark = pytest.mark.quick
 
 def test_relaxing_ends_where_the_distance_is_small_and_not_the_change(monkeypatch: pytest.MonkeyPatch) -> None:
     """With a decay of 0.99, a change c leaves a distance of 99 c, which is returned and compared with the accuracy."""
-    settling, seen = run_until_settled(scene("sec2"), None, None), []
+    settling, changes = run_until_settled(scene("sec2"), None, None), []
     real = refine_orbit.changes
     settling.regime = replace(settling.regime, multiplier=0.99)
-    monkeypatch.setattr(refine_orbit, "changes", lambda *words: seen.append(real(*words)) or seen[-1])
+    monkeypatch.setattr(refine_orbit, "changes", lambda *words: changes.append(real(*words)) or changes[-1])
     _, bound = refine_orbit.refined_orbit(settling, 1e-6)
     assert bound <= 0.3e-6
-    assert bound == pytest.approx(99.0 * float(seen[-1][0]), rel=1e-12)
+    assert bound == pytest.approx(99.0 * float(changes[-1][0]), rel=1e-12)

@@ -20,18 +20,18 @@ def turning(rate: float, count: int = 420) -> np.ndarray:
 def test_changes_lost_in_rounding_leave_a_distance() -> None:
     """When a decay by 0.97 falls below a rounding of 1e-7, the stated distance is still 1e-7·0.97/0.03 or more."""
     states = 1.0 + 0.97 ** np.arange(600)[:, None, None] * np.ones((1, 2, 3))
-    found = regime_criteria.find_period(states, rounding=1e-7)
-    assert found.name == "periodic" and found.observed_contraction == pytest.approx(0.97, abs=0.01)
-    assert found.distance is not None and found.distance >= 1e-7 * 0.96 / 0.04
+    regime = regime_criteria.find_period(states, rounding=1e-7)
+    assert regime.name == "periodic" and regime.observed_contraction == pytest.approx(0.97, abs=0.01)
+    assert regime.distance is not None and regime.distance >= 1e-7 * 0.96 / 0.04
 
 
 def test_a_long_locked_orbit_is_periodic() -> None:
     """States that turn by 5/18 of a circle per period and approach their orbit have period 18, and no closed curve."""
     turns = np.exp(2j * np.pi * 5.0 / 18.0 * np.arange(421)) * (1.0 + 0.1 * 0.9 ** np.arange(421))
     states = np.stack([np.stack([turns.real, turns.imag], 1), np.stack([turns.imag, -turns.real], 1)], 1)
-    found = regime_criteria.find_period(states)
-    assert (found.name, found.period) == ("periodic", 18)
-    assert found.observed_contraction == pytest.approx(0.9**18, rel=0.1)
+    regime = regime_criteria.find_period(states)
+    assert (regime.name, regime.period) == ("periodic", 18)
+    assert regime.observed_contraction == pytest.approx(0.9**18, rel=0.1)
 
 
 def test_growth_within_its_error_is_no_chaos() -> None:
@@ -65,9 +65,9 @@ def test_an_uncertain_exponent_is_measured_further() -> None:
     uncertain, sure = 0.02 + 0.03 * swing, 0.02 + 0.003 * swing
     assert regime_criteria.needs_more_periods(uncertain, 400)
     assert not regime_criteria.needs_more_periods(sure, 400) and not regime_criteria.needs_more_periods(-sure, 400)
-    found = regime_criteria.regime_from_exponents(uncertain, 400, turning(1.0), 420)
+    regime = regime_criteria.regime_from_exponents(uncertain, 400, turning(1.0), 420)
     error = 0.01 * np.sqrt(regime_criteria.OVERLAP_FACTOR)
-    assert found.name == "unsettled" and found.lyapunov == (pytest.approx(0.02), pytest.approx(error, rel=1e-12))
+    assert regime.name == "unsettled" and regime.lyapunov == (pytest.approx(0.02), pytest.approx(error, rel=1e-12))
     assert regime_criteria.regime_from_exponents(sure, 400, turning(1.0), 420).name == "chaotic"
 
 
@@ -76,18 +76,18 @@ def test_an_uncertain_exponent_is_measured_further() -> None:
     (0.004 + 1e-4 * np.tile([1.0, -1.0], 5), "quasi-periodic")])
 def test_the_decision_can_be_repeated_from_what_is_kept(exponents: np.ndarray, name: str) -> None:
     """The regime contains mean, error and periods of the measurement; 0.004 over 400 periods is below 6/400."""
-    found = regime_criteria.regime_from_exponents(exponents, 400, turning(1.0), 420)
-    assert found.name == name and found.lyapunov is not None and found.lyapunov_periods == 400
-    assert regime_criteria.grows(*found.lyapunov, found.lyapunov_periods) is (name == "chaotic")
-    assert regime_criteria.is_neutral(*found.lyapunov, found.lyapunov_periods) is (name == "quasi-periodic")
+    regime = regime_criteria.regime_from_exponents(exponents, 400, turning(1.0), 420)
+    assert regime.name == name and regime.lyapunov is not None and regime.lyapunov_periods == 400
+    assert regime_criteria.grows(*regime.lyapunov, regime.lyapunov_periods) is (name == "chaotic")
+    assert regime_criteria.is_neutral(*regime.lyapunov, regime.lyapunov_periods) is (name == "quasi-periodic")
 
 
 def test_the_evidence_for_a_closed_curve_is_kept() -> None:
     """For the golden rotation, 420 states return to within 2π/210 of their circle, and all windows are alike."""
-    found = regime_criteria.regime_from_exponents(np.array([1e-4, -1e-4, 2e-4, -2e-4]), 400, turning(1.0), 420)
-    assert found.return_limit == pytest.approx(10.0 * np.pi / 210.0)
-    assert found.return_distance is not None and 0.0 < found.return_distance < 2.0 * np.pi / 210.0
-    assert found.window_ratios is not None and found.window_ratios == pytest.approx((1.0, 1.0), abs=2e-3)
+    regime = regime_criteria.regime_from_exponents(np.array([1e-4, -1e-4, 2e-4, -2e-4]), 400, turning(1.0), 420)
+    assert regime.return_limit == pytest.approx(10.0 * np.pi / 210.0)
+    assert regime.return_distance is not None and 0.0 < regime.return_distance < 2.0 * np.pi / 210.0
+    assert regime.window_ratios is not None and regime.window_ratios == pytest.approx((1.0, 1.0), abs=2e-3)
     creeping = regime_criteria.regime_from_exponents(np.array([-2e-4, -4e-4, -3e-4, -3e-4]), 400, turning(0.9997), 420)
     # the largest change of a window may occur up to about ten periods earlier or later in it: 0.9997^10
     assert creeping.name == "unsettled" and creeping.window_ratios == pytest.approx((0.9997**100,) * 2, abs=5e-3)

@@ -37,8 +37,8 @@ def test_peaks_and_valleys_have_the_papers_names_where_the_pushes_are_those() ->
 @pytest.mark.parametrize(("depth", "is_one"), [(0.85, False), (0.75, True)])
 def test_a_valley_is_a_fifth_below_both_peaks(depth: float, is_one: bool) -> None:
     """Between peaks of 1 N and 1.1 N, a dip to 0.85 N is not a valley."""
-    found = extrema(np.array([0.1, 1.0, depth, 1.1, 0.1]))
-    assert (2 in found) == is_one
+    places = extrema(np.array([0.1, 1.0, depth, 1.1, 0.1]))
+    assert (2 in places) == is_one
 
 
 def test_nothing_is_claimed_while_there_is_no_curve_or_off_it() -> None:

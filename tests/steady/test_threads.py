@@ -20,8 +20,8 @@ def squares(items: Iterator[int]) -> Iterator[int]:
 
 @pytest.mark.parametrize("workers", [1, 2, 5])
 def test_every_result_arrives_once(workers: int) -> None:
-    found = list(on_all_cores(squares, range(100), Stop(), workers=workers))
-    assert sorted(found) == [item * item for item in range(100)]
+    results = list(on_all_cores(squares, range(100), Stop(), workers=workers))
+    assert sorted(results) == [item * item for item in range(100)]
 
 
 @pytest.mark.parametrize("kind", [ValueError, SystemExit, KeyboardInterrupt, Cancelled])
@@ -62,5 +62,5 @@ def test_what_was_asked_to_end_ends_without_an_exception(asked: str) -> None:
                 raise Cancelled
             yield item
 
-    found = list(on_all_cores(work, range(6), ended, stop, workers=1))
-    assert found == [0, 1, 2][: len(found)] and ended
+    results = list(on_all_cores(work, range(6), ended, stop, workers=1))
+    assert results == [0, 1, 2][: len(results)] and ended

@@ -85,7 +85,7 @@ STATED = (
 FAILING = (
     Mutant("failed-step-of-its-end", "integrate/fixed.py", "if b), 0), low % steps", "if b), 0), high % steps",
            "the step after the one that failed is named", ("tests/hard_cases/test_outcomes.py", "-k", "middle_of_a_long_call")),
-    Mutant("failed-time-since-call", "integrate/engine.py", "Failure(status, self.elapsed + done, bead,", "Failure(status, done, bead,",
+    Mutant("failed-time-since-call", "integrate/engine.py", "Failure(status, periods=self.elapsed + done,", "Failure(status, periods=done,",
            "the time of a failure is counted from the present call", k.FAILURES_T),
     Mutant("nan-of-velocity-unseen", "kernels/samples.py", "if not (np.isfinite(y[i]) and np.isfinite(y[bodies + i])):",
            "if not np.isfinite(y[i]):", "a NaN velocity is seen only once it has reached a displacement, in another bead",

@@ -163,10 +163,10 @@ def _critical(kind: str, multiplier: complex, derivative: np.ndarray) -> _Critic
     eigenvalue, right = _nearest(kind, multiplier, derivative)
     _, left = _nearest(kind, multiplier.conjugate(), derivative.T)
     others = np.linalg.eigvals(derivative)
-    mine = [int(np.argmin(np.abs(others - eigenvalue)))]
+    of_this_kind = [int(np.argmin(np.abs(others - eigenvalue)))]
     if kind == "neimark_sacker":
-        mine.append(int(np.argmin(np.abs(others - eigenvalue.conjugate()))))
-    if (np.abs(np.abs(np.delete(others, mine)) - 1.0) < _AT_CIRCLE).any():
+        of_this_kind.append(int(np.argmin(np.abs(others - eigenvalue.conjugate()))))
+    if (np.abs(np.abs(np.delete(others, of_this_kind)) - 1.0) < _AT_CIRCLE).any():
         raise NotSmooth(ANOTHER_MULTIPLIER)
     right = right * np.sqrt(len(right)) / np.linalg.norm(right)
     return _Critical(eigenvalue, right, left / np.vdot(right, left))

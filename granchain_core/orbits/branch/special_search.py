@@ -189,15 +189,16 @@ def _classified(axis: KnobAxis, a: BranchPoint, b: BranchPoint) -> list[SpecialP
     if a.knob_direction != b.knob_direction:
         through_one = next((mu for mu in passing if mu.imag == 0.0 and mu.real > 0.0), None)
         passing = [mu for mu in passing if mu is not through_one]
-        special_points.append(SpecialPoint("fold", 0.5 * (low + high), (low, high), a, b, multiplier=through_one))
+        special_points.append(SpecialPoint("fold", knob=0.5 * (low + high), interval=(low, high), before=a, after=b,
+                                           multiplier=through_one))
     interval = min(low, a.knob, b.knob), max(high, a.knob, b.knob)
     knob = 0.5 * (interval[0] + interval[1])
     for mu in passing:
         kind = "neimark_sacker" if mu.imag != 0.0 else "fold" if mu.real > 0.0 else "period_doubling"
-        special_points.append(SpecialPoint(kind, knob, interval, a, b, multiplier=mu))
+        special_points.append(SpecialPoint(kind, knob=knob, interval=interval, before=a, after=b, multiplier=mu))
     for contact in np.flatnonzero(a.closings != b.closings):
-        special_points.append(SpecialPoint("grazing", knob, interval, a, b, contact=int(contact),
-                                           gained=_gained(a, b, int(contact))))
+        special_points.append(SpecialPoint("grazing", knob=knob, interval=interval, before=a, after=b,
+                                           contact=int(contact), gained=_gained(a, b, int(contact))))
     return special_points
 
 
@@ -235,8 +236,8 @@ def _merged(special_points: list[SpecialPoint]) -> list[SpecialPoint]:
         if last is not None and point.kind == last.kind == "fold" and point.before is last.after \
                 and (point.multiplier is None) != (last.multiplier is None):
             turn = point if point.before.knob_direction != point.after.knob_direction else last
-            merged[-1] = SpecialPoint("fold", turn.knob, turn.interval, last.before, point.after,
-                                      multiplier=point.multiplier or last.multiplier)
+            merged[-1] = SpecialPoint("fold", knob=turn.knob, interval=turn.interval, before=last.before,
+                                      after=point.after, multiplier=point.multiplier or last.multiplier)
         else:
             merged.append(point)
     return [replace(point, kind="multiplier_one")

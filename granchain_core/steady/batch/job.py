@@ -131,8 +131,9 @@ class BatchJob:
         farther = max(distance, regime.distance)
         regime = _with_period(regime, int(batch.state.search.last_check[member, CHECK_PERIOD]))
         if not distance <= FARTHEST_FROM_ORBIT:  # settled alone; NaN counts as far
-            return SteadyState(self.scene, self.scaled.scales.forces(maxima), replace(regime, distance=distance), None,
-                               self.scaled.to_si(y), number=self.number, undecided=True)
+            return SteadyState(self.scene, maxima=self.scaled.scales.forces(maxima),
+                               regime=replace(regime, distance=distance), errors=None, state=self.scaled.to_si(y),
+                               number=self.number, undecided=True)
         multiplier = self._multiplier(regime, y, batch.grew(member), batch.stop)
         regime = replace(regime, distance=distance, multiplier=multiplier)
         left = force_distances(farther, self.scaled, maxima, y)
@@ -144,8 +145,8 @@ class BatchJob:
             maxima, errors = np.where(rough, located, maxima), np.where(rough, located_errors, errors)
         maxima = self.scaled.scales.forces(maxima)
         undecided = multiplier is not None and multiplier >= _LARGEST_SURE_MULTIPLIER
-        return SteadyState(self.scene, maxima, regime, errors, self.scaled.to_si(y), number=self.number,
-                           undecided=undecided)
+        return SteadyState(self.scene, maxima=maxima, regime=regime, errors=errors, state=self.scaled.to_si(y),
+                           number=self.number, undecided=undecided)
 
     def _multiplier(self, regime: Regime, y: np.ndarray, grew: bool, stop: Stop) -> float | None:
         """Largest |μ| of an orbit through the scaled state y that attracts slowly, or near which changes `grew`.
@@ -203,7 +204,7 @@ def draft_result(job: BatchJob, batch: Batch, member: int) -> SteadyState:
     regime = _periodic(search.last_check[member], search.slowest_contraction[member], periods_run)
     maxima = job.scaled.scales.forces(batch.settled_maxima(member, int(period)))
     state = job.scaled.to_si(batch.state.motion.y[:, member])
-    return SteadyState(job.scene, maxima, regime, None, state, number=job.number)
+    return SteadyState(job.scene, maxima=maxima, regime=regime, errors=None, state=state, number=job.number)
 
 
 def outcome_of_coarse_run(job: BatchJob, batch: Batch, member: int) -> SteadyState | BatchJob | None:
@@ -236,16 +237,16 @@ def _with_period(regime: Regime, period: int) -> Regime:
     """The regime with this period of its orbit, which divides the one that the coarse run found."""
     if regime.period is None or period == regime.period:
         return regime
-    seen = regime.observed_contraction
-    contraction = None if seen is None else seen ** (period / regime.period)
+    observed = regime.observed_contraction
+    contraction = None if observed is None else observed ** (period / regime.period)
     return replace(regime, period=period, observed_contraction=contraction)
 
 
 def _periodic(check: np.ndarray, slowest_decay: float, periods_run: int) -> Regime:
     """The periodic regime of a coarse run, from its last check; extrapolations may have led to it."""
     period, contraction, distance = check
-    seen = float(contraction) if contraction >= 0.0 else None
-    return Regime(name="periodic", period=int(period), observed_contraction=seen, distance=float(distance),
+    observed = float(contraction) if contraction >= 0.0 else None
+    return Regime(name="periodic", period=int(period), observed_contraction=observed, distance=float(distance),
                   periods_run=periods_run, orbit_found_by=EXTRAPOLATION if slowest_decay > 0.0 else SETTLING)
 
 
@@ -253,16 +254,16 @@ def _to_measure(job: BatchJob, batch: Batch, member: int, periods_run: int, reco
     """The job whose exponent is measured next."""
     maxima = job.scaled.scales.forces(batch.maxima(member, IRREGULAR_PERIODS)[0])
     y = batch.state.motion.y[:, member].copy()
-    return BatchJob(job.scene, job.scaled, y, periods_run, Stage.EXPONENT, record=record, maxima=maxima,
-                    number=job.number)
+    return BatchJob(job.scene, scaled=job.scaled, y=y, periods_run=periods_run, stage=Stage.EXPONENT, record=record,
+                    maxima=maxima, number=job.number)
 
 
 def unsettled(job: BatchJob, batch: Batch, member: int, periods_run: int) -> SteadyState:
     """The result of a member that has used up its budget of steps."""
     maxima = job.scaled.scales.forces(batch.maxima(member, IRREGULAR_PERIODS)[0])
     state = job.scaled.to_si(batch.state.motion.y[:, member])
-    return SteadyState(job.scene, maxima, Regime.unsettled(periods_run), None, state,
-                      number=job.number)
+    return SteadyState(job.scene, maxima=maxima, regime=Regime.unsettled(periods_run), errors=None, state=state,
+                       number=job.number)
 
 
 def failed(job: BatchJob) -> SteadyState:
@@ -270,5 +271,6 @@ def failed(job: BatchJob) -> SteadyState:
 
     Which bead failed, and when, is found when the chain is settled alone (starts.py).
     """
-    return SteadyState(job.scene, np.full(3, np.nan), Regime.unsettled(job.periods_run), None, job.scaled.to_si(job.y),
-                       not_finite(f"at {job.scene.f:g} Hz"), "not-finite", job.number)
+    return SteadyState(job.scene, maxima=np.full(3, np.nan), regime=Regime.unsettled(job.periods_run), errors=None,
+                       state=job.scaled.to_si(job.y), failure=not_finite(f"at {job.scene.f:g} Hz"), status="not-finite",
+                       number=job.number)

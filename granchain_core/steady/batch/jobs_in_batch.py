@@ -186,19 +186,19 @@ class _JobsInBatch:
 
     def _decide_by_exponent(self, job: BatchJob, member: int) -> SteadyState | None:
         """The result of a job whose Lyapunov exponents were measured, or None if the job continues."""
-        seen = growth_of(self.batch, member)
-        job.periods_run += len(seen.strobes)
-        job.y, job.stage = seen.y, Stage.COARSE
-        job.record = np.concatenate([job.record, seen.strobes])[-REMEMBERED:]  # as for a chain settled alone
+        growth = growth_of(self.batch, member)
+        job.periods_run += len(growth.strobes)
+        job.y, job.stage = growth.y, Stage.COARSE
+        job.record = np.concatenate([job.record, growth.strobes])[-REMEMBERED:]  # as for a chain settled alone
         regime = replace(find_period(job.record), periods_run=job.periods_run)
         if regime.period is not None:
             if regime.period > LONGEST_PERIOD:
                 return self._measured_result(job, Regime.unsettled(job.periods_run), undecided=True)
-            job.stage, job.coarse = Stage.FINE, (regime, seen.maxima[-regime.period :].max(axis=0))
+            job.stage, job.coarse = Stage.FINE, (regime, growth.maxima[-regime.period :].max(axis=0))
             self.waiting.append(job)
             return None
         goes_on = job.periods_run < MOST_SETTLING_PERIODS and job.affordable
-        decided = job.measurements.add(seen.growth, seen.offset, job.record, job.periods_run, last=not goes_on)
+        decided = job.measurements.add(growth.growth, growth.offset, job.record, job.periods_run, last=not goes_on)
         latest = job.measurements.latest
         if decided is not None:
             near_an_orbit = decided.name == "quasi-periodic" and is_almost_periodic(job.record)
@@ -219,8 +219,8 @@ class _JobsInBatch:
 
     def _measured_result(self, job: BatchJob, regime: Regime, undecided: bool) -> SteadyState:
         """The result of a job whose exponents were measured; it is final once the budget of steps is used up."""
-        return SteadyState(job.scene, job.maxima, regime, None, job.scaled.to_si(job.y), number=job.number,
-                           undecided=undecided and job.affordable)
+        return SteadyState(job.scene, maxima=job.maxima, regime=regime, errors=None, state=job.scaled.to_si(job.y),
+                           number=job.number, undecided=undecided and job.affordable)
 
     def _measure(self, job: BatchJob) -> None:
         """Queue a job for two lanes, behind jobs with at least as many steps per period: the longest start first."""

@@ -73,8 +73,9 @@ class CurvePoint:
     def of(cls, state: SteadyState) -> CurvePoint:
         """The point of a steady state."""
         input_force, output_force, elastic = map(float, state.maxima)
-        return cls(state.scene.f, output_force, elastic, input_force, state.regime, state.force_errors, state.state,
-                   state.failure, state.status)
+        return cls(state.scene.f, max_output_force=output_force, max_output_force_elastic=elastic,
+                   max_input_force=input_force, regime=state.regime, force_errors=state.force_errors, state=state.state,
+                   failure=state.failure, status=state.status)
 
     @property
     def error_estimate(self) -> float | None:

@@ -22,11 +22,11 @@ def coarse_first(count: int) -> list[int]:
     """Indices 0..count−1 in an order that shows the curve's shape early: ends, middle, quarters, …"""
     step = 1 << max(0, (count - 1).bit_length())
     order = [0, count - 1] if count > 1 else list(range(count))
-    seen = set(order)
+    ordered = set(order)
     while step >= 1:
         for i in range(0, count, step):
-            if i not in seen:
-                seen.add(i)
+            if i not in ordered:
+                ordered.add(i)
                 order.append(i)
         step //= 2
     return order

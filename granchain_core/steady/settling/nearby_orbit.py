@@ -179,8 +179,8 @@ def is_almost_periodic(strobes: np.ndarray) -> bool:
     """
     if len(strobes) < _ALMOST_PERIODIC_CHANGES + LONGEST_PERIOD:
         return False
-    seen = window_changes(strobes, _ALMOST_PERIODIC_CHANGES, 1, LONGEST_PERIOD)
-    return min(change for (change,) in seen) < _ALMOST_PERIODIC
+    largest_changes = window_changes(strobes, _ALMOST_PERIODIC_CHANGES, 1, LONGEST_PERIOD)
+    return min(change for (change,) in largest_changes) < _ALMOST_PERIODIC
 
 
 def _changes_over_periods(strobes: np.ndarray) -> list[float]:

@@ -27,8 +27,8 @@ def motion_so_far(motion: SettlingRun, samples: int, began: float, origin: str, 
     engine = Engine(motion.scene, motion.engine.setting, samples, stop=motion.stop)
     state = motion.engine.state
     engine.start(state)
-    shown = motion.regime.period or _PERIODS_SHOWN
-    record = engine.record(shown * samples)
+    periods = motion.regime.period or _PERIODS_SHOWN
+    record = engine.record(periods * samples)
     engine.counts.array += motion.engine.counts.array
     cost = Cost.of(time.perf_counter() - began, engine.counts, engine.setting.method)
     run = run_from(engine, record, 0, motion.regime, None, cost, start=origin)

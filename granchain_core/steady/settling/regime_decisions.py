@@ -95,9 +95,9 @@ class Decisions:
         unconfirmed = self._carried or not _decays_clearly(regime)
         if (MOST_BEADS_WITH_MULTIPLIERS if unconfirmed else _CONFIRMED_BEADS) < self.scene.N:
             return Decision(regime)
-        seen = seen_modulus(self.scene, regime.period, _state_of(engine), engine.stop, refine=4.0)
-        if seen <= _CLEAR_MULTIPLIER and not _may_repeat_sooner(strobes, regime.period):
-            return Decision(replace(regime, multiplier=seen))
+        modulus = seen_modulus(self.scene, regime.period, _state_of(engine), engine.stop, refine=4.0)
+        if modulus <= _CLEAR_MULTIPLIER and not _may_repeat_sooner(strobes, regime.period):
+            return Decision(replace(regime, multiplier=modulus))
         orbit = orbit_of(self.scene, regime.period, _state_of(engine), engine.stop)
         if orbit is None or orbit.distance_of_motion > NEAR_AN_ORBIT:
             return Decision(replace(regime, name="unsettled", period=None, distance=None) if unconfirmed else regime)
@@ -143,8 +143,8 @@ def _decays_clearly(regime: Regime) -> bool:
 def _regime_on_orbit(orbit: NearbyOrbit, regime: Regime) -> Regime:
     """The periodic regime of a motion on a stable orbit that Newton's method has found from it."""
     # the contraction over a longer period says nothing about a shorter one
-    seen = regime.observed_contraction if orbit.period == regime.period else None
-    return replace(regime, period=orbit.period, multiplier=orbit.modulus, observed_contraction=seen)
+    observed = regime.observed_contraction if orbit.period == regime.period else None
+    return replace(regime, period=orbit.period, multiplier=orbit.modulus, observed_contraction=observed)
 
 
 def _orbits_near_motion(engine: Engine, strobes: np.ndarray) -> Iterator[NearbyOrbit]:

@@ -31,7 +31,7 @@ def settle_to_forces(scene: Scene, start: State | None, stop: Stop, periods_run:
     if settling.regime.name == "periodic":
         return _on_its_orbit(settling)
     maxima = settling.engine.scaled.scales.forces(settling.maxima[-IRREGULAR_PERIODS:].max(axis=0))
-    return SteadyState(scene, maxima, settling.regime, None, settling.engine.state)
+    return SteadyState(scene, maxima=maxima, regime=settling.regime, errors=None, state=settling.engine.state)
 
 
 def _on_its_orbit(settling: SettlingRun) -> SteadyState:
@@ -44,14 +44,15 @@ def _on_its_orbit(settling: SettlingRun) -> SteadyState:
     assert n is not None
     if distance > FARTHEST_FROM_ORBIT:
         _, maxima = engine.periods(IRREGULAR_PERIODS)
-        return SteadyState(settling.scene, engine.scaled.scales.forces(maxima.max(axis=0)),
-                           Regime.unsettled(settling.regime.periods_run), None, engine.state)
+        return SteadyState(settling.scene, maxima=engine.scaled.scales.forces(maxima.max(axis=0)),
+                           regime=Regime.unsettled(settling.regime.periods_run), errors=None, state=engine.state)
     before = engine.advance_and_find_largest(n)
     finer = Engine(settling.scene, engine.setting.finer(), 1, stop=settling.stop)
     finer.start(engine.state)
     maxima = finer.advance_and_find_largest(n)
     errors = errors_between(finer, before, settling.regime.assumed_contraction, distance)
-    return SteadyState(settling.scene, finer.scaled.scales.forces(maxima), settling.regime, errors, finer.state)
+    return SteadyState(settling.scene, maxima=finer.scaled.scales.forces(maxima), regime=settling.regime, errors=errors,
+                       state=finer.state)
 
 
 def settle_or_failure(scene: Scene, start: State | None, stop: Stop, periods_run: int = 0) -> SteadyState:
@@ -60,8 +61,8 @@ def settle_or_failure(scene: Scene, start: State | None, stop: Stop, periods_run
         return settle_to_forces(scene, start, stop, periods_run)
     except ComputationError as failed:
         resting = State(np.zeros(scene.N), np.zeros(scene.N))
-        return SteadyState(scene, np.full(3, np.nan), Regime.unsettled(periods_run), None, start or resting,
-                           failed.sentence, failed.status)
+        return SteadyState(scene, maxima=np.full(3, np.nan), regime=Regime.unsettled(periods_run), errors=None,
+                           state=start or resting, failure=failed.sentence, status=failed.status)
 
 
 def settled_alone(undecided: SteadyState, stop: Stop) -> SteadyState:
