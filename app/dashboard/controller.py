@@ -75,7 +75,7 @@ class Controller:
             "ping": lambda _: views.chain.send(type="pong"),
             "ready": self._ready, "window-shown": lambda _: self.pictures.restart(),
             "compact": lambda m: views.set_compact(bool(m.get("value"))),
-            "visible": self._visible,
+            "visible": self._visibility_reported,
             "painted": lambda m: self.pictures.painted(m.get("number"), m.get("took")),
             **self._scenes.actions,
             "gallery": self._send_gallery,
@@ -112,7 +112,7 @@ class Controller:
         self.pinned.show()
         self._scenes.show_preset(self._initial_state, self.session.curves)
 
-    def _visible(self, message: dict[str, Any]) -> None:
+    def _visibility_reported(self, message: dict[str, Any]) -> None:
         name, visible = message.get("name"), message.get("value")
         looked_at = self._looked_at.get(name) if isinstance(name, str) else None
         if looked_at is None or not isinstance(visible, bool):

@@ -1,4 +1,4 @@
-"""The share link, and files of the picture on the picture."""
+"""The share link, and files of the picture on the screen."""
 
 from __future__ import annotations
 

@@ -88,7 +88,7 @@ class MapPage(Page):
             return
         self._send_mark()
         if self._stale():
-            self._give_up()
+            self._cancel()
             self._send(type="map-stale")
             self._quiet.start(self._begin_if_visible)
 
@@ -134,7 +134,7 @@ class MapPage(Page):
     def _missing(self) -> list[int]:
         return [int(number) for number in np.flatnonzero(self._cells["regime"] < 0)]
 
-    def _give_up(self) -> bool:
+    def _cancel(self) -> bool:
         """Stop computing this map; return whether it was being computed."""
         if not self._task.cancel():
             return False
@@ -142,7 +142,7 @@ class MapPage(Page):
         return True
 
     def _stop(self) -> None:
-        if self._give_up():
+        if self._cancel():
             self._show_status("stopped")
 
     def _work(self, grid: Grid, missing: list[int], job: Job) -> None:

@@ -10,7 +10,7 @@ from panel.custom import JSComponent
 
 from ...plots.theme import Theme
 from ...scripts import FILES, files_by_name
-from ...serve.monkeypatches.panel_overrides import (
+from .panel_overrides import (
     WithCommonProperties,
     WithoutBusyIndicator,
     WithoutChildren,
