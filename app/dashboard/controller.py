@@ -58,7 +58,7 @@ class Controller:
         self._initial_state = initial_state
         self._gallery_sent = False
         self.session = session
-        self.views = views = Views(session, self.received, partial(self._calls.call_and_report, self._choose_frequency))
+        self.views = views = Views(session, self.receive, partial(self._calls.call_and_report, self._choose_frequency))
         self.sentences = Sentences(session, views.status_line, self._compute)
         self.pictures = MainPicture(self, views, self.sentences.show_notice, self.picture_ready)
         self.curves = CurveController(self, views.curve, views.curve_bar, self._curve_placed)
@@ -92,7 +92,7 @@ class Controller:
 
     # Messages
 
-    def received(self, message: dict[str, Any]) -> None:
+    def receive(self, message: dict[str, Any]) -> None:
         """Pass a message from the browser to its action, which must check every value in it."""
         name = message.get("do")
         action = self._actions.get(name) if isinstance(name, str) else None
@@ -195,13 +195,13 @@ class Controller:
         """See `PageHost`."""
         self.views.trains.measured(overlay)
 
-    def show(self, scene: Scene, state: State | None = None, mode: str = "settled") -> None:
+    def turn_knobs(self, scene: Scene, state: State | None = None, mode: str = "settled") -> None:
         """See `PageHost`."""
-        self._scenes.show(scene, state, mode)
+        self._scenes.turn_knobs(scene, state, mode)
 
-    def open(self, scene: Scene, state: State | None, curves: str) -> None:
+    def open_scene(self, scene: Scene, state: State | None, curves: str) -> None:
         """See `PageHost`."""
-        self._scenes.open(scene, state, curves)
+        self._scenes.open_scene(scene, state, curves)
 
     def address_changed(self) -> None:
         """See `PageHost`."""

@@ -15,8 +15,8 @@ from .question import Answers, Guess, Question, Unclear
 from .series import Series, Shaker
 from .units import QUANTITIES, UNITS, VOLTS, bracketed_unit, factor_of
 
-#: A curve whose header names no unit is in Hz and N (docs/data.md). If all its frequencies are below this [Hz], the user
-#: is asked for the unit, since they may be in kHz.
+#: A curve whose header names no unit is in Hz and N (docs/data.md). If all its frequencies are below this [Hz], the
+#: user is asked for the unit, since they may be in kHz.
 _TOO_SLOW = 5.0
 #: If a force of such a curve exceeds this [N], the user is asked for the unit as well.
 _TOO_STRONG = 1e4

@@ -1,4 +1,4 @@
-"""Work against precision: measured rows, a reference on which two solvers agree, and the force as naive methods compute it."""
+"""Work against precision: measured rows, a reference on which two solvers agree, and naive forces."""
 
 from __future__ import annotations
 

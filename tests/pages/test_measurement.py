@@ -47,7 +47,7 @@ def sent(content: bytes) -> dict[str, Any]:
 
 def after(dashboard: Dashboard, message: dict[str, Any], name: str) -> Any:
     """Return `name` in the tab's state after the message is processed, or the sentence if the message is refused."""
-    dashboard.received(message)
+    dashboard.receive(message)
     dashboard.run_callbacks_until(lambda: bool(dashboard.session.sentence or dashboard.views.tabs.state.get(name)))
     return dashboard.views.tabs.state.get(name) or dashboard.session.sentence
 
@@ -55,7 +55,7 @@ def after(dashboard: Dashboard, message: dict[str, Any], name: str) -> Any:
 def test_every_byte_of_a_file_arrives(dashboard: Dashboard) -> None:
     text = "Frequenz [kHz];Kraft [µN]\r\n0,04;5\r\n".encode("utf-16")
     assert "UTF-16" in after(dashboard, sent(text), "understood")
-    dashboard.received({"do": "measurement", "content": "???"})
+    dashboard.receive({"do": "measurement", "content": "???"})
     assert "did not arrive" in dashboard.session.sentence
 
 
@@ -112,7 +112,7 @@ def test_an_hdf5_file_is_called_as_the_visitor_called_it(dashboard: Dashboard, t
     assert sentence == "The file is not a measurement that can be read: it has no two rows of numbers of one length."
     with h5py.File(tmp_path / "a.h5", "a") as file:
         file["f"] = file["F"] = [40.0, 60.0]
-    dashboard.received(sent((tmp_path / "a.h5").read_bytes()))
+    dashboard.receive(sent((tmp_path / "a.h5").read_bytes()))
     dashboard.run_callbacks_until(lambda: bool(dashboard.views.tabs.state.get("question")))
     assert dashboard.views.tabs.state["question"]["reason"].startswith("What 'F'")
 
@@ -126,7 +126,7 @@ def test_a_question_is_shown_and_its_answers_are_kept(dashboard: Dashboard) -> N
     assert question["about"] == ["columns"] and question["rows"][0] == [1, ["1.100", "2,5"]]
     assert question["columns"][0] == [1, "", "frequency", "Hz"] and "kHz" in question["units"]["frequency"]
     answer = {"do": "measurement-answer", "columns": [["frequency", 1, "Hz"], ["force", 2, "mN"]], "decimal": "", "dataset": ""}
-    dashboard.received(answer)
+    dashboard.receive(answer)
     dashboard.run_callbacks_until(lambda: dashboard.views.tabs.state["question"]["about"] == ["decimal"])
     understood = after(dashboard, {"do": "measurement-answer", "columns": [], "decimal": "comma"}, "understood")
     assert "1100 to 1200 Hz" in understood and dashboard.views.tabs.state["question"] is None
@@ -138,7 +138,7 @@ def test_a_question_is_shown_and_its_answers_are_kept(dashboard: Dashboard) -> N
     ({"columns": [[None, 1, "N"]]}, "Unknown quantity"), ({"columns": [], "decimal": "both"}, "Unknown decimal mark"),
 ])
 def test_an_answer_from_a_browser_is_not_trusted(dashboard: Dashboard, message: dict[str, Any], sentence: str) -> None:
-    dashboard.received({"do": "measurement-answer", **message})
+    dashboard.receive({"do": "measurement-answer", **message})
     assert sentence in dashboard.session.sentence
 
 
@@ -190,7 +190,7 @@ def test_the_sample_file_is_read_and_says_what_it_is(dashboard: Dashboard) -> No
     assert found.repeats is not None and found.repeats.max() == 3
     told: list[dict[str, Any]] = []
     dashboard.views.tabs.send = lambda **message: told.append(message)  # type: ignore[method-assign]
-    dashboard.received({"do": "measurement-sample"})
+    dashboard.receive({"do": "measurement-sample"})
     assert told[0]["type"] == "sample" and told[0]["text"].startswith("# Not measured")
 
 
@@ -205,7 +205,7 @@ def with_series(dashboard: Dashboard, chain: Scene) -> str:
     """Return the tab's sentence about a series of `chain` over the settled picture at 340 Hz."""
     text = virtual_series_csv(chain, 12, Sensors(rate=256.0 * chain.f, noise=0.005)).encode()
     show(dashboard)
-    dashboard.received({"do": "measurement", "name": "mine.csv", "content": base64.b64encode(text).decode()})
+    dashboard.receive({"do": "measurement", "name": "mine.csv", "content": base64.b64encode(text).decode()})
     dashboard.run_callbacks_until(lambda: re.search("series|rms", str(dashboard.views.tabs.state.get("misfit"))) is not None)
     return str(dashboard.views.tabs.state["misfit"]["sentence"])
 
@@ -226,7 +226,7 @@ def test_a_series_goes_over_the_force_trains_and_moves_with_the_picture(dashboar
     assert dashboard.views.tabs.state["misfit"] is None
     data_page(dashboard).picture_ready(settled)
     dashboard.run_callbacks_until(lambda: "rms" in str(dashboard.views.tabs.state["misfit"]))
-    dashboard.received({"do": "measurement-remove"})
+    dashboard.receive({"do": "measurement-remove"})
     assert all(len(overlays[0].data_source.data["time"]) == 0 for overlays in lines)
 
 
@@ -236,7 +236,7 @@ def test_the_model_passes_the_low_pass_of_the_sensors(dashboard: Dashboard) -> N
 
     def differences(message: dict[str, Any]) -> list[float]:
         dashboard.views.tabs.update_state(misfit=None)
-        dashboard.received(message)
+        dashboard.receive(message)
         dashboard.run_callbacks_until(lambda: "rms" in str(dashboard.views.tabs.state.get("misfit")))
         return [float(number) for number in re.findall(r"([0-9.e-]+) N for the", dashboard.views.tabs.state["misfit"]["sentence"])]
 
@@ -248,7 +248,7 @@ def test_the_model_passes_the_low_pass_of_the_sensors(dashboard: Dashboard) -> N
     assert "a low-pass of 2000 Hz" in dashboard.views.tabs.state["misfit"]["sentence"]
     assert differences({"do": "measurement-bandwidth", "value": ""}) == without
     for wrong in ("2 kHz", "0.5", None):
-        dashboard.received({"do": "measurement-bandwidth", "value": wrong})
+        dashboard.receive({"do": "measurement-bandwidth", "value": wrong})
         assert "bandwidth" in dashboard.session.sentence
 
 
@@ -264,7 +264,7 @@ def test_a_measured_displacement_goes_over_the_drive(dashboard: Dashboard) -> No
     text = "time (s),displacement (m),output force (N)\n" + "".join(
         f"{t:.9g},{u:.9g},{force:.9g}\n" for t, u, force in zip(table[:, 0], swing, table[:, 3], strict=True))
     show(dashboard)
-    dashboard.received(sent(text.encode()))
+    dashboard.receive(sent(text.encode()))
     dashboard.run_callbacks_until(lambda: "rms" in str(dashboard.views.tabs.state.get("misfit")))
     trains = dashboard.views.trains
     line, = (drawn for drawn in trains.left.renderers if drawn.level == "overlay")
@@ -312,7 +312,7 @@ def test_a_file_replaces_the_virtual_experiment_under_way(dashboard: Dashboard, 
         return settling(*words, **named)
 
     monkeypatch.setattr(module, "settling", slow)
-    dashboard.received({"do": "measurement-virtual"})
+    dashboard.receive({"do": "measurement-virtual"})
     assert begun.wait(20)
     assert after(dashboard, sent(FILE), "understood").startswith("mine.csv: ")
     read.set()
@@ -328,9 +328,9 @@ def test_a_file_stays_in_memory_only_while_a_question_about_it_is_open(dashboard
         return any(isinstance(value, bytes) and len(value) > 0 for page in pages for value in vars(page).values())
 
     assert after(dashboard, sent(FILE), "understood") and not kept()
-    dashboard.received({"do": "measurement-remove"})
+    dashboard.receive({"do": "measurement-remove"})
     assert after(dashboard, sent(b"1.100;2,5\n1.200;3,5\n"), "question") and kept()
-    dashboard.received({"do": "measurement-remove"})
+    dashboard.receive({"do": "measurement-remove"})
     assert not kept()
 
 
@@ -338,20 +338,20 @@ def test_a_question_about_other_data_is_not_answered(dashboard: Dashboard) -> No
     """Otherwise, the bytes of the file in question would be read under the name of the virtual experiment."""
     assert after(dashboard, sent(b"1.100;2,5\n1.200;3,5\n"), "question")
     show(dashboard)
-    dashboard.received({"do": "measurement-virtual"})
+    dashboard.receive({"do": "measurement-virtual"})
     assert dashboard.views.tabs.state["question"] is None
     answer = {"do": "measurement-answer", "columns": [["frequency", 1, "Hz"], ["force", 2, "mN"]], "decimal": "comma"}
     assert "virtual experiment, nothing measured" in after(dashboard, answer, "understood")
-    dashboard.received({"do": "measurement-remove"})
-    dashboard.received(answer)
+    dashboard.receive({"do": "measurement-remove"})
+    dashboard.receive(answer)
     dashboard.run_callbacks_until(lambda: not dashboard.callbacks)
     assert not dashboard.views.tabs.state["understood"] and not dashboard.session.sentence
 
 
 def test_a_file_that_is_refused_leaves_the_one_that_is_asked_about(dashboard: Dashboard) -> None:
     assert after(dashboard, sent(b"1.100;2,5\n1.200;3,5\n"), "question")
-    dashboard.received({"do": "measurement", "name": "other.csv", "content": "???"})
-    dashboard.received({"do": "measurement-answer", "columns": [["frequency", 1, "Hz"], ["force", 2, "mN"]], "decimal": "comma"})
+    dashboard.receive({"do": "measurement", "name": "other.csv", "content": "???"})
+    dashboard.receive({"do": "measurement-answer", "columns": [["frequency", 1, "Hz"], ["force", 2, "mN"]], "decimal": "comma"})
     dashboard.run_callbacks_until(lambda: bool(dashboard.views.tabs.state.get("understood")))
     assert dashboard.views.tabs.state["understood"].startswith("mine.csv: ")
 

@@ -15,8 +15,8 @@ from panel.reactive import Reactive, Syncable
 
 from app import library_internals
 from app.parts.status.status_line import StatusLine
-from app.parts.toolkit.component import Component
 from app.parts.toolkit import panel_overrides
+from app.parts.toolkit.component import Component
 
 pytestmark = pytest.mark.quick
 

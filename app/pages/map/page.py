@@ -190,7 +190,7 @@ class MapPage(Page):
     def _choose(self, message: dict[str, Any]) -> None:
         """Set f and A0 to the values at the clicked place in the map."""
         session = self._host.session
-        self._host.show(session.scene.evolve(f=message.get("x"), A0=message.get("y")), mode=session.mode)
+        self._host.turn_knobs(session.scene.evolve(f=message.get("x"), A0=message.get("y")), mode=session.mode)
 
     # Attractors
 
@@ -230,7 +230,7 @@ class MapPage(Page):
         """Put the chain on an attractor; from then on, settled pictures start from the previous state."""
         attractor = check_index("attractor", self._found, message.get("number"))
         self._host.session.set_start("previous")
-        self._host.show(attractor.scene, attractor.state)
+        self._host.turn_knobs(attractor.scene, attractor.state)
 
 
 def _batches(grid: Grid, missing: list[int], stop: Stop, pause: Callable[[], None]) -> Iterator[np.ndarray]:

@@ -37,9 +37,10 @@ class _Computation(Generic[Item]):
 
 def _copy_of(error: Exception) -> Exception:
     """Return a copy of an error for one session: raising it adds only that session's frames to the traceback."""
-    copied = type(error).__new__(type(error), *error.args)  # copy.copy would call __init__, which may take other arguments
+    # copy.copy would call __init__, which may take other arguments
+    copied = type(error).__new__(type(error), *error.args)
     copied.__dict__.update(error.__dict__)
-    copied.__cause__, own.__suppress_context__ = error.__cause__, error.__suppress_context__
+    copied.__cause__, copied.__suppress_context__ = error.__cause__, error.__suppress_context__
     return copied.with_traceback(error.__traceback__)
 
 
