@@ -166,7 +166,7 @@ def add_shared_metrics() -> None:
         Metric("pool_busy_threads", "gauge", "Threads of the worker pool that have work, even if it waits for a turn "
                                              "or another pool.", busy, "pool"),
         Metric("queue", "gauge", "The sum of `granchain_pool_queued` and `granchain_turns_waiting`; kept for older "
-                                 "dashboards.", lambda: TURNS.waiting + sum(queued().values())),
+                                 "Grafana panels.", lambda: TURNS.waiting + sum(queued().values())),
         *(metric for name, cache in shared.items() for metric in (
             Metric(f"{name}_cache_hits_total", "counter", f"Requests for a {name} that was cached or already "
                                                                   "being computed.",

@@ -72,6 +72,7 @@ ATTRIBUTES = (
     FormerName("Fit.freedom", "Fit.degrees_of_freedom"),
     FormerName("Pulse.speed", "Pulse.speed_beads_s"),
     FormerName("Pulse.speed_in_metres", "Pulse.speed_m_s"),
+    FormerName("WorkPrecision.lesson", "WorkPrecision.naive"),
 )
 #: Columns in the tables of results, and therefore in files.
 COLUMNS = (

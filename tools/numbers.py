@@ -21,7 +21,7 @@ from granchain_core.steady import regime_criteria
 from granchain_core.steady.settling import regime_decisions
 from tools.thresholds import printed
 
-_CORE = Path(__file__).resolve().parents[1] / "granchain_core"
+_ROOT = Path(__file__).resolve().parents[1]
 #: A number, or a word for a number, and its mark.
 _MARKED = re.compile(r"[\w.,-]+<!--([a-z_0-9]+\.\w+|\w+)(?::(\S+?))?-->")
 #: Functions that write a number in other units, or as a word.
@@ -81,8 +81,9 @@ def value_of(name: str) -> float:
         return DERIVED[name]()
     module, _, constant = name.partition(".")
     has = re.compile(rf"^{constant}\b[^=\n]*=", re.MULTILINE)
-    files = [path for path in _CORE.rglob(f"{module}.py") if has.search(path.read_text(encoding="utf-8"))]
+    files = [path for package in ("granchain_core", "app") for path in (_ROOT / package).rglob(f"{module}.py")
+             if has.search(path.read_text(encoding="utf-8"))]
     if len(files) != 1:
         raise KeyError(f"{name} is in {len(files)} files")
-    found = importlib.import_module(".".join(files[0].relative_to(_CORE.parent).with_suffix("").parts))
+    found = importlib.import_module(".".join(files[0].relative_to(_ROOT).with_suffix("").parts))
     return getattr(found, constant)  # type: ignore[no-any-return]

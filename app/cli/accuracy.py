@@ -40,7 +40,7 @@ def _accuracy_json(result: Any) -> dict[str, Any]:
     """Return the measurement as one JSON object; "naive" has the output force's error with plain steps in (u, v)."""
     naive = [{"method": line.method, "steps_per_period": line.steps,
               "output_force_error": finite_or_null(line.error), "failure": line.failure}
-             for line in result.lesson.lines]
+             for line in result.naive.lines]
     return {
         "reference": {"method": result.reference, "agreement": finite_or_null(result.agreement),
                       "second": result.second, "disagreement": result.disagreement},
@@ -63,6 +63,6 @@ def _show_accuracy(result: Any) -> None:
         best = result.cheapest(error)
         if best is not None:
             print(f"the cheapest way to {error:g} is {best.method}, {best.setting}: {1e3 * best.wall_s:.2f} ms")
-    for line in result.lesson.lines if result.lesson else ():
+    for line in result.naive.lines if result.naive else ():
         outcome = line.failure or f"off by {100 * line.error:.2g} % of the largest"
         print(f"output force by {line.method} with {line.steps} steps per period: {outcome}")

@@ -45,7 +45,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
                         help="an origin, for example https://courses.example.org, whose pages may show the dashboard "
                              "in a frame")
     parser.add_argument(*names_of_option("--max-sessions"), type=whole, default=USUAL_SESSIONS, metavar="N",
-                        help="pages that may be open at once")
+                        help="sessions (open web pages) at once")
     parser.add_argument("--behind-proxy", action="store_true",
                         help="take the visitor's address from X-Real-IP or X-Forwarded-For, which a proxy sets; if "
                              "both are present and differ, the address is unknown")

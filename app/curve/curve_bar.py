@@ -26,8 +26,8 @@ class CurveBar(Component):
     _esm = module("curve_bar.js")
     _stylesheets = [text("controls.css"), text("curve_bar.css")]  # noqa: RUF012
 
-    def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
-        super().__init__(received, state={"choices": [list(choice) for choice in CHOICES], "names": [], "stated": [],
+    def __init__(self, receive: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
+        super().__init__(receive, state={"choices": [list(choice) for choice in CHOICES], "names": [], "stated": [],
                                           "kinds": KINDS, "strong": STRONG_FRACTION, "driven": True, "too_long": False,
                                           "rig": False},
                          **params)

@@ -47,7 +47,7 @@ class CurveFigure:
         self._features = ColumnDataSource({name: [] for name in ("frequency", "top", "label", "source")})
         self._measurement: Measured | None = None
         self._renderers: dict[str, list[GlyphRenderer]] = {name: [] for name in SWEEPS}
-        self._visible = set(SWEEPS)
+        self._shown_starts = set(SWEEPS)
         self.figure = self._frame(choose)
         self._pinned = PinnedCurves(self.figure)
         self._grey_sources: dict[str, ColumnDataSource] = {}
@@ -78,7 +78,7 @@ class CurveFigure:
             renderers.append(marks)
             self.figure.add_tools(HoverTool(renderers=[marks], tooltips=curve_tooltips(start)))
         for renderer in renderers:
-            renderer.visible = start in self._visible
+            renderer.visible = start in self._shown_starts
         self._renderers[start] += renderers
         self._bring_forward()
         return source
@@ -120,7 +120,7 @@ class CurveFigure:
 
     def show_only(self, starts: list[str]) -> None:
         """Make only the curves of these starts visible."""
-        self._visible = set(starts)
+        self._shown_starts = set(starts)
         for name, renderers in self._renderers.items():
             for renderer in renderers:
                 renderer.visible = name in starts

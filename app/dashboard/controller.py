@@ -58,7 +58,7 @@ class Controller:
         self._initial_state = initial_state
         self._gallery_sent = False
         self.session = session
-        self.views = views = Views(session, self.received, partial(self._calls.call_and_report, self._choose_frequency))
+        self.views = views = Views(session, self.receive, partial(self._calls.call_and_report, self._choose_frequency))
         self.sentences = Sentences(session, views.status_line, self._compute)
         self.pictures = MainPicture(self, views, self.sentences.show_notice, self.picture_ready)
         self.curves = CurveController(self, views.curve, views.curve_bar, self._curve_placed)
@@ -75,7 +75,7 @@ class Controller:
             "ping": lambda _: views.chain.send(type="pong"),
             "ready": self._ready, "window-shown": lambda _: self.pictures.restart(),
             "compact": lambda m: views.set_compact(bool(m.get("value"))),
-            "visible": self._visible,
+            "visible": self._visibility_reported,
             "painted": lambda m: self.pictures.painted(m.get("number"), m.get("took")),
             **self._scenes.actions,
             "gallery": self._send_gallery,
@@ -92,7 +92,7 @@ class Controller:
 
     # Messages
 
-    def received(self, message: dict[str, Any]) -> None:
+    def receive(self, message: dict[str, Any]) -> None:
         """Pass a message from the browser to its action, which must check every value in it."""
         name = message.get("do")
         action = self._actions.get(name) if isinstance(name, str) else None
@@ -112,7 +112,7 @@ class Controller:
         self.pinned.show()
         self._scenes.show_preset(self._initial_state, self.session.curves)
 
-    def _visible(self, message: dict[str, Any]) -> None:
+    def _visibility_reported(self, message: dict[str, Any]) -> None:
         name, visible = message.get("name"), message.get("value")
         looked_at = self._looked_at.get(name) if isinstance(name, str) else None
         if looked_at is None or not isinstance(visible, bool):
@@ -195,13 +195,13 @@ class Controller:
         """See `PageHost`."""
         self.views.trains.measured(overlay)
 
-    def show(self, scene: Scene, state: State | None = None, mode: str = "settled") -> None:
+    def turn_knobs(self, scene: Scene, state: State | None = None, mode: str = "settled") -> None:
         """See `PageHost`."""
-        self._scenes.show(scene, state, mode)
+        self._scenes.turn_knobs(scene, state, mode)
 
-    def open(self, scene: Scene, state: State | None, curves: str) -> None:
+    def open_scene(self, scene: Scene, state: State | None, curves: str) -> None:
         """See `PageHost`."""
-        self._scenes.open(scene, state, curves)
+        self._scenes.open_scene(scene, state, curves)
 
     def address_changed(self) -> None:
         """See `PageHost`."""

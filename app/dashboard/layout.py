@@ -40,27 +40,27 @@ _HERE = Path(__file__).resolve().parent
 
 
 class Views:
-    """All parts of the page; their messages go to `received`."""
+    """All parts of the page; their messages go to `receive`."""
 
-    def __init__(self, session: Session, received: Callable[[dict[str, Any]], None],
+    def __init__(self, session: Session, receive: Callable[[dict[str, Any]], None],
                  choose: Callable[[object], None]) -> None:
         self.time = Range1d(start=1.0, end=0.0)
         self.scales = PictureScales(session)
-        self.header = Header(received)
-        self.knobs = Knobs(received, sizing_mode="stretch_width")
-        self.equation = EquationPart(received)
-        self.chain = ChainPart(received, sizing_mode="stretch_both",
+        self.header = Header(receive)
+        self.knobs = Knobs(receive, sizing_mode="stretch_width")
+        self.equation = EquationPart(receive)
+        self.chain = ChainPart(receive, sizing_mode="stretch_both",
                                state={"palette": ENERGY_COLOURS, "titles": WIDEST_TITLES, "scales": SCALES})
         self.trains = ForceTrains(self.time)
         self.energy = EnergyMap(self.time)
         self.curve = CurveFigure(choose)
-        self.curve_bar = CurveBar(received)
-        self.tabs = Tabs(received, sizing_mode="stretch_both", state={
+        self.curve_bar = CurveBar(receive)
+        self.tabs = Tabs(receive, sizing_mode="stretch_both", state={
             "largest_file": LARGEST_UPLOAD, "lines": KEY, "tabs": described_tabs(), "groups": GROUPS,
             "pages": watched_pages(), "regimes": KINDS,
             "endings": [ending for form in FORMATS for ending in form.endings]})
-        self.overlays = {row.name: row.view(received, sizing_mode="stretch_both") for row in PAGES if row.view}
-        self.status_line = StatusLine(received)
+        self.overlays = {row.name: row.view(receive, sizing_mode="stretch_both") for row in PAGES if row.view}
+        self.status_line = StatusLine(receive)
 
     def set_compact(self, compact: bool) -> None:
         """Shorten titles and leave out numbers on the time axes if there is little room."""

@@ -96,7 +96,7 @@ class Pinned:
 
     def _open(self, message: dict[str, Any]) -> None:
         pin = check_index("pin", self._session.pins, message.get("number"))
-        self._host.open(pin.scene, pin.initial_state, "")
+        self._host.open_scene(pin.scene, pin.initial_state, "")
 
     def _changed(self) -> None:
         self.show()

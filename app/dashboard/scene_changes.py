@@ -36,15 +36,15 @@ class SceneChanges:
         self._picture_for_pages: Settled | None = None
         self.actions: Actions = {"set": self._set, "restore": self._restore, "scene": self._scene, "go": self._go}
 
-    def show(self, scene: Scene, state: State | None, mode: str) -> None:
-        """Set the knobs to `scene` and show its motion; see `PageHost.show`."""
+    def turn_knobs(self, scene: Scene, state: State | None, mode: str) -> None:
+        """Turn the knobs to those of `scene`; see `PageHost.turn_knobs`."""
         self._session.set_mode(mode)
         self._session.scene = scene
         self._follow_mode(state)
         self._show_turned_knobs(state)
 
-    def open(self, scene: Scene, state: State | None, curves: str) -> None:
-        """Open a scene, possibly another preset; see `PageHost.open`."""
+    def open_scene(self, scene: Scene, state: State | None, curves: str) -> None:
+        """Open a scene, possibly another preset; see `PageHost.open_scene`."""
         session = self._session
         another = scene.name != session.scene.name
         session.open(scene)

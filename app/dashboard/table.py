@@ -88,7 +88,7 @@ TABS: tuple[PageSpec | TabSpec, ...] = (
         "Spectrum, bifurcation diagram, basins and Lyapunov exponents of the present scene."),
     PageSpec("observer", ObserverPage, Observer,
         "A copy of the chain that is driven only by its input force.", works_hidden=False),
-    PageSpec("hard-cases", HardCasesPage, HardCases, ABOUT, height="usual", group="check", label="hard"),
+    PageSpec("hard-cases", HardCasesPage, HardCases, ABOUT, height="usual", group="check", label="cases"),
     PageSpec("paper", PaperPage, Paper,
         "The figures of Zhang et al. (2016), computed from the presets, and where we differ.", height="usual",
         group="learn"),

@@ -27,7 +27,7 @@ def put_into(document: Document, parts: Mapping[str, Component], plots: Iterable
         for name, part in parts.items():
             part.server_doc(document, title="granchain", location=False)
             document.roots[-1].name = name
-            register(document, document.roots[-1].id, part.handle_message)
+            register(document, document.roots[-1].id, part.receive)
         for plot in plots:
             document.add_root(plot)
     document.template = _compiled(template)

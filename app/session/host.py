@@ -85,8 +85,8 @@ class PageHost(WorkHost, Protocol):
     def activities(self) -> list[Activity]:
         """Return all computations of this session, including those that are switched off."""
 
-    def show(self, scene: Scene, state: State | None = None, mode: str = "settled") -> None:
-        """Set the knobs to `scene` and show its motion, from `state` or from the visitor's chosen start.
+    def turn_knobs(self, scene: Scene, state: State | None = None, mode: str = "settled") -> None:
+        """Turn the knobs of the present preset to those of `scene`; show its motion, from `state` or the chosen start.
 
         In live mode, the run continues with the new knobs unless a state is given. `mode` is "settled" or "live"; any
         other raises `BadInput`.
@@ -95,8 +95,8 @@ class PageHost(WorkHost, Protocol):
     def address_changed(self) -> None:
         """Send the page its new address, because a field of the link other than a knob has changed."""
 
-    def open(self, scene: Scene, state: State | None, curves: str) -> None:
-        """Open a scene, possibly another preset, settled from `state` or from rest.
+    def open_scene(self, scene: Scene, state: State | None, curves: str) -> None:
+        """Open a scene, possibly another preset, settled from `state` or from rest; this ends a live run.
 
         `curves` is the field of a link; if it is empty, the same curves stay selected.
         """

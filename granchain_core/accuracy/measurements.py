@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..former_names import with_former_names
 from ..scene import Scene
 from ..tables import Column, Labelled, Table, axis, provenance
 from ..tables.provenance import Attribute
@@ -30,6 +31,7 @@ class Row:
     failure: str = ""
 
 
+@with_former_names
 @dataclass(eq=False, repr=False)
 class WorkPrecision(Labelled):
     """Error against time for every method on one scene.
@@ -45,7 +47,7 @@ class WorkPrecision(Labelled):
     rows : list of Row
         One for each method and setting: `method`, `setting`, `error`, `wall_s` (processor time [s]), `rhs`, and
         `failure`, a sentence.
-    lesson : NaiveComparison or None
+    naive : NaiveComparison or None
         The force as naive methods compute it.
     disagreement : str
         Why the second method failed; empty if it did not.
@@ -62,7 +64,7 @@ class WorkPrecision(Labelled):
     second: str
     agreement: float = float("nan")
     rows: list[Row] = field(default_factory=list)
-    lesson: NaiveComparison | None = None
+    naive: NaiveComparison | None = None
     disagreement: str = ""
 
     def cheapest(self, error: float) -> Row | None:

@@ -122,7 +122,7 @@ def _measured_parts(comparison: WorkPrecision, settings: Sequence[MeasuredSettin
     compile_methods(scene.evolve(f=max(scene.f, 1000.0)))  # otherwise a method's first row would include compiling
     exact = _within("The reference", stop, _REFERENCE_LIMIT, lambda stop: _ours(scene, _REFERENCE, stop)).displacement
     yield
-    comparison.lesson = naive_comparison(scene, stop)
+    comparison.naive = naive_comparison(scene, stop)
     yield
     for setting in settings:
         comparison.rows.append(_row(scene, setting, exact, stop))

@@ -15,10 +15,10 @@ from .question import Answers, Guess, Question, Unclear
 from .series import Series, Shaker
 from .units import QUANTITIES, UNITS, VOLTS, bracketed_unit, factor_of
 
-#: A curve whose header names no unit is in Hz and N (see README). The user is asked for the unit if all frequencies
-#: would be below this [Hz], since they may be in kHz,
+#: A curve whose header names no unit is in Hz and N (docs/data.md). If all its frequencies are below this [Hz], the
+#: user is asked for the unit, since they may be in kHz.
 _TOO_SLOW = 5.0
-#: or if a force would exceed this [N].
+#: If a force of such a curve exceeds this [N], the user is asked for the unit as well.
 _TOO_STRONG = 1e4
 _WORDS = {"curve": "a curve", "shaker": "shaker amplitudes", "series": "a series"}
 _NEEDS = {"curve": "a curve needs frequency and force",
@@ -131,8 +131,8 @@ def _check_places(name: str, places: list[tuple[int, str]], kind: str, question:
 
 def _missing(question: Asked, wanted: Sequence[str]) -> str:
     unknown = [one.title for one in question.guesses if one.quantity is None and one.title]
-    several = "" if len(unknown) > 1 else "s"
-    sentence = (f"What {' and '.join(repr(one[:30]) for one in unknown[:4])} hold{several} is not clear" if unknown
+    ending = "" if len(unknown) > 1 else "s"
+    sentence = (f"What {' and '.join(repr(one[:30]) for one in unknown[:4])} hold{ending} is not clear" if unknown
             else "These columns are not enough")
     return f"{sentence}: {'; '.join(_NEEDS[kind] for kind in wanted)}."
 

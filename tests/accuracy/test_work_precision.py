@@ -1,4 +1,4 @@
-"""Work against precision: measured rows, a reference on which two solvers agree, and the lesson of naive methods."""
+"""Work against precision: measured rows, a reference on which two solvers agree, and naive forces."""
 
 from __future__ import annotations
 

@@ -26,9 +26,6 @@ POINTER_TESTS: dict[str, tuple[str, ...]] = {
         "test_a_click_on_the_curve_turns_f",
         "test_a_phone_has_f_at_hand_and_the_pictures_in_view_while_a_knob_moves",
     ),
-    "test_lesson": (
-        "test_a_bead_that_is_pointed_at_is_joined_to_its_column_and_a_column_to_its_bead",
-    ),
     "test_map_page": (
         "test_it_is_moved_in_the_browser_alone",
         "test_a_cell_tells_its_values",
@@ -37,6 +34,9 @@ POINTER_TESTS: dict[str, tuple[str, ...]] = {
     "test_probe_page": (
         "test_a_bead_of_the_chain_is_probed",
         "test_a_click_in_the_map_probes_the_bead_and_a_drag_moves_time",
+    ),
+    "test_reading": (
+        "test_a_bead_that_is_pointed_at_is_joined_to_its_column_and_a_column_to_its_bead",
     ),
     "test_stability_page": (
         "test_multipliers_tell_themselves_and_a_chosen_one_moves_the_chain",

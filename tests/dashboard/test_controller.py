@@ -27,7 +27,7 @@ from app.session.page import all_actions
     ({"do": "map-load", "number": True}, "That attractor is no longer on the page"),
     ({"do": "stability-section", "bead": True, "phase": 0}, "bead 'True' is not a whole number")])
 def test_what_is_no_number_gets_its_sentence(dashboard: Dashboard, message: dict[str, Any], sentence: str) -> None:
-    dashboard.received(message)
+    dashboard.receive(message)
     assert sentence in dashboard.session.sentence
 
 
@@ -47,7 +47,7 @@ def test_a_measurement_is_read_in_the_background(dashboard: Dashboard, text: str
     read = data_page.read_data
     monkeypatch.setattr(data_page, "read_data",
                         lambda *given, **named: (threads.append(threading.current_thread().name), read(*given, **named))[1])
-    dashboard.received({"do": "measurement", "name": "mine.csv", "content": base64.b64encode(text.encode()).decode()})
+    dashboard.receive({"do": "measurement", "name": "mine.csv", "content": base64.b64encode(text.encode()).decode()})
     assert not dashboard.views.tabs.state.get("understood")
     dashboard.run_callbacks_until(lambda: bool(dashboard.session.sentence or dashboard.views.tabs.state.get("understood")))
     assert sentence in dashboard.session.sentence
@@ -59,7 +59,7 @@ def test_the_effects_panel_is_told_the_slot_of_each_effect_and_the_slots_of_none
                                                                                 monkeypatch: pytest.MonkeyPatch) -> None:
     """Its table shows the slot's type next to each switch; with a separate list, it would miss a new effect."""
     monkeypatch.setattr(COMPILER, "has", lambda *_: False)
-    dashboard.received({"do": "visible", "name": "effects", "value": True})
+    dashboard.receive({"do": "visible", "name": "effects", "value": True})
     panel = dashboard.views.tabs.state["panel"]
     assert sorted([*(one["slot"] for one in panel["effects"]), *panel["always"]]) == sorted(
         one["slot"] for one in panel["slots"])
@@ -68,11 +68,11 @@ def test_the_effects_panel_is_told_the_slot_of_each_effect_and_the_slots_of_none
 
 def test_a_step_to_another_scene_has_the_curves_of_its_address(dashboard: Dashboard) -> None:
     """Without `curves`, an address means its scene's own. A scene from the menu keeps the chosen starts."""
-    dashboard.received({"do": "go", "query": "v=1&scene=sec2&curves=rest.up"})
+    dashboard.receive({"do": "go", "query": "v=1&scene=sec2&curves=rest.up"})
     assert dashboard.session.curves == "rest.up"
-    dashboard.received({"do": "scene", "name": "rig"})
+    dashboard.receive({"do": "scene", "name": "rig"})
     assert dashboard.session.curves == "rest.up.features"
-    dashboard.received({"do": "go", "query": "v=1&scene=sec2"})  # two steps back
+    dashboard.receive({"do": "go", "query": "v=1&scene=sec2"})  # two steps back
     bar = dashboard.views.curve_bar.state
     assert dashboard.session.curves == "auto" and (bar["rest"], bar["up"], bar["features"]) == (True, False, False)
 
@@ -82,22 +82,22 @@ def test_each_page_and_the_curve_hear_whether_somebody_looks(dashboard: Dashboar
     for row, page in zip(PAGES, dashboard.pages, strict=True):
         page.visibility_changed = partial(lambda *one: told.append(one), row.name)  # type: ignore[method-assign]
     for name in watched_pages():
-        dashboard.received({"do": "visible", "name": name, "value": True})
+        dashboard.receive({"do": "visible", "name": name, "value": True})
     assert told == [(row.name, True) for row in PAGES]
-    dashboard.received({"do": "visible", "name": "curve", "value": False})
+    dashboard.receive({"do": "visible", "name": "curve", "value": False})
     assert ("resonance curve, from rest", "off", "not on the screen") in dashboard.curves.activities()
     assert not dashboard.session.sentence
 
 
 @pytest.mark.parametrize(("name", "value"), [("regimes", True), (None, True), (["map"], True), ("map", "yes"), ("map", None)])
 def test_what_is_no_page_or_no_answer_is_refused(dashboard: Dashboard, name: object, value: object) -> None:
-    dashboard.received({"do": "visible", "name": name, "value": value})
+    dashboard.receive({"do": "visible", "name": name, "value": value})
     assert dashboard.session.sentence == f"There is no page {str(name)!r} to look at."
 
 
 def test_a_reconnected_page_has_its_pause_back_and_the_rest_from_its_link(dashboard: Dashboard) -> None:
-    dashboard.received({"do": "go", "query": "v=1&scene=sec2&speed=5&account=on"})
-    dashboard.received({"do": "reconnected", "playing": False, "uploaded": True})
+    dashboard.receive({"do": "go", "query": "v=1&scene=sec2&speed=5&account=on"})
+    dashboard.receive({"do": "reconnected", "playing": False, "uploaded": True})
     session = dashboard.session
     assert (session.speed, session.playing, session.energy_account) == (5.0, False, True)
     assert not dashboard.views.header.state["playing"]
@@ -111,8 +111,8 @@ def test_a_reconnected_page_has_its_pause_back_and_the_rest_from_its_link(dashbo
 def test_a_reconnected_page_says_what_its_link_does_not_bring_back(dashboard: Dashboard, query: str,
                                                                    different: str) -> None:
     """A settled motion starts from the same state as before, unless its chain is too long for a link."""
-    dashboard.received({"do": "go", "query": f"v=1&scene=sec2{query}"})
-    dashboard.received({"do": "reconnected", "playing": False})
+    dashboard.receive({"do": "go", "query": f"v=1&scene=sec2{query}"})
+    dashboard.receive({"do": "reconnected", "playing": False})
     assert dashboard.session.sentence == f"The connection was lost. Your settings are restored{different}."
 
 
@@ -131,6 +131,6 @@ def test_a_step_of_the_history_ends_in_the_browser_even_if_a_page_fails(dashboar
         raise RuntimeError("a page's own fault")
 
     monkeypatch.setattr(dashboard.pages[-1], "address_applied", fail)
-    dashboard.received({"do": "go", "query": "scene=sec2&f=2000"})
+    dashboard.receive({"do": "go", "query": "scene=sec2&f=2000"})
     dashboard.run_callbacks_until(lambda: not dashboard.callbacks)
     assert [message["query"] for message in dashboard.sent if message["type"] == "address-applied"] == [dashboard.session.link]

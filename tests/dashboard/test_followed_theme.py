@@ -12,8 +12,8 @@ def test_another_theme_reaches_the_pages_and_their_figures(dashboard: Dashboard)
     told: list[Theme] = []
     for page in dashboard.pages:
         page.theme_changed = told.append  # type: ignore[method-assign]
-    dashboard.received({"do": "theme", "value": "dark"})
-    dashboard.received({"do": "theme", "value": "none of them"})
+    dashboard.receive({"do": "theme", "value": "dark"})
+    dashboard.receive({"do": "theme", "value": "none of them"})
     assert told == [THEMES["dark"]] * len(dashboard.pages)
     assert dashboard.views.overlays["branches"].theme == THEMES["dark"]  # type: ignore[attr-defined]
 

@@ -65,12 +65,12 @@ def test_two_pictures_are_in_transit_from_the_first_step_on(dashboard: Dashboard
         dashboard.run_callbacks_until(lambda: quiet() and len(sent) > painted)
         return len(sent) - painted
 
-    dashboard.received({"do": "mode", "value": "live"})
+    dashboard.receive({"do": "mode", "value": "live"})
     assert in_transit(0) == 2
     for painted in range(1, 4):
-        dashboard.received({"do": "painted", "number": painted})
+        dashboard.receive({"do": "painted", "number": painted})
         assert in_transit(painted) == 2
-    dashboard.received({"do": "set", "name": "f", "value": 400.0})
+    dashboard.receive({"do": "set", "name": "f", "value": 400.0})
     assert in_transit(3) == 2
-    dashboard.received({"do": "painted", "number": 4})
+    dashboard.receive({"do": "painted", "number": 4})
     assert in_transit(4) == 2

@@ -50,7 +50,7 @@ def test_an_error_of_a_script_is_one_short_line_and_there_are_few(dashboard: Das
                                                                   caplog: pytest.LogCaptureFixture) -> None:
     hostile = 'x is null\n{"level": "error"}' + "\u2028" * 10_000
     for _ in range(MOST_SCRIPT_ERRORS + 3):
-        dashboard.received({"do": "script-error", "what": hostile})
+        dashboard.receive({"do": "script-error", "what": hostile})
     found = lines(caplog)
     assert len(found) == MOST_SCRIPT_ERRORS
     assert found[0]["message"] == "script failed: " + json.dumps(hostile[:LONGEST_SCRIPT_ERROR])
@@ -60,5 +60,5 @@ def test_an_error_of_a_script_is_one_short_line_and_there_are_few(dashboard: Das
 @pytest.mark.parametrize("what", [None, 3, ["x"], {"x": 1}])
 def test_an_error_of_a_script_without_words_is_not_logged(what: object, dashboard: Dashboard,
                                                           caplog: pytest.LogCaptureFixture) -> None:
-    dashboard.received({"do": "script-error", "what": what})
+    dashboard.receive({"do": "script-error", "what": what})
     assert lines(caplog) == []

@@ -22,7 +22,7 @@ from granchain_core.results.run import GIVEN_STATE
 
 
 def test_a_picture_is_saved_in_the_background(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
-    dashboard.received({"do": "export"})
+    dashboard.receive({"do": "export"})
     assert "no picture to save yet" in dashboard.session.sentence
     threads = []
     save = exports.save
@@ -30,7 +30,7 @@ def test_a_picture_is_saved_in_the_background(dashboard: Dashboard, monkeypatch:
                         lambda run, path, measured: (threads.append(threading.current_thread().name), save(run, path, measured)))
     shown = run(scene("sec2"), periods=0, record=1, samples=24)
     monkeypatch.setattr(dashboard.pictures, "shown_run", lambda: shown)
-    dashboard.received({"do": "export"})
+    dashboard.receive({"do": "export"})
     dashboard.run_callbacks_until(lambda: any(message["type"] == "file" for message in dashboard.sent))
     (file,) = [message for message in dashboard.sent if message["type"] == "file"]
     assert file["name"] == "sec2-340Hz.h5" and file["content"][1:4] == b"HDF"
@@ -58,7 +58,7 @@ def test_another_scale_leaves_a_paused_chain_where_it_is(dashboard: Dashboard, m
     pictures.begin_live()
     pictures.advance(7)
     dashboard.run_callbacks_until(lambda: len(sent) == 1)
-    dashboard.received({"do": "scale", "value": "fit"})
+    dashboard.receive({"do": "scale", "value": "fit"})
     dashboard.run_callbacks_until(lambda: not (pictures.busy or dashboard.callbacks))
     shown = pictures.shown_run()
     assert len(sent) == 2 and [message["fit"] for message in sent] == [False, True]
@@ -72,7 +72,7 @@ def test_choosing_the_scale_takes_the_scenes_own_again(dashboard: Dashboard) -> 
     first = scales.of(frames, chain)
     louder = settled_frames(settle(chain.evolve(A0=4.0 * chain.A0), samples=8).run)
     assert scales.of(louder, chain) != first
-    dashboard.received({"do": "scale", "value": "same"})
+    dashboard.receive({"do": "scale", "value": "same"})
     assert scales.of(frames, chain) == first
 
 
@@ -110,7 +110,7 @@ def test_the_pages_do_not_hear_of_a_picture_of_knobs_that_have_moved_on(dashboar
     dashboard.session.scene = chain = scene("sec2").evolve(N=2, f=2000.0)
     preview, final = (replace(settle(chain, samples=8), final=final) for final in (False, True))
     dashboard.pictures._accept(preview)
-    dashboard.received({"do": "set", "name": "f", "value": 2001.0})
+    dashboard.receive({"do": "set", "name": "f", "value": 2001.0})
     dashboard.run_callbacks_until(lambda: not dashboard.callbacks)
     assert told == ["requested"]
     for found in (preview, final):

@@ -90,7 +90,7 @@ def test_a_picture_on_the_screen_has_all_stages_and_is_counted_once(dashboard: D
     dashboard.run_callbacks_until(lambda: not (pictures.busy or dashboard.callbacks))
     assert counted == [], "no picture is on the screen"
     for _ in range(2):
-        dashboard.received({"do": "painted", "number": 1, "took": 0.0})
+        dashboard.receive({"do": "painted", "number": 1, "took": 0.0})
     (stages,) = counted
     assert set(stages) == set(STAGES) and min(stages.values()) >= 0.0
 
@@ -107,7 +107,7 @@ def test_only_the_first_step_of_a_live_run_after_a_moved_knob_has_stages(dashboa
     pictures.advance(3)
     dashboard.run_callbacks_until(lambda: not (pictures.busy or dashboard.callbacks))
     for number in (1, 2):
-        dashboard.received({"do": "painted", "number": number, "took": 0.0})
+        dashboard.receive({"do": "painted", "number": number, "took": 0.0})
     assert [set(stages) for stages in counted] == [set(STAGES)]
 
 
@@ -117,6 +117,6 @@ def test_a_picture_whose_window_was_hidden_is_not_counted(dashboard: Dashboard, 
     session.scene = scene("sec2").evolve(N=2, f=2000.0)
     pictures.compute()
     dashboard.run_callbacks_until(lambda: not (pictures.busy or dashboard.callbacks))
-    dashboard.received({"do": "window-shown"})
-    dashboard.received({"do": "painted", "number": 1, "took": 0.0})
+    dashboard.receive({"do": "window-shown"})
+    dashboard.receive({"do": "painted", "number": 1, "took": 0.0})
     assert counted == []

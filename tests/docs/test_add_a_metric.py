@@ -35,7 +35,7 @@ from app.serve.monitoring.metrics import METRICS
 from data_tab import FILE, sent
 dashboard = Dashboard()
 for _ in range(2):
-    dashboard.received(sent(FILE))
+    dashboard.receive(sent(FILE))
 print([line for line in METRICS.text().splitlines() if "uploads" in line])
 from tools.update import pages
 print("| `granchain_uploads_total` | counter | Measurements that visitors uploaded. |" in "".join(pages().values()))

@@ -55,7 +55,7 @@ page = next(one for one in dashboard.pages if type(one).__name__ == "Transmissio
 page.picture_ready(settled)
 print(dashboard.views.overlays["transmission"].state["sentence"])
 dashboard.views.overlays["transmission"].update_state(sentence="")
-dashboard.received({"do": "transmission-say"})
+dashboard.receive({"do": "transmission-say"})
 print(dashboard.views.overlays["transmission"].state["sentence"])
 document = Document()
 dashboard.views.put_into(document)

@@ -28,7 +28,7 @@ def sent(content: bytes) -> dict[str, Any]:
 
 def after(dashboard: Dashboard, message: dict[str, Any], name: str) -> Any:
     """Return `name` in the tab's state after the message is processed, or the sentence if the message is refused."""
-    dashboard.received(message)
+    dashboard.receive(message)
     dashboard.run_callbacks_until(lambda: bool(dashboard.session.sentence or dashboard.views.tabs.state.get(name)))
     return dashboard.views.tabs.state.get(name) or dashboard.session.sentence
 

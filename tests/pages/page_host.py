@@ -44,10 +44,10 @@ class FakePageHost(FakeHost):
     def activities(self) -> list[Activity]:
         return []
 
-    def show(self, scene: Scene, state: State | None = None, mode: str = "settled") -> None:
+    def turn_knobs(self, scene: Scene, state: State | None = None, mode: str = "settled") -> None:
         self.shown.append((scene, state, mode))
 
-    def open(self, scene: Scene, state: State | None, curves: str) -> None:
+    def open_scene(self, scene: Scene, state: State | None, curves: str) -> None:
         self.shown.append((scene, state, curves))
 
     def show_measured_curve(self, measured: Measured | None) -> Difference | None:

@@ -22,7 +22,7 @@ def page(page_of: Callable[[str], PageUnderTest], monkeypatch: pytest.MonkeyPatc
     def measure(scene: Any, stop: Any, *, report: Any, pause: Any, progress: Any) -> None:
         pause()
         progress(0.5)
-        report(SimpleNamespace(rows=ROWS, lesson=None, agreement=1e-9))
+        report(SimpleNamespace(rows=ROWS, naive=None, agreement=1e-9))
 
     monkeypatch.setattr(module, "work_precision", measure)
     monkeypatch.setattr(module, "described_reference", lambda found: {"reference": "dop853"})
@@ -66,11 +66,11 @@ def test_rows_of_another_chain_are_stale_until_it_is_measured(page: PageUnderTes
 
 def test_a_stopped_measurement_keeps_its_rows(page: PageUnderTest, monkeypatch: pytest.MonkeyPatch) -> None:
     def stopped(scene: Any, stop: Any, *, report: Any, **_: Any) -> None:
-        report(SimpleNamespace(rows=ROWS[:1], lesson=None, agreement=1e-9))
+        report(SimpleNamespace(rows=ROWS[:1], naive=None, agreement=1e-9))
         page.run_callbacks()
         page.do("accuracy-stop")
         assert stop
-        report(SimpleNamespace(rows=ROWS, lesson=None, agreement=1e-9))
+        report(SimpleNamespace(rows=ROWS, naive=None, agreement=1e-9))
 
     monkeypatch.setattr(module, "work_precision", stopped)
     page.set_visible()

@@ -18,7 +18,7 @@ def with_series(dashboard: Dashboard, chain: Scene) -> str:
     """Return the tab's sentence about a series of `chain` over the settled picture at 340 Hz."""
     text = virtual_series_csv(chain, 12, Sensors(rate=256.0 * chain.f, noise=0.005)).encode()
     show(dashboard)
-    dashboard.received(sent(text))
+    dashboard.receive(sent(text))
     dashboard.run_callbacks_until(lambda: re.search("series|rms", str(dashboard.views.tabs.state.get("misfit"))) is not None)
     return str(dashboard.views.tabs.state["misfit"]["sentence"])
 
@@ -39,7 +39,7 @@ def test_a_series_goes_over_the_force_trains_and_moves_with_the_picture(dashboar
     assert dashboard.views.tabs.state["misfit"] is None
     data_page(dashboard).picture_ready(settled)
     dashboard.run_callbacks_until(lambda: "rms" in str(dashboard.views.tabs.state["misfit"]))
-    dashboard.received({"do": "measurement-remove"})
+    dashboard.receive({"do": "measurement-remove"})
     assert all(len(overlays[0].data_source.data["time"]) == 0 for overlays in lines)
 
 
@@ -49,7 +49,7 @@ def test_the_model_passes_the_low_pass_of_the_sensors(dashboard: Dashboard) -> N
 
     def differences(message: dict[str, Any]) -> list[float]:
         dashboard.views.tabs.update_state(misfit=None)
-        dashboard.received(message)
+        dashboard.receive(message)
         dashboard.run_callbacks_until(lambda: "rms" in str(dashboard.views.tabs.state.get("misfit")))
         return [float(number) for number in re.findall(r"([0-9.e-]+) N for the", dashboard.views.tabs.state["misfit"]["sentence"])]
 
@@ -61,7 +61,7 @@ def test_the_model_passes_the_low_pass_of_the_sensors(dashboard: Dashboard) -> N
     assert "a low-pass of 2000 Hz" in dashboard.views.tabs.state["misfit"]["sentence"]
     assert differences({"do": "measurement-bandwidth", "value": ""}) == without
     for wrong in ("2 kHz", "0.5", None):
-        dashboard.received({"do": "measurement-bandwidth", "value": wrong})
+        dashboard.receive({"do": "measurement-bandwidth", "value": wrong})
         assert "bandwidth" in dashboard.session.sentence
 
 
@@ -77,7 +77,7 @@ def test_a_measured_displacement_goes_over_the_drive(dashboard: Dashboard) -> No
     text = "time (s),displacement (m),output force (N)\n" + "".join(
         f"{t:.9g},{u:.9g},{force:.9g}\n" for t, u, force in zip(table[:, 0], swing, table[:, 3], strict=True))
     show(dashboard)
-    dashboard.received(sent(text.encode()))
+    dashboard.receive(sent(text.encode()))
     dashboard.run_callbacks_until(lambda: "rms" in str(dashboard.views.tabs.state.get("misfit")))
     trains = dashboard.views.trains
     line, = (drawn for drawn in trains.left.renderers if drawn.level == "overlay")

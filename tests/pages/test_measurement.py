@@ -28,7 +28,7 @@ from granchain_core.scene.state import rest
 def test_every_byte_of_a_file_arrives(dashboard: Dashboard) -> None:
     text = "Frequenz [kHz];Kraft [µN]\r\n0,04;5\r\n".encode("utf-16")
     assert "UTF-16" in after(dashboard, sent(text), "understood")
-    dashboard.received({"do": "measurement", "content": "???"})
+    dashboard.receive({"do": "measurement", "content": "???"})
     assert "did not arrive" in dashboard.session.sentence
 
 
@@ -85,7 +85,7 @@ def test_an_hdf5_file_is_called_as_the_visitor_called_it(dashboard: Dashboard, t
     assert sentence == "The file is not a measurement that can be read: it has no two rows of numbers of one length."
     with h5py.File(tmp_path / "a.h5", "a") as file:
         file["f"] = file["F"] = [40.0, 60.0]
-    dashboard.received(sent((tmp_path / "a.h5").read_bytes()))
+    dashboard.receive(sent((tmp_path / "a.h5").read_bytes()))
     dashboard.run_callbacks_until(lambda: bool(dashboard.views.tabs.state.get("question")))
     assert dashboard.views.tabs.state["question"]["reason"].startswith("What 'F'")
 
@@ -99,7 +99,7 @@ def test_a_question_is_shown_and_its_answers_are_kept(dashboard: Dashboard) -> N
     assert question["about"] == ["columns"] and question["rows"][0] == [1, ["1.100", "2,5"]]
     assert question["columns"][0] == [1, "", "frequency", "Hz"] and "kHz" in question["units"]["frequency"]
     answer = {"do": "measurement-answer", "columns": [["frequency", 1, "Hz"], ["force", 2, "mN"]], "decimal": "", "dataset": ""}
-    dashboard.received(answer)
+    dashboard.receive(answer)
     dashboard.run_callbacks_until(lambda: dashboard.views.tabs.state["question"]["about"] == ["decimal"])
     understood = after(dashboard, {"do": "measurement-answer", "columns": [], "decimal": "comma"}, "understood")
     assert "1100 to 1200 Hz" in understood and dashboard.views.tabs.state["question"] is None
@@ -111,7 +111,7 @@ def test_a_question_is_shown_and_its_answers_are_kept(dashboard: Dashboard) -> N
     ({"columns": [[None, 1, "N"]]}, "Unknown quantity"), ({"columns": [], "decimal": "both"}, "Unknown decimal mark"),
 ])
 def test_an_answer_from_a_browser_is_not_trusted(dashboard: Dashboard, message: dict[str, Any], sentence: str) -> None:
-    dashboard.received({"do": "measurement-answer", **message})
+    dashboard.receive({"do": "measurement-answer", **message})
     assert sentence in dashboard.session.sentence
 
 
@@ -163,7 +163,7 @@ def test_the_sample_file_is_read_and_says_what_it_is(dashboard: Dashboard) -> No
     assert found.repeats is not None and found.repeats.max() == 3
     told: list[dict[str, Any]] = []
     dashboard.views.tabs.send = lambda **message: told.append(message)  # type: ignore[method-assign]
-    dashboard.received({"do": "measurement-sample"})
+    dashboard.receive({"do": "measurement-sample"})
     assert told[0]["type"] == "sample" and told[0]["text"].startswith("# Not measured")
 
 
@@ -174,9 +174,9 @@ def test_a_file_stays_in_memory_only_while_a_question_about_it_is_open(dashboard
         return any(isinstance(value, bytes) and len(value) > 0 for page in pages for value in vars(page).values())
 
     assert after(dashboard, sent(FILE), "understood") and not kept()
-    dashboard.received({"do": "measurement-remove"})
+    dashboard.receive({"do": "measurement-remove"})
     assert after(dashboard, sent(b"1.100;2,5\n1.200;3,5\n"), "question") and kept()
-    dashboard.received({"do": "measurement-remove"})
+    dashboard.receive({"do": "measurement-remove"})
     assert not kept()
 
 
@@ -184,19 +184,19 @@ def test_a_question_about_other_data_is_not_answered(dashboard: Dashboard) -> No
     """Otherwise, the bytes of the file in question would be read under the name of the virtual experiment."""
     assert after(dashboard, sent(b"1.100;2,5\n1.200;3,5\n"), "question")
     show(dashboard)
-    dashboard.received({"do": "measurement-virtual"})
+    dashboard.receive({"do": "measurement-virtual"})
     assert dashboard.views.tabs.state["question"] is None
     answer = {"do": "measurement-answer", "columns": [["frequency", 1, "Hz"], ["force", 2, "mN"]], "decimal": "comma"}
     assert "virtual experiment, nothing measured" in after(dashboard, answer, "understood")
-    dashboard.received({"do": "measurement-remove"})
-    dashboard.received(answer)
+    dashboard.receive({"do": "measurement-remove"})
+    dashboard.receive(answer)
     dashboard.run_callbacks_until(lambda: not dashboard.callbacks)
     assert not dashboard.views.tabs.state["understood"] and not dashboard.session.sentence
 
 
 def test_a_file_that_is_refused_leaves_the_one_that_is_asked_about(dashboard: Dashboard) -> None:
     assert after(dashboard, sent(b"1.100;2,5\n1.200;3,5\n"), "question")
-    dashboard.received({"do": "measurement", "name": "other.csv", "content": "???"})
-    dashboard.received({"do": "measurement-answer", "columns": [["frequency", 1, "Hz"], ["force", 2, "mN"]], "decimal": "comma"})
+    dashboard.receive({"do": "measurement", "name": "other.csv", "content": "???"})
+    dashboard.receive({"do": "measurement-answer", "columns": [["frequency", 1, "Hz"], ["force", 2, "mN"]], "decimal": "comma"})
     dashboard.run_callbacks_until(lambda: bool(dashboard.views.tabs.state.get("understood")))
     assert dashboard.views.tabs.state["understood"].startswith("mine.csv: ")

@@ -51,7 +51,7 @@ def test_a_file_replaces_the_virtual_experiment_under_way(dashboard: Dashboard, 
         return settling(*words, **named)
 
     monkeypatch.setattr(module, "settling", slow)
-    dashboard.received({"do": "measurement-virtual"})
+    dashboard.receive({"do": "measurement-virtual"})
     assert begun.wait(20)
     assert after(dashboard, sent(FILE), "understood").startswith("mine.csv: ")
     read.set()

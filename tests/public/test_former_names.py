@@ -28,7 +28,7 @@ ROOT = Path(__file__).resolve().parents[2]
 #: Modules with public names that differ from those of the package.
 MODULES = {name: importlib.import_module(f"granchain_core.{name}") for name in ("orbits", "integrate", "parameter_maps")}
 CLASSES: dict[str, Any] = {one.__name__: one for one in (
-    *(getattr(granchain_core, name) for name in ("Branch", "Fit", "LyapunovSpectrum", "Orbit", "Regime", "Pulse")), BranchPoint, Response, SpecialPoint)}
+    *(getattr(granchain_core, name) for name in ("Branch", "Fit", "LyapunovSpectrum", "Orbit", "Regime", "Pulse", "WorkPrecision")), BranchPoint, Response, SpecialPoint)}
 
 
 def short(name: str) -> str:

@@ -107,7 +107,7 @@ class AccuracyPage(Page):
         """In the measuring thread: load the kernels, then measure one row after another."""
 
         def report(result: WorkPrecision) -> None:
-            job.next_tick(self._show, list(result.rows), result.lesson, described_reference(result), result.agreement)
+            job.next_tick(self._show, list(result.rows), result.naive, described_reference(result), result.agreement)
 
         job.compile(scene, FIXED_STEP_KERNELS, DOP853_KERNELS, ACCURACY_KERNELS)
         job.report("measuring")

@@ -37,8 +37,8 @@ class Accuracy(StreamedFigure):
     _stylesheets = [text("controls.css"), text("accuracy.css")]  # noqa: RUF012
     empty_figures = staticmethod(empty_figures)
 
-    def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
-        super().__init__(received, **params)
+    def __init__(self, receive: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
+        super().__init__(receive, **params)
         self._naive: NaiveComparison | None = None
 
     def apply_theme(self, theme: Theme) -> None:

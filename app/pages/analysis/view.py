@@ -18,8 +18,8 @@ class Analysis(ResultFigure):
     _esm = module("analysis.js")
     _stylesheets = [text("controls.css"), text("result_page.css"), text("analysis.css")]  # noqa: RUF012
 
-    def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
-        super().__init__(received, state={"questions": [
+    def __init__(self, receive: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
+        super().__init__(receive, state={"questions": [
             {"name": question.name, "title": question.title} for question in QUESTIONS.values()]}, **params)
 
     def ask(self, question: AnalysisQuestion, fields: Sequence[Field]) -> None:

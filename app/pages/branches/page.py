@@ -142,8 +142,8 @@ class BranchesPage(Page):
         half: Any = message.get("arm")
         drawn = check_index("branch", self._drawn, half)
         point = check_index("orbit", self._rows.orbits.get(half, []), message.get("place"))
-        self._host.show(drawn.branch.axis.scene_at(point.knob), drawn.branch.state(point),
-                        "settled" if point.stable else "live")
+        self._host.turn_knobs(drawn.branch.axis.scene_at(point.knob), drawn.branch.state(point),
+                              "settled" if point.stable else "live")
 
     # Following a branch, in a separate thread
 

@@ -29,5 +29,5 @@ class Branches(StreamedFigure):
     _stylesheets = [text("controls.css"), text("branches.css")]  # noqa: RUF012
     empty_figures = staticmethod(empty_figures)
 
-    def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
-        super().__init__(received, state={"longest_period": LONGEST_BRANCH_PERIOD, "special": list(SPECIAL)}, **params)
+    def __init__(self, receive: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
+        super().__init__(receive, state={"longest_period": LONGEST_BRANCH_PERIOD, "special": list(SPECIAL)}, **params)

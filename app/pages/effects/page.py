@@ -89,7 +89,7 @@ class EffectsPage(Page):
         try:
             session = self._host.session
             session.switch(name, on)
-            self._host.show(session.scene, mode=session.mode)
+            self._host.turn_knobs(session.scene, mode=session.mode)
         finally:
             self._show()
 

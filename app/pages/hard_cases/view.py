@@ -25,8 +25,8 @@ class HardCases(ResultFigure):
     _esm = module("hard_cases.js")
     _stylesheets = [text("controls.css"), text("hard_cases.css")]  # noqa: RUF012
 
-    def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
-        super().__init__(received, state={"cases": described_cases(), "about": ABOUT}, **params)
+    def __init__(self, receive: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
+        super().__init__(receive, state={"cases": described_cases(), "about": ABOUT}, **params)
 
     def draw(self, name: str, data: Picture) -> None:
         """Replace the figure of a case."""

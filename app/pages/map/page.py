@@ -88,7 +88,7 @@ class MapPage(Page):
             return
         self._send_mark()
         if self._stale():
-            self._give_up()
+            self._cancel()
             self._send(type="map-stale")
             self._quiet.start(self._begin_if_visible)
 
@@ -134,7 +134,7 @@ class MapPage(Page):
     def _missing(self) -> list[int]:
         return [int(number) for number in np.flatnonzero(self._cells["regime"] < 0)]
 
-    def _give_up(self) -> bool:
+    def _cancel(self) -> bool:
         """Stop computing this map; return whether it was being computed."""
         if not self._task.cancel():
             return False
@@ -142,7 +142,7 @@ class MapPage(Page):
         return True
 
     def _stop(self) -> None:
-        if self._give_up():
+        if self._cancel():
             self._show_status("stopped")
 
     def _work(self, grid: Grid, missing: list[int], job: Job) -> None:
@@ -190,7 +190,7 @@ class MapPage(Page):
     def _choose(self, message: dict[str, Any]) -> None:
         """Set f and A0 to the values at the clicked place in the map."""
         session = self._host.session
-        self._host.show(session.scene.evolve(f=message.get("x"), A0=message.get("y")), mode=session.mode)
+        self._host.turn_knobs(session.scene.evolve(f=message.get("x"), A0=message.get("y")), mode=session.mode)
 
     # Attractors
 
@@ -230,7 +230,7 @@ class MapPage(Page):
         """Put the chain on an attractor; from then on, settled pictures start from the previous state."""
         attractor = check_index("attractor", self._found, message.get("number"))
         self._host.session.set_start("previous")
-        self._host.show(attractor.scene, attractor.state)
+        self._host.turn_knobs(attractor.scene, attractor.state)
 
 
 def _batches(grid: Grid, missing: list[int], stop: Stop, pause: Callable[[], None]) -> Iterator[np.ndarray]:

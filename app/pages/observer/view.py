@@ -38,8 +38,8 @@ class Observer(StreamedFigure):
     _stylesheets = [text("controls.css"), text("observer.css")]  # noqa: RUF012
     empty_figures = staticmethod(empty_figures)
 
-    def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
-        super().__init__(received, state=first_state(), **params)
+    def __init__(self, receive: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
+        super().__init__(receive, state=first_state(), **params)
         self._anchor: tuple[float, float] | None = None
 
     def step(self, step: ObserverStep, scene: Scene, began: bool, since: int, factor: float | None) -> None:

@@ -20,8 +20,8 @@ class Paper(ResultFigure):
     _esm = module("paper.js")
     _stylesheets = [text("controls.css"), text("result_page.css"), text("paper.css")]  # noqa: RUF012
 
-    def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
-        super().__init__(received, state={"figures": [
+    def __init__(self, receive: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
+        super().__init__(receive, state={"figures": [
             {"number": figure.number, "title": figure.title} for figure in FIGURES.values()]}, **params)
 
     def choose(self, figure: PaperFigure) -> None:

@@ -31,8 +31,8 @@ class Probe(StreamedFigure):
     _stylesheets = [text(f"{name}.css") for name in ("controls", "probe")]  # noqa: RUF012
     empty_figures = staticmethod(empty_figures)
 
-    def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
-        super().__init__(received, state={"bead": 1, "beads": 1, "sentence": ""}, **params)
+    def __init__(self, receive: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
+        super().__init__(receive, state={"bead": 1, "beads": 1, "sentence": ""}, **params)
 
     def fill(self, motion: Run, bead: int) -> None:
         """Fill the figures with a motion."""

@@ -48,8 +48,8 @@ class Stability(StreamedFigure):
     _stylesheets = [text(f"{name}.css") for name in ("controls", "drawing", "stability")]  # noqa: RUF012
     empty_figures = staticmethod(empty_figures)
 
-    def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
-        super().__init__(received, state={"longest_period": LONGEST_LOCKED_PERIOD, "phases": PHASES}, **params)
+    def __init__(self, receive: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
+        super().__init__(receive, state={"longest_period": LONGEST_LOCKED_PERIOD, "phases": PHASES}, **params)
 
     def section(self, shown: SectionPoints) -> None:
         """Show another section."""

@@ -95,4 +95,4 @@ class StoriesPage(Page):
         job.next_tick(self._show, step, state_before(step, job.stop))
 
     def _show(self, step: StoryStep, state: State | None) -> None:
-        self._host.open(step.scene, state, step.curves)
+        self._host.open_scene(step.scene, state, step.curves)

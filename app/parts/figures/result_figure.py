@@ -31,8 +31,8 @@ class ResultFigure(Component):
 
     __abstract = True
 
-    def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
-        super().__init__(received, **params)
+    def __init__(self, receive: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
+        super().__init__(receive, **params)
         self._theme = THEMES["light"]
         self._drawn: dict[str, _Drawn] = {}
 

@@ -33,8 +33,8 @@ class StreamedFigure(Component):
 
     __abstract = True
 
-    def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
-        super().__init__(received, **params)
+    def __init__(self, receive: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
+        super().__init__(receive, **params)
         self.theme = THEMES["light"]
 
     def apply_theme(self, theme: Theme) -> None:

@@ -27,8 +27,8 @@ class Header(Component):
     _esm = module("header.js")
     _stylesheets = [text("controls.css"), text("header.css"), text("gallery.css")]  # noqa: RUF012
 
-    def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
-        super().__init__(received, state={
+    def __init__(self, receive: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
+        super().__init__(receive, state={
             "modes": [(mode, _MODES[mode]) for mode in VIEW_VALUES["mode"]],
             "starts": [(start, _STARTS[start]) for start in VIEW_VALUES["start"]],
             "started_elsewhere": _STARTED_ELSEWHERE,

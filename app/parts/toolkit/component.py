@@ -10,7 +10,7 @@ from panel.custom import JSComponent
 
 from ...plots.theme import Theme
 from ...scripts import FILES, files_by_name
-from ...serve.monkeypatches.panel_overrides import (
+from .panel_overrides import (
     WithCommonProperties,
     WithoutBusyIndicator,
     WithoutChildren,
@@ -37,9 +37,9 @@ class Component(WithPlainChanges, WithCommonProperties, WithoutChildren, Without
 
     __abstract = True
 
-    def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
+    def __init__(self, receive: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
         super().__init__(margin=0, **params)
-        self._received = received
+        self._receive = receive
 
     def send(self, **message: Any) -> None:
         """Send a message to this part in the browser."""
@@ -57,10 +57,10 @@ class Component(WithPlainChanges, WithCommonProperties, WithoutChildren, Without
             if not self.try_change("state", merged):
                 self.state = merged
 
-    def handle_message(self, data: Any) -> None:
-        """Handle a message from this part in the browser."""
-        if self._received is not None and isinstance(data, dict):
-            self._received(data)
+    def receive(self, data: Any) -> None:
+        """Receive a message from this part in the browser."""
+        if self._receive is not None and isinstance(data, dict):
+            self._receive(data)
 
     def _handle_msg(self, data: Any) -> None:
-        self.handle_message(data)
+        self.receive(data)

@@ -35,12 +35,13 @@ class _Computation(Generic[Item]):
         self.stop = TurnFlag(self.cpu_time)
 
 
-def _own(error: Exception) -> Exception:
+def _copy_of(error: Exception) -> Exception:
     """Return a copy of an error for one session: raising it adds only that session's frames to the traceback."""
-    own = type(error).__new__(type(error), *error.args)  # copy.copy would call __init__, which may take other arguments
-    own.__dict__.update(error.__dict__)
-    own.__cause__, own.__suppress_context__ = error.__cause__, error.__suppress_context__
-    return own.with_traceback(error.__traceback__)
+    # copy.copy would call __init__, which may take other arguments
+    copied = type(error).__new__(type(error), *error.args)
+    copied.__dict__.update(error.__dict__)
+    copied.__cause__, copied.__suppress_context__ = error.__cause__, error.__suppress_context__
+    return copied.with_traceback(error.__traceback__)
 
 
 class Shared(Generic[Item]):
@@ -132,7 +133,7 @@ class Shared(Generic[Item]):
             yield from new
             if done and given == len(computation.items):
                 if computation.error is not None:
-                    raise _own(computation.error)
+                    raise _copy_of(computation.error)
                 return
 
     def _compute(self, key: Hashable, computation: _Computation[Item],

@@ -1,4 +1,4 @@
-"""Monkeypatches of Bokeh and Panel for the whole process, and overrides of Panel's methods.
+"""Monkeypatches of Bokeh and Panel for the whole process.
 
 They put a guard before every request handler, and make a page open faster.
 """

@@ -43,12 +43,16 @@ _CONSTANTS = (type(None), bool, int, float, str, bytes)
 
 
 @dataclass(frozen=True)
-class _Remembered:
-    """Constant defaults, whether a default is made for each model, and whether it is empty, by class and property."""
+class _Cache:
+    """What has been found out about properties, by class and name of the property."""
 
-    known: dict[tuple[type, str], Any] = field(default_factory=dict)
-    changing: dict[tuple[type, str], bool] = field(default_factory=dict)
+    #: Defaults that are constants, which all models of a class share.
+    constants: dict[tuple[type, str], Any] = field(default_factory=dict)
+    #: Whether each model has its own default ("unstable" in Bokeh).
+    unstable: dict[tuple[type, str], bool] = field(default_factory=dict)
+    #: Whether such an own default is an empty list or dictionary.
     empty: dict[tuple[type, str], bool] = field(default_factory=dict)
+    #: The defaults that a class and its bases override, by class alone.
     overridden: dict[type, dict[str, Any]] = field(default_factory=dict)
 
 
@@ -59,15 +63,15 @@ def install_defaults_cache() -> None:
     find: Any = PropertyDescriptor._get_default
     overridden: Any = HasProps._overridden_defaults
     query, visit = HasProps.query_properties_with_values, references.visit_immediate_value_references
-    remembered = _Remembered()
-    is_unstable = _asks_once(PropertyDescriptor.has_unstable_default, remembered)
+    cache = _Cache()
+    is_unstable = _cached_is_unstable(PropertyDescriptor.has_unstable_default, cache)
     for where, name, ours in (
             (PropertyDescriptor, "has_unstable_default", is_unstable),
-            (PropertyDescriptor, "_get_default", _finds_once(find, is_unstable, remembered)),
+            (PropertyDescriptor, "_get_default", _cached_default(find, is_unstable, cache)),
             (HasProps, "themed_values", _theme),
-            (HasProps, "_overridden_defaults", classmethod(_merges_once(overridden, remembered))),
-            (HasProps, "query_properties_with_values", _tells_what_is_there(query)),
-            (references, "visit_immediate_value_references", _visits_what_is_there(visit, remembered))):
+            (HasProps, "_overridden_defaults", classmethod(_cached_overrides(overridden, cache))),
+            (HasProps, "query_properties_with_values", _properties_that_differ(query)),
+            (references, "visit_immediate_value_references", _visit_existing_references(visit, cache))):
         setattr(where, name, ours)
 
 
@@ -77,18 +81,18 @@ def _theme(model: Any) -> dict[str, Any] | None:
     return themed
 
 
-def _merges_once(overridden: Any, defaults: _Remembered) -> Callable[[type], dict[str, Any]]:
+def _cached_overrides(overridden: Any, cache: _Cache) -> Callable[[type], dict[str, Any]]:
     """Return a function that finds the defaults overridden by a class and its bases only once, as they never change."""
 
     def overrides(cls: type) -> dict[str, Any]:
-        if cls not in defaults.overridden:
-            defaults.overridden[cls] = overridden.__func__(cls)
-        return defaults.overridden[cls]
+        if cls not in cache.overridden:
+            cache.overridden[cls] = overridden.__func__(cls)
+        return cache.overridden[cls]
 
     return overrides
 
 
-def _asks_once(unstable: Any, defaults: _Remembered) -> Callable[[Any, Any], bool]:
+def _cached_is_unstable(unstable: Any, cache: _Cache) -> Callable[[Any, Any], bool]:
     """Return a function that says whether each model has its own default.
 
     For a new model, the answer is no if its default would be empty: the default is made when it is requested, and is
@@ -97,56 +101,56 @@ def _asks_once(unstable: Any, defaults: _Remembered) -> Callable[[Any, Any], boo
 
     def is_unstable(descriptor: Any, model: Any) -> bool:
         key = (model.__class__, descriptor.name)
-        if key not in defaults.changing:
-            defaults.changing[key] = unstable(descriptor, model)
-            value = descriptor.instance_default(model) if defaults.changing[key] else None
-            defaults.empty[key] = isinstance(value, PropertyValueContainer) and not value
-        return defaults.changing[key] and not (defaults.empty[key] and not model._initialized)
+        if key not in cache.unstable:
+            cache.unstable[key] = unstable(descriptor, model)
+            value = descriptor.instance_default(model) if cache.unstable[key] else None
+            cache.empty[key] = isinstance(value, PropertyValueContainer) and not value
+        return cache.unstable[key] and not (cache.empty[key] and not model._initialized)
 
     return is_unstable
 
 
-def _finds_once(find: Any, is_unstable: Callable[[Any, Any], bool], defaults: _Remembered) -> Callable[[Any, Any], Any]:
+def _cached_default(find: Any, is_unstable: Callable[[Any, Any], bool], cache: _Cache) -> Callable[[Any, Any], Any]:
     """Return a function that finds a property's default, once per class if it is a constant that no theme changes."""
 
-    def remembered(descriptor: Any, model: Any) -> Any:
+    def default(descriptor: Any, model: Any) -> Any:
         themed = _theme(model)
         if themed and descriptor.name in themed:
             return find(descriptor, model)
         key = (model.__class__, descriptor.name)
-        if key in defaults.known:
-            return defaults.known[key]
+        if key in cache.constants:
+            return cache.constants[key]
         value = find(descriptor, model)
         if isinstance(value, _CONSTANTS) and not is_unstable(descriptor, model):
-            defaults.known[key] = value
+            cache.constants[key] = value
         return value
 
-    remembered.known = defaults.known  # type: ignore[attr-defined]
-    return remembered
+    default.known = cache.constants  # type: ignore[attr-defined]
+    return default
 
 
-def _tells_what_is_there(query: Any) -> Callable[..., dict[str, Any]]:
+def _properties_that_differ(query: Any) -> Callable[..., dict[str, Any]]:
     """Return a function that finds a model's properties for the browser without looking at all its defaults."""
 
-    def changed(model: Any, wanted: Callable[[Any], bool], *, include_defaults: bool = True,
+    def differing(model: Any, wanted: Callable[[Any], bool], *, include_defaults: bool = True,
                 include_undefined: bool = False) -> dict[str, Any]:
         if include_defaults or include_undefined:
             return dict(query(model, wanted, include_defaults=include_defaults, include_undefined=include_undefined))
         themed, own = _theme(model) or {}, model._unstable_default_values
         names = {*model._property_values, *own, *themed}
-        changed_values = {}
+        values = {}
         for name in model.properties(_with_props=True):
             descriptor = model.lookup(name) if name in names else None
             if descriptor is not None and wanted(descriptor):
                 value = descriptor.get_value(model)
                 if name in themed or not (name in own and isinstance(value, PropertyValueContainer)):
-                    changed_values[name] = value
-        return changed_values
+                    values[name] = value
+        return values
 
-    return changed
+    return differing
 
 
-def _visits_what_is_there(visit: Any, defaults: _Remembered) -> Callable[[Any, Any], None]:
+def _visit_existing_references(visit: Any, cache: _Cache) -> Callable[[Any, Any], None]:
     """Return a function that visits the models to which a model refers, without making empty defaults for this."""
 
     def visit_model(value: Any, visitor: Any) -> None:
@@ -157,7 +161,7 @@ def _visits_what_is_there(visit: Any, defaults: _Remembered) -> Callable[[Any, A
         kept_values = value._property_values, value._unstable_default_values, themed
         for name in value.properties_with_refs():
             key = (kind, name)
-            if (key in defaults.known or defaults.empty.get(key)) and not any(name in kept for kept in kept_values):
+            if (key in cache.constants or cache.empty.get(key)) and not any(name in kept for kept in kept_values):
                 continue
             references.visit_value_and_its_immediate_references(getattr(value, name), visitor)
 

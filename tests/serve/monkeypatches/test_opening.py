@@ -15,7 +15,7 @@ from replaced import OWN
 
 from app.dashboard import entry
 from app.parts.status.status_line import StatusLine
-from app.serve.monkeypatches import panel_overrides
+from app.parts.toolkit import panel_overrides
 from app.serve.monkeypatches.bokeh_defaults import install_defaults_cache
 
 

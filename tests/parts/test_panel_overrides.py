@@ -15,8 +15,8 @@ from panel.reactive import Reactive, Syncable
 
 from app import library_internals
 from app.parts.status.status_line import StatusLine
+from app.parts.toolkit import panel_overrides
 from app.parts.toolkit.component import Component
-from app.serve.monkeypatches import panel_overrides
 
 pytestmark = pytest.mark.quick
 
@@ -79,7 +79,7 @@ def test_an_event_of_a_part_is_handled_by_panel_where_that_has_no_set_curdoc(mon
     """The module can be imported without it, and leaves the event to Panel."""
     monkeypatch.delattr(sys.modules["panel.io.state"], "set_curdoc")
     monkeypatch.setattr(library_internals, "_TABLES", dict(library_internals._TABLES))  # the copy enters its own table
-    spec = importlib.util.spec_from_file_location("app.serve.monkeypatches.without_set_curdoc", panel_overrides.__file__)
+    spec = importlib.util.spec_from_file_location("app.parts.toolkit.without_set_curdoc", panel_overrides.__file__)
     assert spec is not None and spec.loader is not None
     without = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(without)

@@ -1,4 +1,4 @@
-"""What a first-time visitor can read from the page: scales, the largest forces, and the column of each bead."""
+"""What can be read from the page: scales, the largest forces, the column of each bead, names of buttons, scenes."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ from bokeh.models import ImportedStyleSheet
 from panel.reactive import Syncable
 
 from ...library_internals import Internal, internals
-from ..document.changes import is_batched, send_event, set_properties
+from ...serve.document.changes import is_batched, send_event, set_properties
 
 try:
     from panel.io.state import set_curdoc
