@@ -25,8 +25,11 @@ class Calls:
         self._closing: list[Callable[[], object]] = []
         self._closed = False
 
-    def when_unlocked(self, action: Callable[..., None], *args: object) -> None:
-        """Call `action` now if the document is not locked, otherwise once it is unlocked; called on the event loop."""
+    def with_lock(self, action: Callable[..., None], *args: object) -> None:
+        """Call `action` now if Bokeh holds the document's lock, otherwise as soon as it does; called on the event loop.
+
+        A call before the page is ready waits for that (`with_document_lock`).
+        """
         with_document_lock(self._document, partial(self.call_and_report, action, *args))
 
     def next_tick(self, action: Callable[..., None], *args: object) -> None:

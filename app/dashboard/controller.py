@@ -11,15 +11,15 @@ from typing import TYPE_CHECKING, Any
 
 from bokeh.document import Document
 
-from granchain_core import BadInput, CurvePoint, Scene, Settled, State
+from granchain_core import CurvePoint, Scene, Settled, State
 from granchain_core.experiment import Difference, Measured
 
 from ..curve.controller import CurveController
-from ..plots.theme import Theme
+from ..plots.theme import THEMES, Theme
 from ..serve.compiling.compiler import COMPILER
 from ..serve.connection.socket_tuning import disable_nagle
 from ..session.activities import Activity, account_activity, picture_activities
-from ..session.message_checks import quoted
+from ..session.message_checks import check_bool, check_choice, quoted
 from ..session.page import Actions, Page, all_actions
 from ..session.page_constants import CURVE_NAME
 from ..session.session import Session
@@ -50,6 +50,8 @@ class Controller:
                  make_calls: Callable[[Document, Callable[[Exception], None]], Calls] = Calls) -> None:
         """Make views, parts and pages, connect them, and collect their actions.
 
+        They are made in this order because each takes some of those before it: calls, views, sentences, the main
+        picture, the curve, choices, exports, pins, pages, the scene's changes.
         The motion of the first picture begins in `initial_state` if one is given. `make_calls` makes the `Calls`; tests
         pass another one.
         """
@@ -74,7 +76,7 @@ class Controller:
         own: Actions = {
             "ping": lambda _: views.chain.send(type="pong"),
             "ready": self._ready, "window-shown": lambda _: self.pictures.restart(),
-            "compact": lambda m: views.set_compact(bool(m.get("value"))),
+            "compact": lambda m: views.set_compact(check_bool("compact", m.get("value"))),
             "visible": self._visibility_reported,
             "painted": lambda m: self.pictures.painted(m.get("number"), m.get("took")),
             **self._scenes.actions,
@@ -98,26 +100,29 @@ class Controller:
         action = self._actions.get(name) if isinstance(name, str) else None
         if action is None:
             action, message = self._unknown, {"name": quoted(name)}
-        self._calls.when_unlocked(action, message)
+        self._calls.with_lock(self._act, str(name), action, message)
+
+    def _act(self, name: str, action: Callable[[dict[str, Any]], None], message: dict[str, Any]) -> None:
+        self.sentences.action_begins(name)
+        action(message)
 
     def _unknown(self, message: dict[str, Any]) -> None:
         self.show_message(f"The server does not know the request {message['name']}; reload the page.")
 
     def _ready(self, message: dict[str, Any]) -> None:
+        compact = check_bool("compact", message.get("compact"))
+        theme = check_choice("theme", message.get("theme"), THEMES)
         disable_nagle(self._document)
-        self.views.set_compact(bool(message.get("compact")))
+        self.views.set_compact(compact)
         # Here rather than in `entry.open_web_page`: a plain GET must not start a compiler (docs/security.md).
         COMPILER.prepare(self.session.scene)
-        self.choices.set_theme(message.get("theme"))
+        self.choices.set_theme(theme)
         self.pinned.show()
         self._scenes.show_preset(self._initial_state, self.session.curves)
 
     def _visibility_reported(self, message: dict[str, Any]) -> None:
-        name, visible = message.get("name"), message.get("value")
-        looked_at = self._looked_at.get(name) if isinstance(name, str) else None
-        if looked_at is None or not isinstance(visible, bool):
-            raise BadInput(f"There is no page {quoted(name)} to look at.")
-        looked_at.visibility_changed(visible)
+        name = check_choice("page", message.get("name"), self._looked_at)
+        self._looked_at[name].visibility_changed(check_bool(f"visible {name}", message.get("value")))
 
     def _send_gallery(self, _: dict[str, Any]) -> None:
         """Send the cards only once: the page keeps them, and no other short message has such a large answer."""
@@ -140,7 +145,7 @@ class Controller:
         self._calls.on_close(action)
 
     def show_message(self, sentence: str) -> None:
-        """Show the visitor a message until the next valid action; an empty text removes it."""
+        """Show the visitor a message; an empty text removes it. `Sentences` says how long it stays."""
         self.sentences.show_message(sentence)
 
     def show_failure(self, error: Exception) -> None:
@@ -160,7 +165,7 @@ class Controller:
         self.close()
 
     def close(self) -> None:
-        """End all computations of this page and call no further action, because the session has ended."""
+        """End all computations of this session and call no further action, because it has ended."""
         self._calls.close()
 
     @property
@@ -237,6 +242,9 @@ class Controller:
             page.theme_changed(theme)
 
     def _compute(self) -> None:
+        """Compute a picture because of an action of the visitor; a refusal of the last one no longer applies."""
+        if self.session.sentence:
+            self.show_message("")
         self._scenes.request_picture()
 
     def _choose_frequency(self, frequency: object) -> None:

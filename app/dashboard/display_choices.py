@@ -6,7 +6,9 @@ from collections.abc import Callable
 from typing import Any
 
 from ..curve.controller import CurveController
+from ..curve.curve_bar import CHOICES
 from ..plots.theme import THEMES, Theme
+from ..session.message_checks import check_bool, check_choice
 from ..session.page import Actions
 from ..session.session import Session
 from .layout import Views
@@ -28,11 +30,10 @@ class DisplayChoices:
         }
 
     def set_theme(self, name: object) -> None:
-        """Apply the colours and line widths of a theme; ignore an unknown theme."""
-        theme = THEMES.get(str(name))
-        if theme is not None:
-            self._views.apply_theme(theme)
-            self._theme_changed(theme)
+        """Apply the colours and line widths of a theme."""
+        theme = THEMES[check_choice("theme", name, THEMES)]
+        self._views.apply_theme(theme)
+        self._theme_changed(theme)
 
     def _scale(self, message: dict[str, Any]) -> None:
         self._session.set_scale(message.get("value"))
@@ -41,6 +42,7 @@ class DisplayChoices:
         self._redraw()
 
     def _curve(self, message: dict[str, Any]) -> None:
-        self._curves.switch(str(message.get("name")), bool(message.get("value")), self._session.scene)
+        name = check_choice("curve", message.get("name"), (name for name, *_ in CHOICES))
+        self._curves.switch(name, check_bool(f"curve {name}", message.get("value")), self._session.scene)
         self._session.curves = self._curves.selection(self._session.scene)
         self._views.header.show_session(self._session)

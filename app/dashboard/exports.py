@@ -16,7 +16,7 @@ from ..curve.controller import CurveController
 from ..serve.computing.worker_pools import FILES
 from ..session.export import EXPORTS, TEXTS, ExportedPicture
 from ..session.host import PageHost
-from ..session.message_checks import quoted
+from ..session.message_checks import check_choice
 from ..session.page import Actions
 from ..session.task import Job, Task, report_nothing
 from .layout import Views
@@ -45,18 +45,16 @@ class Exports:
             raise BadInput(sentence)
 
     def _export(self, message: dict[str, Any]) -> None:
-        what = message.get("what", "hdf5")
+        what = check_choice("file to save", message.get("what", "hdf5"), EXPORTS)
         run = self._pictures.shown_run()
         if run is None:
             raise BadInput(_NONE)
         if what == "hdf5":
             self._write(".h5", partial(_hdf5, run, self._host.session.measured))
-        elif isinstance(what, str) and what in TEXTS:
+        else:
             end, text = TEXTS[what]
             picture = self._exported_picture(run, what)
             self._write(end, lambda: text(picture).encode())
-        else:
-            raise BadInput(f"There is no file {quoted(what)} to save; choose from {', '.join(EXPORTS)}.")
 
     def _exported_picture(self, run: Run, what: str) -> ExportedPicture:
         session = self._host.session

@@ -7,6 +7,7 @@ from typing import Any
 
 from ..parts.header.header import Header
 from ..session.initial_state import MOST_BEADS_IN_LINK
+from ..session.message_checks import check_bool
 from ..session.page import Actions
 from ..session.session import Session
 from .main_picture import MainPicture
@@ -46,7 +47,7 @@ class Playback:
         self._header.show_session(self._session)
 
     def _playing(self, message: dict[str, Any]) -> None:
-        self._session.playing = bool(message.get("value"))
+        self._session.playing = check_bool("playing", message.get("value"))
         if self._pictures.live is not None:
             self._pictures.live.hold()
             if not self._session.playing:
@@ -55,7 +56,8 @@ class Playback:
 
     def _reconnected(self, message: dict[str, Any]) -> None:
         """Restore the pause, which no link contains, after a lost connection, and say what could not be restored."""
-        if not message.get("playing"):
+        uploaded = check_bool("uploaded", message.get("uploaded", False))
+        if not check_bool("playing", message.get("playing")):
             self._playing({"value": False})
             self._header.show_session(self._session)
         scene, different = self._session.scene, []
@@ -63,7 +65,7 @@ class Playback:
             different.append("the live run has started again")
         elif scene.is_driven and scene.N > MOST_BEADS_IN_LINK:  # the link has no room for its initial state
             different.append("the motion starts from rest")
-        if message.get("uploaded"):
+        if uploaded:
             different.append("your uploaded data are gone")
         but = f", but {' and '.join(different)}" if different else ""
         self._show_message(f"The connection was lost. Your settings are restored{but}.")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
 from granchain_core import Scene, Settled, State
@@ -75,9 +76,7 @@ class SceneChanges:
 
     def choose_frequency(self, frequency: object) -> None:
         """Set the knob f to a frequency clicked on the curve."""
-        self._session.change("f", clicked_frequency(self._session.scene, frequency))
-        self._send_knob_values()
-        self._follow_knobs()
+        self._turn(lambda: self._session.change("f", clicked_frequency(self._session.scene, frequency)))
 
     def request_picture(self, initial_state: State | None = None) -> None:
         """Request a picture of the present knobs."""
@@ -100,16 +99,10 @@ class SceneChanges:
     # Actions of the visitor
 
     def _set(self, message: dict[str, Any]) -> None:
-        try:
-            self._session.change(str(message.get("name")), message.get("value"))
-            self._follow_knobs()
-        finally:
-            self._send_knob_values(message.get("seq"))
+        self._turn(partial(self._session.change, str(message.get("name")), message.get("value")), message.get("seq"))
 
     def _restore(self, message: dict[str, Any]) -> None:
-        self._session.restore(str(message.get("name")))
-        self._send_knob_values(message.get("seq"))
-        self._follow_knobs()
+        self._turn(partial(self._session.restore, str(message.get("name"))), message.get("seq"))
 
     def _scene(self, message: dict[str, Any]) -> None:
         self._session.choose(message.get("name"))
@@ -144,6 +137,17 @@ class SceneChanges:
         self._show_message(" ".join(refused))
 
     # Consequences
+
+    def _turn(self, change: Callable[[], None], seq: object = None) -> None:
+        """Change a knob, follow it, and send the values.
+
+        They are sent even if the change is refused, because the browser shows the refused value until it gets them.
+        """
+        try:
+            change()
+            self._follow_knobs()
+        finally:
+            self._send_knob_values(seq)
 
     def _follow_mode(self, state: State | None = None) -> None:
         """Begin a live run in live mode if there is none or it must begin in `state`; end it in settled mode."""

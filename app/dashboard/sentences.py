@@ -22,6 +22,10 @@ from ..session.budget import RefusedPicture
 from ..session.page import Actions
 from ..session.session import Session
 
+#: Messages that leave the sentence, because a browser also sends them when its visitor does nothing: `theme`, `playing`
+#: and `branches-open` may follow from a link or from settings of the system.
+SENT_UNASKED = frozenset({"ping", "ready", "window-shown", "compact", "visible", "painted", "script-error",
+                          "reconnected", "theme", "playing", "branches-open"})
 #: Largest number of script errors logged for one session: a script that fails may fail at every frame.
 MOST_SCRIPT_ERRORS = 5
 #: Length to which the text of such an error is cut [characters].
@@ -29,7 +33,12 @@ LONGEST_SCRIPT_ERROR = 400
 
 
 class Sentences:
-    """The message above the status line. `compute` requests a picture of the present knobs."""
+    """The message above the status line. `compute` requests a picture of the present knobs.
+
+    A message stays until the visitor's next valid action of any kind (any message outside `SENT_UNASKED`), or until
+    another replaces it or the visitor closes it. That of a refused picture stays, with its button, until a picture is
+    requested or another scene is opened: it says why the picture does not follow the knobs.
+    """
 
     def __init__(self, session: Session, line: StatusLine, compute: Callable[[], None]) -> None:
         self._session = session
@@ -41,13 +50,21 @@ class Sentences:
                                  "script-error": self._script_error}
 
     def show_message(self, sentence: str, refused: Scene | None = None) -> None:
-        """Show a message until the next valid action; an empty text removes it.
+        """Show a message; an empty text removes it.
 
         A button next to the message computes the scene that was `refused` because it takes too long.
         """
         self._session.sentence = sentence
         self._refused = refused
         self._show()
+
+    def action_begins(self, name: str) -> None:
+        """Remove the message because the visitor acts; if the action is refused, its own message follows.
+
+        Both changes leave together (`Calls`).
+        """
+        if name not in SENT_UNASKED and self._refused is None and self._session.sentence:
+            self.show_message("")
 
     def show_notice(self, notice: str) -> None:
         """Show a message until the next picture."""

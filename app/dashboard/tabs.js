@@ -2,7 +2,7 @@
 
 import { accuracyTab } from "../pages/accuracy/accuracy_tab.js";
 import { branchesTab } from "../pages/branches/branches_tab.js";
-import { dataTab, saveSample } from "../pages/data/data_tab.js";
+import { acceptDroppedFiles, dataTab, saveSample } from "../pages/data/data_tab.js";
 import { effectsTab } from "../pages/effects/effects.js";
 import { mapMessage } from "../pages/map/map_state.js";
 import { mapTab } from "../pages/map/map.js";
@@ -169,6 +169,7 @@ class Tabs {
 export function render({ model }) {
   const tabs = new Tabs(model);
   watchVisibility(model.state.pages, (name, value) => model.send_msg({ do: "visible", name, value }));
+  acceptDroppedFiles(model, () => tabs.choose("data"));
   model.on("state", () => tabs.stateChanged());
   model.on("msg:custom", mapMessage);
   model.on("msg:custom", saveSample);

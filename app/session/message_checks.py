@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TypeGuard, TypeVar
 
 from granchain_core import BadInput
+from granchain_core.inputs.checks import unknown_name
 
 Item = TypeVar("Item")
 
@@ -25,6 +26,21 @@ def check_integer(what: str, value: object, low: int, high: int) -> int:
     if not is_number(value) or not low <= value <= high or value != int(value):
         raise BadInput(f"The {what} {quoted(value)} is not a whole number from {low} to {high}.")
     return int(value)
+
+
+def check_bool(what: str, value: object) -> bool:
+    """Return `value` if it is `True` or `False`; otherwise raise `BadInput`."""
+    if not isinstance(value, bool):
+        raise BadInput(f"The value {quoted(value)} of {what} is neither true nor false.")
+    return value
+
+
+def check_choice(what: str, value: object, known: Iterable[str]) -> str:
+    """Return `value` if it is a known name; otherwise raise `BadInput`, which names the nearest."""
+    names = tuple(known)
+    if not isinstance(value, str) or value not in names:
+        raise unknown_name(what, str(value)[:40], names)
+    return value
 
 
 def check_index(what: str, items: Sequence[Item], index: object) -> Item:

@@ -16,7 +16,7 @@ from granchain_core.experiment import Measured, Series
 
 from ..serve.computing.cpu_time import CpuTime
 from .initial_state import initial_state_text
-from .message_checks import is_number, quoted
+from .message_checks import check_choice, is_number, quoted
 from .pins import Pin, pin_texts
 from .share import BROWSER_FIELDS, DEFAULT_SCENE, INITIAL_STATE, QUESTION, SPEEDS, VIEW, VIEW_VALUES, encode, pins_in
 from .switches import ACCOUNT_SWITCH, changes
@@ -55,7 +55,7 @@ class Session:
     settled: Settled | None = None
     #: The state in which the motion on the screen began; None for rest.
     initial_state: State | None = None
-    #: A message to the visitor until the next valid action, for example why a value was refused.
+    #: A message to the visitor, for example why a value was refused; `Sentences` removes it.
     sentence: str = ""
     #: A message to the visitor until the next picture, for example that kernels are being compiled.
     notice: str = ""
@@ -123,9 +123,7 @@ class Session:
     def restore(self, name: str) -> None:
         """Restore knob `name` to its value in the preset."""
         preset = scene(self.scene.name).knobs
-        if name not in preset:
-            raise BadInput(f"There is no knob {quoted(name)} to restore.")
-        self.change(name, preset[name])
+        self.change(name, preset[check_choice("knob", name, preset)])
 
     def choose(self, name: object) -> None:
         """Open another preset, in the same mode."""
@@ -142,15 +140,15 @@ class Session:
 
     def set_mode(self, mode: object) -> None:
         """Set the mode, `settled` or `live`."""
-        self.mode = _one_of("mode", mode, MODES)
+        self.mode = check_choice("mode", mode, MODES)
 
     def set_start(self, start: object) -> None:
         """Set the start of settled pictures, `rest` or `previous`."""
-        self.start = _one_of("start", start, STARTS)
+        self.start = check_choice("start", start, STARTS)
 
     def set_scale(self, scale: object) -> None:
         """Set the scale of pictures, `same` or `fit`."""
-        self.scale = _one_of("scale", scale, VIEW_VALUES["scale"])
+        self.scale = check_choice("scale", scale, VIEW_VALUES["scale"])
 
     def set_speed(self, speed: object) -> None:
         """Set the drive periods shown per second to one of `SPEEDS`."""
@@ -165,9 +163,3 @@ class Session:
             return None
         state = self.settled.state
         return state if len(state.displacement) == scene.N else None
-
-
-def _one_of(what: str, value: object, known: tuple[str, ...]) -> str:
-    if value in known:
-        return str(value)
-    raise BadInput(f"{what} {quoted(value)} is not one of {', '.join(known)}.")

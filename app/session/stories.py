@@ -184,6 +184,8 @@ def _step(number: int, data: Any, pages: Sequence[str]) -> StoryStep:
             raise BadInput("via must be a list of frequencies in Hz.")
         for frequency in via:
             shown.evolve(f=frequency)
+        if "expect" not in data:
+            raise BadInput("it needs expect, the expected motion.")
         return StoryStep(_text(data, "say", "it"), str(data.get("ask", "")), str(data.get("answer", "")), shown,
                          _expect(_table(data, "expect")), tuple(map(float, via)),
                          _one_of(data, "look", ("", *LOOKS)), _one_of(data, "curves", ("", *VIEW_VALUES["curves"])),
@@ -194,6 +196,8 @@ def _step(number: int, data: Any, pages: Sequence[str]) -> StoryStep:
 
 def _expect(data: dict[str, Any]) -> Expect:
     _known(data, _EXPECT_FIELDS, "expect")
+    if "regime" not in data:
+        raise BadInput("expect needs regime, the regime of the motion.")
     regime = _one_of(data, "regime", ("periodic", *NEVER_REPEATING, UNDRIVEN))
     period = data.get("period")
     if (period is None) == (regime == "periodic") or not isinstance(period, (int, type(None))):

@@ -95,6 +95,26 @@ def test_what_a_file_does_not_say_is_chosen_and_the_misfit_is_said(visit: Visit,
     is_read_strictly(page)
 
 
+#: Drops a file on the element that has this selector; returns whether the browser would have left the page for it.
+DROP = """([selector, name, text]) => {
+    const dataTransfer = new DataTransfer();
+    dataTransfer.items.add(new File([text], name));
+    const send = (type) => document.querySelector(selector).dispatchEvent(
+        new DragEvent(type, { dataTransfer, bubbles: true, composed: true, cancelable: true }));
+    return [send("dragover"), send("drop")];
+}"""
+
+
+def test_a_file_dropped_anywhere_is_read_in_its_tab(visit: Visit) -> None:
+    """Otherwise, the browser would leave the page for the file, and the session's results would be lost."""
+    page = visit()
+    settled(page)
+    for selector, frequency in (("#stage", 60), ("#bar", 70)):
+        text = f"frequency_Hz,force_N\n40,5.5\n{frequency},12.1\n"
+        assert page.evaluate(DROP, [selector, "mine.csv", text]) == [False, False], "the browser's own action must be prevented"
+        expect(page.locator("#tabs")).to_contain_text(f"2 points, 40 to {frequency} Hz")
+
+
 def is_read_strictly(page: Page) -> None:
     """Check that a bad line is named, and that a file too large to be sent is refused beforehand."""
     chosen = page.locator('input[type="file"]')

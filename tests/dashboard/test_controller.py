@@ -11,12 +11,14 @@ import pytest
 from bokeh.events import Tap
 from headless_dashboard import Dashboard
 
+from app.dashboard.sentences import SENT_UNASKED
 from app.dashboard.table import PAGES, watched_pages
 from app.pages.data import page as data_page
 from app.serve.compiling.compiler import COMPILER
 from app.serve.http.limits import LARGEST_UPLOAD
 from app.session.initial_state import MOST_BEADS_IN_LINK
 from app.session.page import all_actions
+from tools.dashboard_tables import messages_of_the_browser
 
 
 @pytest.mark.parametrize(("message", "sentence"), [
@@ -89,10 +91,68 @@ def test_each_page_and_the_curve_hear_whether_somebody_looks(dashboard: Dashboar
     assert not dashboard.session.sentence
 
 
-@pytest.mark.parametrize(("name", "value"), [("regimes", True), (None, True), (["map"], True), ("map", "yes"), ("map", None)])
-def test_what_is_no_page_or_no_answer_is_refused(dashboard: Dashboard, name: object, value: object) -> None:
-    dashboard.receive({"do": "visible", "name": name, "value": value})
-    assert dashboard.session.sentence == f"There is no page {str(name)!r} to look at."
+@pytest.mark.parametrize(("message", "sentence"), [
+    ({"do": "visible", "name": "stability-page", "value": True}, "Unknown page 'stability-page'; the nearest is 'stability'"),
+    ({"do": "visible", "name": None, "value": True}, "Unknown page 'None'; the nearest is"),
+    ({"do": "visible", "name": ["map"], "value": True}, "Unknown page \"['map']\"; the nearest is 'map'"),
+    ({"do": "curve", "name": "ups", "value": True}, "Unknown curve 'ups'; the nearest is 'up'"),
+    ({"do": "theme", "value": "darkest"}, "Unknown theme 'darkest'; the nearest is 'dark'"),
+    ({"do": "ready", "compact": False, "theme": "darkest"}, "Unknown theme 'darkest'; the nearest is 'dark'"),
+    ({"do": "mode", "value": "alive"}, "Unknown mode 'alive'; the nearest is 'live'"),
+    ({"do": "start", "value": "resting"}, "Unknown start 'resting'; the nearest is 'rest'"),
+    ({"do": "scale", "value": True}, "Unknown scale 'True'; the nearest is"),
+    ({"do": "restore", "name": "kapa"}, "Unknown knob 'kapa'; the nearest is 'kappa'"),
+    ({"do": "export", "what": "hdf"}, "Unknown file to save 'hdf'; the nearest is 'hdf5'"),
+    ({"do": "story-open", "name": "solitary", "step": 1}, "Unknown story 'solitary'; the nearest is 'solitary-wave'")])
+def test_an_unknown_name_is_refused_with_the_nearest(dashboard: Dashboard, message: dict[str, Any], sentence: str) -> None:
+    dashboard.receive(message)
+    assert dashboard.session.sentence.startswith(sentence)
+
+
+@pytest.mark.parametrize("wrong", ["no", "false", 0, 1, None, [True]])
+@pytest.mark.parametrize("message", [
+    {"do": "playing"}, {"do": "compact"}, {"do": "curve", "name": "rest"}, {"do": "visible", "name": "map"},
+    {"do": "stability-observer"}, {"do": "switch", "name": "dashpot"}])
+def test_a_switch_is_true_or_false(dashboard: Dashboard, message: dict[str, Any], wrong: object) -> None:
+    """Otherwise "no" would play, and "false" would switch a curve on."""
+    before = dashboard.session.link, dashboard.session.playing, dashboard.curves.selection(dashboard.session.scene)
+    dashboard.receive({**message, "value": wrong})
+    assert dashboard.session.sentence.endswith("is neither true nor false.")
+    assert (dashboard.session.link, dashboard.session.playing, dashboard.curves.selection(dashboard.session.scene)) == before
+
+
+@pytest.mark.parametrize("message", [
+    {"do": "ready", "theme": "light", "compact": "no"}, {"do": "reconnected", "playing": "no"},
+    {"do": "reconnected", "playing": True, "uploaded": "no"}])
+def test_the_switches_of_a_page_that_begins_are_true_or_false(dashboard: Dashboard, message: dict[str, Any]) -> None:
+    dashboard.receive(message)
+    assert dashboard.session.sentence.endswith("is neither true nor false.") and dashboard.session.playing
+
+
+@pytest.mark.parametrize("message", [
+    {"do": "speed", "value": 2}, {"do": "scale", "value": "fit"}, {"do": "start", "value": "previous"},
+    {"do": "mode", "value": "settled"}, {"do": "reset"}, {"do": "curve", "name": "up", "value": True}, {"do": "curve-stop"},
+    {"do": "share"}, {"do": "gallery"}, {"do": "set", "name": "f", "value": 400.0}, {"do": "restore", "name": "f"},
+    {"do": "dismiss-sentence"}, {"do": "story-close"}, {"do": "measurement-sample"}])
+def test_a_refusal_stays_until_the_next_valid_action_of_the_visitor(dashboard: Dashboard, message: dict[str, Any]) -> None:
+    dashboard.receive({"do": "set", "name": "f", "value": -1})
+    refusal = dashboard.session.sentence
+    for unasked in ({"do": "ping"}, {"do": "compact", "value": False}, {"do": "visible", "name": "map", "value": True},
+                    {"do": "painted", "number": 1}, {"do": "theme", "value": "dark"}, {"do": "playing", "value": True}):
+        dashboard.receive(unasked)
+        assert dashboard.session.sentence == refusal, "the browser also sends this when the visitor does nothing"
+    dashboard.receive(message)
+    assert dashboard.session.sentence == "" and dashboard.views.status_line.state["sentence"] == ""
+
+
+def test_an_action_that_is_refused_replaces_the_refusal_before(dashboard: Dashboard) -> None:
+    dashboard.receive({"do": "set", "name": "f", "value": -1})
+    dashboard.receive({"do": "speed", "value": 3})
+    assert dashboard.session.sentence.startswith("speed '3' is not one of")
+
+
+def test_every_message_that_leaves_the_sentence_is_a_message() -> None:
+    assert {name for names in messages_of_the_browser().values() for name in names} >= SENT_UNASKED
 
 
 def test_a_reconnected_page_has_its_pause_back_and_the_rest_from_its_link(dashboard: Dashboard) -> None:

@@ -14,6 +14,7 @@ def test_another_theme_reaches_the_pages_and_their_figures(dashboard: Dashboard)
         page.theme_changed = told.append  # type: ignore[method-assign]
     dashboard.receive({"do": "theme", "value": "dark"})
     dashboard.receive({"do": "theme", "value": "none of them"})
+    assert dashboard.session.sentence.startswith("Unknown theme 'none of them'; the nearest is ")
     assert told == [THEMES["dark"]] * len(dashboard.pages)
     assert dashboard.views.overlays["branches"].theme == THEMES["dark"]  # type: ignore[attr-defined]
 

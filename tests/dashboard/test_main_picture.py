@@ -45,8 +45,19 @@ def test_a_refusal_belongs_to_the_scene_that_was_refused(dashboard: Dashboard) -
     dashboard.session.scene = refused
     dashboard.show_failure(RefusedPicture(refused, "It would take long."))
     assert dashboard.views.status_line.state["insist"]
+    dashboard.receive({"do": "speed", "value": 2})
+    assert dashboard.views.status_line.state["insist"], "the picture still does not follow the knobs"
     dashboard.show_failure(BadInput("Something else."))
     assert not dashboard.views.status_line.state["insist"]
+
+
+@pytest.mark.parametrize("message", [{"do": "start", "value": "previous"}, {"do": "reset"}, {"do": "mode", "value": "settled"},
+                                     {"do": "set", "name": "f", "value": 400.0}])
+def test_a_refusal_ends_when_another_picture_is_requested(dashboard: Dashboard, message: dict[str, Any]) -> None:
+    """If that picture would take too long as well, it is refused anew."""
+    dashboard.show_failure(RefusedPicture(dashboard.session.scene, "It would take long."))
+    dashboard.receive(message)
+    assert dashboard.session.sentence == "" and not dashboard.views.status_line.state["insist"]
 
 
 def test_another_scale_leaves_a_paused_chain_where_it_is(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:

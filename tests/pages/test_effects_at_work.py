@@ -103,5 +103,7 @@ def test_a_switch_turns_knobs_and_a_wrong_one_is_refused(tab: PageUnderTest) -> 
     tab.do("switch", name="dashpot", value=False)
     ((scene, state, mode),) = tab.host.shown
     assert not present("dashpot", scene, False) and (state, mode) == (None, "settled")
-    with pytest.raises(BadInput, match="There is no effect 'gravity field' to switch"):
-        tab.do("switch", name="gravity field", value=True)
+    with pytest.raises(BadInput, match="Unknown effect 'foundations'; the nearest is 'foundation'"):
+        tab.do("switch", name="foundations", value=True)
+    with pytest.raises(BadInput, match="The value 'yes' of dashpot is neither true nor false"):
+        tab.do("switch", name="dashpot", value="yes")

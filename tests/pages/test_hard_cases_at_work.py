@@ -96,5 +96,5 @@ def test_its_process_ends_with_the_visit(page: PageUnderTest) -> None:
 
 
 def test_a_case_that_does_not_exist_is_refused(page: PageUnderTest) -> None:
-    with pytest.raises(BadInput, match="There is no hard case 'none'"):
+    with pytest.raises(BadInput, match="Unknown hard case 'none'; the nearest is "):
         page.do("hard-cases-run", case="none")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.session.message_checks import check_index, check_integer
+from app.session.message_checks import check_bool, check_choice, check_index, check_integer
 from granchain_core import BadInput
 
 
@@ -20,3 +20,17 @@ def test_only_a_place_of_the_list_is_found(wrong: object) -> None:
     with pytest.raises(BadInput, match="That orbit is no longer on the page"):
         check_index("orbit", ["first", "second"], wrong)
     assert check_index("orbit", ["first", "second"], 1) == "second"
+
+
+@pytest.mark.parametrize("wrong", [None, 0, 1, "true", "", [True]])
+def test_only_true_and_false_pass(wrong: object) -> None:
+    with pytest.raises(BadInput, match="of playing is neither true nor false"):
+        check_bool("playing", wrong)
+    assert check_bool("playing", True) and not check_bool("playing", False)
+
+
+@pytest.mark.parametrize("wrong", [None, True, "lite", ["light"], "light" * 30_000])
+def test_only_a_known_name_passes(wrong: object) -> None:
+    with pytest.raises(BadInput, match=r"Unknown theme .*; the nearest is '(?:light|dark)'; known: dark, light[.]"):
+        check_choice("theme", wrong, ("light", "dark"))
+    assert check_choice("theme", "dark", ("light", "dark")) == "dark"

@@ -79,6 +79,8 @@ def test_numbers_stand_in_the_text(tmp_path: Path) -> None:
     ('"sec2"', '"sec3"', "step 1: Unknown scene 'sec3'"),
     ("f = 340.0", "f = -1.0", "step 1: drive frequency f"),
     ("say =", "sya =", "step 1: Unknown field of a step 'sya'"),
+    ("expect =", "# expect =", "step 1: it needs expect, the expected motion."),
+    ('regime = "periodic", ', "", "step 1: expect needs regime"),
     ("period = 1, ", "", "only a periodic motion has a period"),
     ("output = 0.6285", "output = 0", "expect needs output"),
     ("output =", "speed = 260.0, output =", "only a motion without a drive has a pulse"),

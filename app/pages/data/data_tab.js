@@ -5,7 +5,7 @@ import { button, download, element, paragraph, table } from "../../parts/toolkit
 const FORM =
   "A curve of frequency and largest force, or a series of time, input and output force: CSV or TSV from any " +
   "spreadsheet, WebPlotDigitizer, HDF5 or netCDF-4. " +
-  "You will be asked about anything the file leaves open.";
+  "Choose it, or drop it anywhere on the page. You will be asked about anything the file leaves open.";
 const SENSITIVITY = "V, with its sensor's sensitivity";
 const CHUNK = 0x8000; // bytes converted to text at once
 
@@ -20,7 +20,23 @@ async function base64Of(file) {
 async function sendFile(model, [chosen]) {
   if (!chosen) return;
   if (chosen.size > model.state.largest_file) model.send_msg({ do: "measurement-too-large", name: chosen.name });
-  else model.send_msg({ do: "measurement", name: chosen.name, content: await base64Of(chosen) });
+  else model.send_msg({ do: "measurement", name: chosen.name, content: await base64Of(chosen).catch(() => null) });
+}
+
+// Reads a file that is dropped anywhere on the page as if it had been chosen in this tab, and calls `accepted`. Without
+// this, the browser would leave the page to show the file. The server refuses what cannot be read, such as a folder.
+export function acceptDroppedFiles(model, accepted) {
+  const hasFile = (event) => event.dataTransfer?.types.includes("Files");
+  document.addEventListener("dragover", (event) => {
+    if (hasFile(event)) event.preventDefault();
+  });
+  document.addEventListener("drop", (event) => {
+    if (!hasFile(event)) return;
+    event.preventDefault();
+    if (window.granchain.connection.lost) return;
+    accepted();
+    sendFile(model, event.dataTransfer.files);
+  });
 }
 
 // Lets the browser save the sample file that the server sent.

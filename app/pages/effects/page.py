@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 from typing import Any
 
-from granchain_core import BadInput, Scene
+from granchain_core import Scene
 from granchain_core.accuracy.effect_cost import CODE, MOTION, EffectCost, Variant, effect_cost
 from granchain_core.integrate.scaling import slots_of
 from granchain_core.precompile.pieces import COST_ACCOUNT_KERNELS, COST_KERNELS
@@ -18,7 +18,7 @@ from ...serve.computing.worker_pools import MEASUREMENTS
 from ...session.activities import Activity
 from ...session.debounce import Debounce
 from ...session.host import PageHost
-from ...session.message_checks import quoted
+from ...session.message_checks import check_bool, check_choice
 from ...session.page import Actions, Page
 from ...session.progress import UNDER_WAY, activity_state
 from ...session.switches import SWITCHES, present, refusal, variants
@@ -83,9 +83,8 @@ class EffectsPage(Page):
             self._poll(self._round)
 
     def _switch(self, message: dict[str, Any]) -> None:
-        name, on = message.get("name"), message.get("value")
-        if not isinstance(name, str) or name not in SWITCHES or not isinstance(on, bool):
-            raise BadInput(f"There is no effect {quoted(name)} to switch.")
+        name = check_choice("effect", message.get("name"), SWITCHES)
+        on = check_bool(name, message.get("value"))
         try:
             session = self._host.session
             session.switch(name, on)

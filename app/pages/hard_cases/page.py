@@ -5,13 +5,13 @@ from __future__ import annotations
 from functools import partial
 from typing import Any
 
-from granchain_core import BadInput, ComputationError
+from granchain_core import ComputationError
 from granchain_core.hard_cases import CASES, Case, Check, Picture
 
 from ...serve.computing.worker_pools import MEASUREMENTS
 from ...session.activities import Activity
 from ...session.host import PageHost
-from ...session.message_checks import quoted
+from ...session.message_checks import check_choice
 from ...session.page import Actions, Page
 from ...session.progress import Status, StatusWords, activity_state
 from ...session.task import Job, Task
@@ -62,10 +62,8 @@ class HardCasesPage(Page):
     # The visitor's actions
 
     def _run_one(self, message: dict[str, Any]) -> None:
-        case = case_of(message.get("case"))
-        if case is None:
-            raise BadInput(f"There is no hard case {quoted(message.get('case'))}; reload the page.")
-        self._run((case,))
+        name = check_choice("hard case", message.get("case"), (case.name for case in CASES))
+        self._run(tuple(case for case in CASES if case.name == name))
 
     def _run(self, cases: tuple[Case, ...]) -> None:
         idle = not self.waiting

@@ -1,4 +1,7 @@
-"""The page "The paper" of one session: it computes a figure when it is chosen, and stops when the page is left."""
+"""The page "The paper" of one session: it computes a chosen figure to its end.
+
+The computation continues while the page is closed. Only "stop", another figure or the end of the session ends it.
+"""
 
 from __future__ import annotations
 

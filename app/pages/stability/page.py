@@ -16,7 +16,7 @@ from ...serve.computing.worker_pools import ANALYSES
 from ...session.activities import Activity
 from ...session.debounce import Debounce
 from ...session.host import PageHost
-from ...session.message_checks import check_integer
+from ...session.message_checks import check_bool, check_integer
 from ...session.page import Actions, Page
 from ...session.progress import OFF, Status, StatusWords, activity_state, is_under_way
 from ...session.task import Job, Task
@@ -235,7 +235,7 @@ class StabilityPage(Page):
     # The visitor's actions
 
     def _choose_observer(self, message: dict[str, Any]) -> None:
-        self._observer = bool(message.get("value"))
+        self._observer = check_bool("observer", message.get("value"))
         self._view.update_state(observer=self._observer)
         self._again()
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 from functools import cache, partial
 from typing import Any
 
-from granchain_core import BadInput, Settled, State
+from granchain_core import Settled, State
 
 from ...parts.toolkit.component import Component
 from ...serve.compiling.compiler import PICTURE_PIECES
 from ...serve.computing.worker_pools import ANALYSES
 from ...session.host import PageHost
-from ...session.message_checks import check_integer
+from ...session.message_checks import check_choice, check_integer
 from ...session.page import Actions, Page
 from ...session.stories import Story, StoryStep, state_before, stories, told_words
 from ...session.task import Job, Task, report_nothing
@@ -76,9 +76,7 @@ class StoriesPage(Page):
                 "look": story.steps[number - 1].look, "page": story.steps[number - 1].page, **words}
 
     def _open(self, message: dict[str, Any]) -> None:
-        story = self._stories.get(str(message.get("name")))
-        if story is None:
-            raise BadInput("This story no longer exists; reload the page.")
+        story = self._stories[check_choice("story", message.get("name"), self._stories)]
         number = check_integer("step", message.get("step"), 1, len(story.steps))
         step = story.steps[number - 1]
         self._host.session.story = f"{story.name}.{number}"

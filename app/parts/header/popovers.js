@@ -28,12 +28,21 @@ const HELP = [
 const KEYS = [
   ["?", "this help, unless it is switched off below"],
   ["Space", "play or pause"],
-  ["Ctrl-Z", "undo; Ctrl-Shift-Z: redo; the browser's back and forward do the same"],
+  ["Ctrl-Z", "undo; Ctrl-Shift-Z or Ctrl-Y: redo; the browser's back and forward do the same"],
   ["Tab", "to the next control; Shift-Tab: back"],
-  ["← →", "on a knob: fine steps, with Shift coarse; on tabs: the next tab; on the parameter map: the next cell"],
-  ["Delete", "on a knob: back to the scene's value"],
-  ["↑ ↓", "on the time cursor: one sample; Page ↑ and ↓: one drive period; Home and End: the ends"],
-  ["Enter", "on the name of a peak: go there; in a knob's number: apply it"],
+  [
+    "← →",
+    "on a knob: fine steps, with Shift coarse; on tabs: the next tab, with Home and End the first and the last; on the parameter map: the next cell; on the multipliers in Stability: the next one",
+  ],
+  [
+    "↑ ↓",
+    "on a knob and in its number: as ← →; on the parameter map: the next cell; on the time cursor: one sample; Page ↑ and ↓: one drive period; Home and End: the ends",
+  ],
+  ["Delete", "or Backspace, on a knob: back to the scene's value"],
+  [
+    "Enter",
+    "on the name of a peak: go there; in a knob's number: apply it; on the parameter map: go to the cell chosen with the arrow keys",
+  ],
   ["Esc", "close whatever is open"],
 ];
 

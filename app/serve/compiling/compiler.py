@@ -1,7 +1,7 @@
 """Compiling outside the server process, so that only the session that needs the kernels waits.
 
 Numba holds the GIL while it compiles. Kernels that are not cached yet are therefore compiled in separate processes, and
-the server then loads them from the cache.
+the server then loads them from the cache. If such a process fails, the server does not compile in its place.
 """
 
 from __future__ import annotations
@@ -25,6 +25,9 @@ from ..computing.worker_pools import COMPILATIONS, LOADING
 #: Time between two checks of a stop flag while another process compiles [s].
 _STOP_CHECK_INTERVAL = 0.05
 
+#: Processes that are started for a piece if each is killed, for example because memory is short.
+ATTEMPTS = 3
+
 log = logging.getLogger("granchain")
 
 #: The kernels of the main picture and its curve.
@@ -37,15 +40,30 @@ def compiling_words(what: str, piece: str) -> str:
     return f"compiling {what}: about {COMPILE_SECONDS[piece]} s, only the first time on this computer"
 
 
+class CompilationFailed(Exception):
+    """Kernels that no process has compiled."""
+
+
 def _compile(scene: Scene, piece: str) -> None:
-    """Compile in another process, or in this one if no other can be started."""
+    """Compile in another process; in a new one, up to `ATTEMPTS` in all, if it is killed or cannot be started.
+
+    Raises `CompilationFailed`. A process that ends by itself with an error would do so again, so it has one attempt.
+    """
     command = [sys.executable, "-m", f"{__package__}.compiling_process", str(os.getpid()), piece]
-    try:  # in its own process session, out of reach of a terminal's Ctrl-C; its stderr is the server's
-        subprocess.run(command, input=json.dumps(scene.to_json()), text=True, cwd=_ROOT, check=True,
-                       stdout=subprocess.DEVNULL, start_new_session=True)
-    except (OSError, subprocess.CalledProcessError) as problem:
-        log.warning("compiling %s in another process failed: %s", piece, problem)
-        compile_piece(scene, piece)
+    for attempt in range(1, ATTEMPTS + 1):
+        try:  # in its own process session, out of reach of a terminal's Ctrl-C; its stderr is the server's
+            ended = subprocess.run(command, input=json.dumps(scene.to_json()), text=True, cwd=_ROOT, check=False,
+                                   stdout=subprocess.DEVNULL, start_new_session=True)
+        except OSError as problem:
+            reason, again = f"its process could not be started ({problem})", True
+        else:
+            if ended.returncode == 0:
+                return
+            reason, again = f"its process ended with status {ended.returncode}", ended.returncode < 0
+        log.warning("compiling %s failed: %s, attempt %d of %d", piece, reason, attempt, ATTEMPTS)
+        if not again:
+            break
+    raise CompilationFailed(f"compiling {piece} failed: {reason}")
 
 
 def _log_failure(ended: Future[None]) -> None:

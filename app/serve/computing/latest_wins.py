@@ -72,8 +72,8 @@ class LatestWins:
     """Runs at most one computation and keeps at most one waiting request; a newer request replaces the waiting one.
 
     A computation is an iterator of ever better results. A newer request stops a computation at once if it has had its
-    first result. A computation without a result may continue for up to a second: if every request stopped it, the page
-    would show no new picture during a drag.
+    first result. A computation without a result may continue for up to `_FIRST_RESULT_TIME`: if every request stopped
+    it, the page would show no new picture during a drag.
     """
 
     def __init__(self, deliver: Callable[[object], None], fail: Callable[[Exception], None],
@@ -117,7 +117,7 @@ class LatestWins:
             raise
 
     def _give_up(self, stop: TurnFlag) -> None:
-        """Stop a computation that has no result after a second if newer work is waiting."""
+        """Stop a computation that has no result after `_FIRST_RESULT_TIME` if newer work is waiting."""
         with self._lock:
             if self._stop is stop and self._waiting is not None:
                 stop.set()
