@@ -4,9 +4,10 @@
 
 The output is {kernel: {case: counts}}. For `chain` (one chain in a register, including its split step) and `batch`
 (eight chains), it counts the vector instructions in the machine code, with only contacts and driver and with one more
-effect; and, in the loops that take the steps, the vector instructions with an operand on the stack. For `flow` (Dormand and Prince's method with tangents), it counts the multiplications in LLVM's optimised code,
-with no effects and with all; `by_zero` counts those by a constant 0. Only freshly compiled code can be read, since
-kernels that are loaded from the cache contain no text.
+effect; in the inner loops, it also counts those with an operand on the stack. For `flow` (Dormand and Prince's method
+with tangents), it counts the multiplications in LLVM's optimised code, with no effects and with all; `by_zero` counts
+those by a constant 0. Only freshly compiled code can be read, since kernels that are loaded from the cache contain no
+text.
 
 The caller pickles `types_by_case()`, which needs engines. The program itself only compiles, for the processor that the
 environment names, which may differ from the one that it runs on.

@@ -13,8 +13,8 @@ Options:
 
 * `nogil`, so that threads really run kernels in parallel; not for brief kernels (`brief_kernel`).
 * The flags of `FAST_MATH`:
-  - `reassoc`: sums are vectorised. With `nsz` it may cancel a NaN, as in (x + y) − y, so the state itself is checked for
-    being finite.
+  - `reassoc`: sums are vectorised. With `nsz` it may cancel a NaN, as in (x + y) − y, so the state itself is checked
+    for being finite.
   - `nsz`: `x + 0.0` folds away; `x * 0.0` does not, so the code for an absent effect must not multiply by zero. No
     kernel depends on the sign of a zero: comparisons see none, and `copysign` (rk4/contact_events.py) takes the rate of
     an overlap, whose sign matters only if it is not 0.

@@ -55,7 +55,7 @@ def settle_starts(starts: Iterable[Start], stop: Stop) -> Iterator[SteadyState]:
 
 
 def threads_for(example: Scene, workers: int | None = None) -> int:
-    """Return the number of threads: `workers`, by default one for each core, but only as many as have memory for a batch.
+    """Return the number of threads: `workers`, by default one for each core, but no more than have memory for a batch.
 
     Results do not depend on it. Raises `BadInput` if the memory is too small for one batch.
     """
