@@ -6,8 +6,8 @@
   methods (docs/method.md), hard cases (docs/hard-cases.md), knobs (docs/model.md), equations and scenes (README.md),
   commands (README.md, docs/command-line.md), drives by a formula (docs/scenes.md), marks of figures (docs/marks.md),
   special points and their names in AUTO and MatCont (docs/branches.md, glossary.md), library internals
-  (docs/libraries.md), metrics (docs/deployment.md), the map of the code (docs/design.md), the dashboard's messages and
-  worker pools (docs/dashboard.md);
+  (docs/libraries.md), names of Numba and LLVM (docs/compiling.md), metrics (docs/deployment.md), the map of the code
+  (docs/design.md), the dashboard's messages and worker pools (docs/dashboard.md);
 - the table of steps in each recipe docs/add-….md;
 - numbers from the code in sentences of the docs (tools/numbers.py);
 - a row for every new scene in the test of share links (tools/links.py);
@@ -48,6 +48,7 @@ from tools.marks import (
     table_of_regime_marks,
     table_of_special_points,
 )
+from tools.numba_names import table_of_intrinsics, table_of_numba_names
 from tools.numbers import marks, with_numbers
 from tools.special_kinds import table_of_kinds, table_of_terms
 from tools.thresholds import (
@@ -92,6 +93,8 @@ _TABLES = (
     ("docs/marks.md", "marks of regimes", table_of_regime_marks),
     ("docs/marks.md", "lines over time", table_of_lines_over_time),
     ("docs/libraries.md", "libraries", table_of_libraries),
+    ("docs/compiling.md", "names of Numba", table_of_numba_names),
+    ("docs/compiling.md", "intrinsics", table_of_intrinsics),
     ("docs/deployment.md", "metrics", table_of_metrics),
     ("docs/python.md", "former names", table_of_former_names),
     ("docs/deployment.md", "stages of a picture", table_of_picture_stages),

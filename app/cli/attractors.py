@@ -6,7 +6,10 @@ import argparse
 import sys
 from typing import TYPE_CHECKING, Any
 
+from granchain_core.precompile.pieces import BESIDE_A_BATCH
+
 from .common import chosen_scene, in_background, say, show_json, show_percent
+from .compiling import compiling_beside
 from .forces import forces_json
 from .options import add_json, add_out, add_scene, whole
 from .picture import add_option as add_picture
@@ -39,8 +42,9 @@ def do(arguments: argparse.Namespace) -> None:
     check_range("--random-states", arguments.random_states, 0, MOST_STATES)
     check_range("--seed", arguments.seed, 0, 2**63 - 1)
     progress = show_percent if sys.stderr.isatty() else None
-    result = in_background(lambda stop: attractors(chosen, arguments.random_states, arguments.seed, stop, progress),
-                           reports=True)
+    with compiling_beside(chosen, *BESIDE_A_BATCH):
+        result = in_background(lambda stop: attractors(chosen, arguments.random_states, arguments.seed, stop, progress),
+                               reports=True)
     write_files(arguments, f"Attractors of {chosen.name}", result)
     if arguments.json:
         show_json(_json(result, arguments))

@@ -8,7 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from granchain_core.precompile.pieces import BESIDE_A_BATCH
+
 from .common import chosen_scene, in_background, show_json, show_percent
+from .compiling import compiling_beside
 from .options import add_json, add_out, add_scene, values_from
 from .picture import add_option as add_picture
 from .picture import check_files, write_files
@@ -38,8 +41,9 @@ def do(arguments: argparse.Namespace) -> None:
     (x, x_ends, x_spaced), (y, y_ends, y_spaced) = (
         values_from(option, text, MOST_CELLS) for option, text in (("--x", arguments.x), ("--y", arguments.y)))
     progress = show_percent if sys.stderr.isatty() else None
-    result = in_background(lambda stop: basins(chosen, (x, x_spaced(*x_ends)), (y, y_spaced(*y_ends)), stop, progress),
-                           reports=True)
+    starts = (x, x_spaced(*x_ends)), (y, y_spaced(*y_ends))
+    with compiling_beside(chosen, *BESIDE_A_BATCH):
+        result = in_background(lambda stop: basins(chosen, *starts, stop, progress), reports=True)
     write_files(arguments, f"Basins of {chosen.name}", result)
     if arguments.json:
         show_json(_json(result))

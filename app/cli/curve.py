@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from granchain_core import BadInput
-from granchain_core.precompile.pieces import CHECK_KERNELS, FIXED_STEP_KERNELS
+from granchain_core.precompile.pieces import BESIDE_A_BATCH
 
 from .checkpoints import add_resume, finished, writing_checkpoints
 from .common import (
@@ -71,7 +71,7 @@ def do(arguments: argparse.Namespace) -> int:
         raise BadInput(f"--from {low:g} is above --to {high:g}; exchange them, and sweep with --start down.")
     measured = _measured(arguments)
     amplitude = chosen_amplitude(arguments, chosen)
-    with compiling_beside(chosen, CHECK_KERNELS, FIXED_STEP_KERNELS):
+    with compiling_beside(chosen, *BESIDE_A_BATCH):
         swept = _swept(arguments, CurveRequest(chosen, tuple(np.linspace(low, high, arguments.points).tolist()),
                                                arguments.start, amplitude))
     write_picture(arguments.picture, f"Resonance curve of {chosen.name}", swept, elastic=arguments.elastic,

@@ -19,7 +19,7 @@ from granchain_core.parameter_maps import Axis, Grid, ParameterMap, iter_paramet
 from granchain_core.parameter_maps.blocks import Blocks
 from granchain_core.parameter_maps.cells import CELL_REGIMES, ERRORS, cell_of
 from granchain_core.parameter_maps.grid import MOST_CELLS
-from granchain_core.precompile.pieces import FIXED_STEP_KERNELS
+from granchain_core.precompile.pieces import BESIDE_A_BATCH
 from granchain_core.scene.quantities import QUANTITIES
 
 from .checkpoints import add_resume, finished, writing_checkpoints
@@ -31,6 +31,7 @@ from .common import (
     say,
     say_if,
     show_json,
+    show_percent,
     unbroken,
 )
 from .compiling import compiling_beside
@@ -99,7 +100,7 @@ def _found(arguments: argparse.Namespace, grid: Grid) -> tuple[ParameterMap, int
     done = [0]
     with scheduler_of(arguments) as client:
         blocks = Blocks.open(grid, arguments.out, arguments.resume)
-        with (compiling_beside(grid.scene, FIXED_STEP_KERNELS),
+        with (compiling_beside(grid.scene, *BESIDE_A_BATCH),
               writing_checkpoints(blocks.folder, lambda: f"{done[0]} of {grid.size} cells")):
             parameter_map, computed = in_background(lambda stop: _filled(blocks, client, stop, done), reports=True)
     with unbroken(arguments.out):
@@ -129,7 +130,7 @@ def _filled(blocks: Blocks, client: Any, stop: Stop, done: list[int]) -> tuple[P
         blocks.add(rows)
         done[0] += len(rows)
         if sys.stderr.isatty():
-            print(f"\r{100 * done[0] / grid.size:3.0f} %", end="", file=sys.stderr, flush=True)
+            show_percent(done[0] / grid.size)
     if done[0] < grid.size:
         raise Cancelled
     return ParameterMap(grid, cells, time.perf_counter() - began), len(missing)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ..former_names import KEYS
 from .common import chosen_scene, finite_or_null, in_background, show_json
 from .forces import energy_in_words, warn
-from .options import add_json, add_out, add_scene, whole
+from .options import add_result, whole
 from .picture import add_option as add_picture
 from .picture import check_files, write_files
 
@@ -19,11 +19,8 @@ if TYPE_CHECKING:
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `pulse`."""
-    add_scene(parser)
-    parser.add_argument("--accuracy", metavar="E", help="the same as --set accuracy=E")
+    add_result(parser)
     parser.add_argument("--samples", type=whole, default=4000, metavar="S", help="samples in the time 1/f")
-    add_out(parser)
-    add_json(parser)
     add_picture(parser)
 
 

@@ -20,7 +20,7 @@ SCIPY = "scipy "
 
 @dataclass(frozen=True)
 class MeasuredMethod:
-    """A method's presentation; `family` is "granchain", "naive" (in (u, v)) or "scipy"."""
+    """A method's presentation; `family` is "granchain", "naive" or "scipy"."""
 
     name: str
     title: str
@@ -42,7 +42,7 @@ class MeasuredSetting:
 
 def compared_methods() -> dict[str, MeasuredMethod]:
     """Return every method that can be measured, by name: the current table of methods, then SciPy's solvers."""
-    own = [MeasuredMethod(m.name, m.title, "naive" if m.variables == "uv" else "granchain", m.observed_order,
+    own = [MeasuredMethod(m.name, m.title, "naive" if m.naive else "granchain", m.observed_order,
                           m.restrictions, m.reference) for m in METHODS.values()]
     others = [MeasuredMethod(SCIPY + s.name, s.title, "scipy", s.order, s.restrictions, s.reference)
               for s in SOLVERS.values()]

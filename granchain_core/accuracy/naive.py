@@ -70,7 +70,7 @@ def naive_comparison(scene: Scene, stop: Stop) -> NaiveComparison:
     result = NaiveComparison(time, true)
     largest = float(np.abs(forces).max())
     for method in METHODS.values():
-        if method.variables != "uv":
+        if not method.naive:
             continue
         for steps in NATURAL_STEPS:
             try:

@@ -59,6 +59,11 @@ def can_share_batch(scene: Scene) -> bool:
     return scene.is_driven and not unknown_slots(scale_chain(scene).slots, "batch")
 
 
+def batch_bytes(beads: int) -> int:
+    """Return the memory of a batch whose chains have this many beads: that of the strobes it keeps, in bytes."""
+    return BATCH_SIZE * 2 * STROBES_KEPT * 2 * (beads + 2) * np.dtype(np.float64).itemsize
+
+
 def is_uniform(scaled: ScaledChain) -> bool:
     """Return whether all beads, and all contacts except the wall's, are equal."""
     chain = scaled.slots.chain

@@ -16,6 +16,9 @@ from ..kernels.status import (
 )
 from ..scene import Scene
 
+#: Most contact events of an orbit that the log of the flow has room for, in all; the log is reserved before the flow
+#: runs, and takes memory only as events are written.
+MOST_EVENTS_OF_ORBIT = 20_000_000
 #: A method with fixed steps, with the command that selects it.
 _FIXED_STEPS = "fixed steps (granchain run --method rk4-split)"
 
@@ -67,6 +70,6 @@ class Failure:
                                     "chatter", time=time, cost=self.cost)
         if self.status == TOO_MANY_EVENTS:
             return ComputationError(f"An orbit has more than {EVENTS_PER_CONTACT} contact events per contact and drive "
-                                    f"period {when}; raise the frequency f.", "too-many-events", time=time,
-                                    cost=self.cost)
+                                    f"period, or {MOST_EVENTS_OF_ORBIT:.0e} in all, {when}; raise the frequency f.",
+                                    "too-many-events", time=time, cost=self.cost)
         raise ValueError(f"{self.status} is not the status of a computation that failed")

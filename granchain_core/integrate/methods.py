@@ -13,6 +13,7 @@ from ..inputs.checks import unknown_name
 from ..kernels.naive import Rk4Naive, VerletNaive
 from ..kernels.rk4.step import Rk4, Rk4Split
 from ..scene.hertz import EXPONENT
+from ..scene.laws import LAWS
 from .dop853 import Dop853Stepper
 from .dop853_root import Dop853RootStepper
 from .fixed import SHORT_CHAIN, FixedStep, FixedStepInVelocity
@@ -104,11 +105,26 @@ class StepCost:
 
 
 @dataclass(frozen=True)
+class MakeStepper:
+    """Makes a method's `Stepper` from a setting, a scaled chain and the samples per period.
+
+    `has_account` says whether the stepper's equations and kernels support the energy account.
+    """
+
+    make: Callable[[MethodSetting, ScaledChain, int], Stepper]
+    has_account: bool = True
+
+    def __call__(self, setting: MethodSetting, scaled: ScaledChain, samples: int) -> Stepper:
+        """Make the stepper."""
+        return self.make(setting, scaled, samples)
+
+
+@dataclass(frozen=True)
 class Method:
     """A method of integration: a row of `METHODS`.
 
-    `tests/numerics/test_orders.py` derives the theoretical orders and measures the observed ones: the smallest over all
-    damping laws, and for methods with error control with respect to the mean step.
+    Theoretical and observed orders are the smallest over all damping laws; docs/method.md derives the theoretical ones.
+    `tests/numerics/test_orders.py` measures both, for methods with error control with respect to the mean step.
 
     Attributes
     ----------
@@ -126,18 +142,16 @@ class Method:
         Whether it is symplectic without damping.
     restrictions, reference : str
         Its restrictions; its source.
-    stepper : callable
-        Makes the method's `Stepper` from a setting, a scaled chain and the samples per period.
+    stepper : MakeStepper
+        Makes the method's `Stepper`; it also has its variables, and whether it supports the energy account.
     cost : StepCost
         Time of a step.
     usual_error : float
         Relative error at the default step, or in units of the tolerance; 0 if unknown.
     converges_regularly : bool
         Whether the error falls by the method's order at every refinement, with or without contact events.
-    variables : str
-        "uw" or "uv".
-    has_account : bool
-        Whether its equations and kernels support the energy account.
+    naive : bool
+        Whether it is an obvious first attempt, which the accuracy page shows as an example of what goes wrong.
     """
 
     name: str
@@ -150,38 +164,48 @@ class Method:
     symplectic: bool
     restrictions: str
     reference: str
-    stepper: Callable[[MethodSetting, ScaledChain, int], Stepper]
+    stepper: MakeStepper
     cost: StepCost
     usual_error: float = 0.0
     converges_regularly: bool = False
-    variables: str = "uw"
+    naive: bool = False
     observed_with_cut: float = math.nan
-    has_account: bool = True
+
+    @property
+    def has_account(self) -> bool:
+        """Whether its equations and kernels support the energy account."""
+        return self.stepper.has_account
 
 
-def _fixed(kind: Any, simd: bool = False) -> Callable[[MethodSetting, ScaledChain, int], Stepper]:
-    """Return a function that makes the stepper of a method with fixed steps in (u, w)."""
-    return lambda setting, scaled, samples: FixedStep(kind(setting.steps_per_period(scaled, samples)), scaled,
-                                                       samples, simd)
+def _fixed(kind: Any, simd: bool = False) -> MakeStepper:
+    """Return what makes the stepper of a method with fixed steps in (u, w)."""
+    return MakeStepper(lambda setting, scaled, samples: FixedStep(kind(setting.steps_per_period(scaled, samples)),
+                                                                  scaled, samples, simd))
 
 
-def _in_velocity(kind: Any) -> Callable[[MethodSetting, ScaledChain, int], Stepper]:
-    """Return a function that makes the stepper of a method with fixed steps in (u, v)."""
-    return lambda setting, scaled, samples: FixedStepInVelocity(kind(setting.steps_per_period(scaled, samples)),
-                                                                 scaled, samples)
+def _in_velocity(kind: Any) -> MakeStepper:
+    """Return what makes the stepper of a method with fixed steps in (u, v), which keeps no energy account."""
+    return MakeStepper(lambda setting, scaled, samples: FixedStepInVelocity(
+        kind(setting.steps_per_period(scaled, samples)), scaled, samples), has_account=False)
 
 
-def _error_controlled(kind: Any) -> Callable[[MethodSetting, ScaledChain, int], Stepper]:
-    """Return a function that makes the stepper of a method with error control."""
-    return lambda setting, scaled, samples: kind(setting.tolerance, scaled, samples)
+def _error_controlled(kind: Any, has_account: bool = True) -> MakeStepper:
+    """Return what makes the stepper of a method with error control."""
+    return MakeStepper(lambda setting, scaled, samples: kind(setting.tolerance, scaled, samples), has_account)
 
+
+#: The order of DOP853's dense output, on which events are located.
+_DENSE_ORDER = 7.0
+#: The smallest exponent a of the damping laws: their forces λ δ^a δ̇ are the least smooth terms at an event.
+_LEAST_SMOOTH = min(law.exponent for law in LAWS.values())
 
 METHODS: dict[str, Method] = {
     m.name: m
     for m in (
         Method(
             name="rk4", title="RK4 in (u, w)",
-            order=4.0, order_at_events=2.0, observed_smooth=4.0, observed_order=2.0,
+            order=4.0, order_at_events=min(2.0 + _LEAST_SMOOTH, 1.0 + EXPONENT),
+            observed_smooth=4.0, observed_order=2.0,
             error_control=False, symplectic=False,
             restrictions="fixed step; order 2 at contact events; a touch shorter than a step is not resolved, and the "
                          "jump of its force is computed from the ends of the step",
@@ -189,7 +213,7 @@ METHODS: dict[str, Method] = {
             observed_with_cut=1.0),
         Method(
             name=RK4_SPLIT, title="RK4 in (u, w), steps split at contact events, quadrature corrected there",
-            order=4.0, order_at_events=3.5, observed_smooth=4.0, observed_order=3.9,
+            order=4.0, order_at_events=2.0 + EXPONENT, observed_smooth=4.0, observed_order=3.9,
             error_control=False, symplectic=False,
             restrictions="fixed step; order 3.5 below errors of about 1e-9, and 1 where tension is cut; in chains of "
                          f"more than {SHORT_CHAIN} beads two events of one inner contact within a step are missed",
@@ -198,34 +222,33 @@ METHODS: dict[str, Method] = {
             observed_with_cut=1.0),
         Method(
             name="rk4-naive", title="RK4 in (u, v), the obvious first attempt",
-            order=4.0, order_at_events=1.0, observed_smooth=4.0, observed_order=1.0,
+            order=4.0, order_at_events=1.0 + _LEAST_SMOOTH, observed_smooth=4.0, observed_order=1.0,
             error_control=False, symplectic=False,
             restrictions="no energy account; its error is irregular where a contact with a dashpot opens or closes; "
                          "touches as with rk4",
-            reference="Kutta 1901", stepper=_in_velocity(Rk4Naive), cost=StepCost(120e-9, 40e-9), variables="uv",
-            has_account=False),
+            reference="Kutta 1901", stepper=_in_velocity(Rk4Naive), cost=StepCost(120e-9, 40e-9), naive=True),
         Method(
             name="verlet-naive", title="velocity Verlet in (u, v), the obvious first attempt",
             order=1.0, order_at_events=1.0, observed_smooth=1.0, observed_order=1.0,
             error_control=False, symplectic=True,
             restrictions="no energy account; symplectic and of order 2 only without damping; touches as with rk4",
             reference="Verlet 1967; Swope et al. 1982", stepper=_in_velocity(VerletNaive), cost=StepCost(80e-9, 12e-9),
-            variables="uv", has_account=False),
+            naive=True),
         Method(
             name=DOP853, title="DOP853, Dormand–Prince 8(5,3), in (u, w), contact events located",
-            order=8.0, order_at_events=7.0, observed_smooth=8.5, observed_order=7.5,
+            order=8.0, order_at_events=_DENSE_ORDER, observed_smooth=8.5, observed_order=7.5,
             error_control=True, symplectic=False, restrictions="errors down to about 1e-12",
             reference="Hairer, Nørsett & Wanner 1993, section II.5", stepper=_error_controlled(Dop853Stepper),
             cost=StepCost(2.5e-6, 480e-9, steps_per_time=5.0, power=0.1), usual_error=1.0, observed_with_cut=7.5),
         Method(
             name="dop853-root", title="DOP853 in (u, w), in the root of an overlap next to contact events",
-            order=8.0, order_at_events=7.0, observed_smooth=8.0, observed_order=7.0,
+            order=8.0, order_at_events=_DENSE_ORDER, observed_smooth=8.0, observed_order=7.0,
             error_control=True, symplectic=False,
             restrictions=f"errors down to about 1e-12; no energy account; only chains of up to {SHORT_CHAIN} beads, "
                          "with a driver that is harmonic or at rest, and without tension cut",
             reference="Hairer, Nørsett & Wanner 1993, section II.5; the root of an overlap: docs/method.md",
-            stepper=_error_controlled(Dop853RootStepper), cost=StepCost(500e-9, 20e-9, steps_per_time=4.0, power=0.1),
-            usual_error=1.0, has_account=False),
+            stepper=_error_controlled(Dop853RootStepper, has_account=False),
+            cost=StepCost(500e-9, 20e-9, steps_per_time=4.0, power=0.1), usual_error=1.0),
     )
 }
 

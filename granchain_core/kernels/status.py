@@ -24,14 +24,14 @@ TOO_MANY_EVENTS = 7
 LOST = -1
 
 #: Most contact events per contact within `EVENT_WINDOW`; more end the run with CHATTER. The log of the flow has room
-#: for this many per contact and drive period.
+#: for this many per contact and drive period, and for `MOST_EVENTS_OF_ORBIT` (integrate/failure.py) in all.
 EVENTS_PER_CONTACT = 2000
 #: Scaled time within which contact events are counted. By Hertz's theory, a contact of two equal beads that meet at the
 #: scaled velocity v lasts a scaled time of 3.2 v^{-1/5}: 0.08 at v = 1e8.
 EVENT_WINDOW = 1.0
 #: Fixed steps times bodies in one call of a kernel, or between two readings of the stop flag: 5 to 40 ms.
 WORK_BETWEEN_STOP_CHECKS = 1 << 19
-#: Most fixed steps between two readings of the stop flag; with error control it is read before every step.
+#: Most fixed steps between two readings of the stop flag (docs/design.md, "When a kernel reads the stop flag").
 STEPS_BETWEEN_STOP_CHECKS = 4096
 
 #: Indices into an array of counts (4,): accepted steps, evaluations of the equations, contact events, rejected steps.

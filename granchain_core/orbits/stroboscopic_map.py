@@ -10,6 +10,7 @@ from ..errors import BadInput
 from ..execution.stop import Stop
 from ..integrate import Engine, dop853_setting
 from ..integrate.dop853 import Dop853Stepper
+from ..integrate.failure import MOST_EVENTS_OF_ORBIT
 from ..integrate.scaling import ScaledChain, scale_like
 from ..kernels.effects.contact import FrozenContacts
 from ..kernels.effects.dissipation import LinearDashpot
@@ -89,7 +90,7 @@ class StroboscopicMap:
     def _prepare(self, tolerance: float) -> None:
         self.tolerance = tolerance
         row = self.engine.scaled.bodies
-        events = np.zeros((EVENTS_PER_CONTACT * (row - 1) * self.periods, 2))
+        events = np.zeros((min(EVENTS_PER_CONTACT * (row - 1) * self.periods, MOST_EVENTS_OF_ORBIT), 2))
         self._contacts = ContactStatus(np.zeros(2 * row), np.zeros(row - 1, dtype=np.int64), events,
                                        np.zeros(1, dtype=np.int64))
         frozen = self.engine.stepper.work.forces._replace(frozen=FrozenContacts(self._contacts.closed))

@@ -23,7 +23,10 @@ ACCURACY_KERNELS = "accuracy"
 COST_KERNELS = "cost"
 COST_ACCOUNT_KERNELS = "cost account"
 
-#: Approximate time that each piece takes on two cores if nothing else is compiled [s].
+#: Pieces that a command with batches (curve, map, attractors, basins) compiles in a second process, beside the batch.
+BESIDE_A_BATCH = (CHECK_KERNELS, FIXED_STEP_KERNELS)
+
+#: Approximate time that each piece takes on two cores if nothing else is compiled [s], rounded up to five seconds.
 COMPILE_SECONDS = {
     REGIME_KERNELS: 5, CHECK_KERNELS: 10, CURVE_KERNELS: 10, DOP853_KERNELS: 10, FIXED_STEP_KERNELS: 10,
     RUN_KERNELS: 10, RUN_DOP853_KERNELS: 15, ORBIT_KERNELS: 15, BRANCH_KERNELS: 40, OBSERVER_KERNELS: 10,

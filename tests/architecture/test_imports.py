@@ -22,6 +22,7 @@ from app.parts.figures.streamed_figure import StreamedFigure
 from app.parts.toolkit.component import Component
 from app.scripts import FILES
 from granchain_core.kernels.compiling import cache, link_only
+from tools.numba_names import NUMBA, names_in
 
 
 def module_name(path: Path) -> str:
@@ -209,24 +210,14 @@ def private_uses(module: str) -> Iterator[str]:
             yield name
 
 
-def documented(page: str, folder: str) -> dict[str, set[str]]:
-    """Return the private names in a page's tables, by the module in the second column."""
-    rows: dict[str, set[str]] = {}
-    for what, where in re.findall(r"^\| ([^|]+) \| ([^|]+) \| [^|]+ \|$",
-                                  (ROOT / "docs" / page).read_text(encoding="utf-8"), re.MULTILINE):
-        names = set(re.findall(r"`(_[a-z]\w*)`", what))
-        if names and (file := re.search(rf"`({folder}/[\w/]+)\.py`", where)):
-            rows.setdefault(file[1].replace("/", "."), set()).update(names)
-    return rows
-
-
 #: Undocumented names of Tornado, Bokeh, Panel and Param, by the only module that uses them.
 INTERNALS = {module: {name for row in table for name in row.names} for module, table in library_internals.tables().items()}
 #: The private ones among these names.
 PRIVATE = {module: {name for name in names if re.match("_[a-z]", name)} for module, names in INTERNALS.items()}
 #: Private names of Numba, by module of the core, including names that a class inherits, which `private_uses` does not
 #: find.
-PRIVATE_OF_NUMBA = {f"granchain_core.{module}": names for module, names in documented("compiling.md", "kernels").items()}
+PRIVATE_OF_NUMBA = {f"granchain_core.{file.removesuffix('.py').replace('/', '.')}": names for file in NUMBA
+                    if (names := {name for name in names_in(file) if re.match("_[a-z]", name)})}
 
 
 @pytest.mark.parametrize("folder", FOLDERS)

@@ -4,9 +4,10 @@
 
 The output is {kernel: {case: counts}}. For `chain` (one chain in a register, including its split step) and `batch`
 (eight chains), it counts the vector instructions in the machine code, with only contacts and driver and with one more
-effect. For `flow` (Dormand and Prince's method with tangents), it counts the multiplications in LLVM's optimised code,
-with no effects and with all; `by_zero` counts those by a constant 0. Only freshly compiled code can be read, since
-kernels that are loaded from the cache contain no text.
+effect; in the inner loops, it also counts those with an operand on the stack. For `flow` (Dormand and Prince's method
+with tangents), it counts the multiplications in LLVM's optimised code, with no effects and with all; `by_zero` counts
+those by a constant 0. Only freshly compiled code can be read, since kernels that are loaded from the cache contain no
+text.
 
 The caller pickles `types_by_case()`, which needs engines. The program itself only compiles, for the processor that the
 environment names, which may differ from the one that it runs on.
@@ -19,6 +20,7 @@ import pickle
 import re
 import sys
 from collections import Counter
+from collections.abc import Iterator
 
 import llvmlite.binding
 import numba
@@ -47,40 +49,61 @@ KINDS = {"mul": "multiply", "add": "add", "sub": "add", "fmadd": "both", "fmsub"
          "fnmsub": "both", "sqrt": "root", "div": "divide", "rsqrt14": "root", "max": "choose", "min": "choose",
          "blendm": "choose", "and": "choose", "cmp": "compare", "permt2": "shuffle", "perm": "shuffle",
          "expand": "shuffle", "align": "shuffle", "shuf": "shuffle"}
-#: The digits in the name of a fused instruction say which register receives the result.
-_FORM = re.compile(r"(?<=^v)(fn?m(?:add|sub))(?:132|213|231)")
+#: A root of a whole vector, by the root instruction or by an approximation of the inverse root.
+_ROOT = re.compile(r"v(sqrtpd|rsqrt14pd|rsqrtps)\b")
+#: An instruction on whole vectors with an operand in the function's stack frame: a value that no register keeps.
+_ON_STACK = re.compile(r"\(%r[sb]p\b.*%[yz]mm|%[yz]mm.*\(%r[sb]p\b")
 _PACKED = re.compile(r"^v([a-z]+?(?:14)?)(?:\d{3})?(?:eq|lt|le|gt|ge|neq|nlt|nle|ngt|nge|ord|unord)?pd$")
 
 
 def functions(text: str) -> dict[str, list[str]]:
-    """Return the instructions of every function in a module's assembly, without the wrappers for Python."""
+    """Return the instructions and labels of every function in a module's assembly, without the wrappers for Python."""
     found: dict[str, list[str]] = {}
     name = None
     for line in text.splitlines():
         if re.match(r"^[A-Za-z_]\S*:", line):
             name = None if line.startswith(("_ZN7cpython", "NRT_", "cfunc")) else line.split(":")[0]
-        elif name is not None and re.match(r"^\t[a-z]", line):
+        elif name is not None and re.match(r"^\t[a-z]|^\.L\w+:", line):
             found.setdefault(name, []).append(line.strip())
     return found
 
 
+def inner_loops(lines: list[str]) -> Iterator[list[str]]:
+    """Yield the instructions of each loop that contains no other loop: from a label to the jump back to it."""
+    labels = {line.partition(":")[0]: place for place, line in enumerate(lines) if line.startswith(".L")}
+    jumps = [(labels.get(jump[1], len(lines)), place) for place, line in enumerate(lines)
+             if (jump := re.match(r"j\w+\s+(\.L\w+)", line))]
+    loops = {(first, last) for first, last in jumps if first < last}
+    for first, last in sorted(loops):
+        if not any(first <= a and b <= last for a, b in loops - {(first, last)}):
+            yield [line for line in lines[first : last + 1] if not line.startswith(".L")]
+
+
+def stack_traffic(text: str) -> dict[str, int]:
+    """Count the roots in the inner loops that take one, and there the operands on the stack of vector instructions."""
+    loops = [loop for lines in functions(text).values() for loop in inner_loops(lines)]
+    found = [(sum(bool(_ROOT.match(line)) for line in loop), sum(bool(_ON_STACK.search(line)) for line in loop)) for loop in loops]
+    return {"roots": sum(roots for roots, _ in found), "on_stack": sum(on_stack for roots, on_stack in found if roots)}
+
+
 def counts(kernel, arguments) -> dict:
-    """Count packed arithmetic by kind, and all instructions and mnemonics, of the kernel and the functions it calls."""
+    """Count packed arithmetic by kind in the kernel and the functions it calls, and the stack traffic of its loops."""
     kernel.compile(arguments)
     text = kernel.inspect_asm(kernel.signatures[-1])
-    found, mnemonics = Counter(), Counter()
+    found: Counter[str] = Counter()
     for lines in functions(text).values():
         for line in lines:
+            if line.startswith(".L"):
+                continue
             mnemonic, *operands = line.replace(",", " ").split()
             if mnemonic.startswith("vxorp") and operands[0] == operands[1]:
                 continue  # sets a register to zero: not arithmetic
-            mnemonics[_FORM.sub(r"\1", mnemonic)] += 1
             packed = _PACKED.match(mnemonic)
             if packed and "xmm" not in line and packed.group(1) in KINDS:
                 kind = KINDS[packed.group(1)]
                 for one in ("multiply", "add") if kind == "both" else (kind,):
                     found[one] += 1
-    return {"packed": dict(found), "all": sum(mnemonics.values()), "mnemonics": dict(sorted(mnemonics.items()))}
+    return {"packed": dict(found), "loops": stack_traffic(text)}
 
 
 _PRODUCT = re.compile(r"= fmul (?:\w+ )*(?:double|<\d+ x double>) (.*)$", re.MULTILINE)

@@ -2,7 +2,7 @@
 
     `kernel`         has an entry point for Python, and releases the GIL; other kernels may call it too, and are then
                      linked with it
-    `brief_kernel`   the same, but takes microseconds and keeps the GIL
+    `brief_kernel`   the same for a function that takes microseconds: it keeps the GIL
     `internal`       a function of kernels, compiled separately and linked into its callers
     `inline_llvm`    the same, inlined by LLVM, so that values stay in registers
     `inline_numba`   the same, inlined by Numba before types are inferred: for functions that each module calls once
@@ -12,9 +12,15 @@ Functions that choose their code by a type are in dispatch.py.
 Options:
 
 * `nogil`, so that threads really run kernels in parallel; not for brief kernels (`brief_kernel`).
-* No `nnan`/`ninf`, so that comparisons and selects see a NaN. With the flags in `FAST_MATH`, sums are vectorised, and
-  `x + 0.0` folds away. `x * 0.0` does not, so the code for an absent effect must not multiply by zero. `reassoc` with
-  `nsz` may still cancel a NaN, as in (x + y) − y, so the state itself is checked for being finite.
+* The flags of `FAST_MATH`:
+  - `reassoc`: sums are vectorised. With `nsz` it may cancel a NaN, as in (x + y) − y, so the state itself is checked
+    for being finite.
+  - `nsz`: `x + 0.0` folds away; `x * 0.0` does not, so the code for an absent effect must not multiply by zero. No
+    kernel depends on the sign of a zero: comparisons see none, and `copysign` (rk4/contact_events.py) takes the rate of
+    an overlap, whose sign matters only if it is not 0.
+  - `arcp` and `contract`: a quotient may become a product with an inverse, and a product and a sum one instruction.
+    Both change the last bit only.
+  - No `nnan`/`ninf`: comparisons and selects see a NaN.
 * Numba does not notice edits of *imported* kernels. The folder of compiled code is therefore named by a hash of all
   kernel sources (sources.py).
 """

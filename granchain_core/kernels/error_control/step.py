@@ -29,12 +29,12 @@ from .bracket import Bracket, maximum_inside, root_inside, value_at
 TURN_SECTIONS = 40
 #: [no threshold] The search for an overlap's root ends when its fraction of the step changes by less than this.
 _LAST_ROOT_CHANGE = 1e-15
-#: [step size] dop853: largest factor from one step to the next, as in Hairer's dop853.f (FAC2).
+#: [step size] Error control: largest factor from one step to the next, as in Hairer's dop853.f (FAC2).
 _MAX_FACTOR = 6.0
-#: [step size] dop853: smallest factor from one attempt to the next (FAC1). Hairer has 1/3; over ten scenes, both take
-#: the same number of evaluations.
+#: [step size] Error control: smallest factor from one attempt to the next (FAC1). Hairer has 1/3; over ten scenes, both
+#: take the same number of evaluations with dop853.
 _MIN_FACTOR = 0.1
-#: [step size] dop853: safety factor of the step-size controller, as in Hairer's dop853.f (SAFE).
+#: [step size] Error control: safety factor of the step-size controller, as in Hairer's dop853.f (SAFE).
 _SAFETY = 0.9
 #: [no threshold] ε in the resolution of t, ε·(t + 1/β): the spacing of floating-point numbers at 1.
 _RESOLUTION = 2.2e-16

@@ -1,8 +1,8 @@
 """Vectors of 4, 8, 16 or 32 doubles as Numba types: explicit SIMD over scenes or along a chain.
 
-LLVM puts eight doubles into one register of 512 bits, two of 256 or four of 128, depending on the machine. Arithmetic,
-square root, maximum and comparison are single LLVM instructions with the same flags as in the scalar kernels, so that
-comparisons and selects see a NaN (compiling/jit.py). `load8`, `load16` and `load32` read one row of a C-ordered array
+LLVM puts eight doubles into one register of 512 bits, two of 256 or four of 128, depending on the machine. Arithmetic
+has the flags of `FAST_MATH`, as in the scalar kernels; roots, comparisons and selects (here and in functions.py) have
+none, so that they see a NaN (compiling/jit.py). `load8`, `load16` and `load32` read one row of a C-ordered array
 (rows, 8), (rows, 16) or (rows, 32); `load_batch` reads a row of a batch, whose width depends on the machine
 (batch_size.py).
 """

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from ...errors import BadInput, Cancelled
-from ...execution.cores import usable_cores
 from ...execution.stop import Stop
 from ...inputs.checks import numbers_in
 from ...integrate.batch import can_share_batch
@@ -19,7 +18,7 @@ from ...scene.refusals import refuse_undriven
 from ...scheduler import dealt, results
 from ..batch.job import Start
 from ..batch.jobs_in_batch import batch_results
-from ..batch.starts import settle_starts
+from ..batch.starts import settle_starts, threads_for
 from ..batch.threads import on_all_cores
 from ..settling.single_chain import settle_or_failure
 from .curve import Curve, CurvePoint
@@ -129,7 +128,7 @@ def _from_rest(scene: Scene, left: list[Knobs], stop: Stop | None, workers: int 
             order.finished(point.frequency, point.regime.periods_run)
             yield point
 
-    yield from on_all_cores(work, order, ended, stop, min(workers or usable_cores(), len(left)))
+    yield from on_all_cores(work, order, ended, stop, min(threads_for(scene, workers), len(left)))
 
 
 def _points(scene: Scene, left: Iterator[Knobs], ended: Stop) -> Iterator[CurvePoint]:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import re
 from operator import attrgetter
-from pathlib import Path
 from typing import Any
 
 import numba
@@ -13,6 +11,7 @@ import pytest
 from granchain_core.kernels.compiling import link_only
 from granchain_core.kernels.compiling.jit import Internal
 from granchain_core.kernels.compiling.link_only import compiler_options
+from tools.numba_names import names_in
 
 #: The code library that Numba keeps of a compiled function.
 code_of = attrgetter("library")
@@ -22,9 +21,8 @@ class AnotherLibrary:
     """A class for compiled code, as in another Numba, without the attributes that link_only.py uses."""
 
 
-#: The private names in the rows of docs/compiling.md.
-NAMES = re.findall(r"`(_\w+)`", " ".join(re.findall(r"^\| ([^|]+) \| `kernels/compiling/link_only.py` \|", (
-    Path(__file__).parents[3] / "docs" / "compiling.md").read_text(encoding="utf-8"), re.MULTILINE)))
+#: The private names of Numba that link_only.py uses.
+NAMES = sorted(name for name in names_in("kernels/compiling/link_only.py") if name.startswith("_"))
 
 
 def sum_of_squares(options: dict[str, Any]) -> tuple[Any, Any]:
@@ -63,7 +61,6 @@ def test_only_the_kernel_is_translated() -> None:
 
 @pytest.mark.parametrize("name", [name for name in NAMES if name != "_codegen"])
 def test_without_any_attribute_of_the_class_every_function_is_translated(name: str) -> None:
-    assert len(NAMES) == 6
     held = [one for one in (*link_only._NEEDED, "get_pointer_to_function") if one != name]
     assert "pipeline_class" not in compiler_options(type("Library", (), dict.fromkeys(held)))
     assert "pipeline_class" in compiler_options(type("Library", (), dict.fromkeys([*held, name])))
