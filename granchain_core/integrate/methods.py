@@ -162,13 +162,13 @@ class Method:
 def _fixed(kind: Any, simd: bool = False) -> Callable[[MethodSetting, ScaledChain, int], Stepper]:
     """Return a function that makes the stepper of a method with fixed steps in (u, w)."""
     return lambda setting, scaled, samples: FixedStep(kind(setting.steps_per_period(scaled, samples)), scaled,
-                                                       samples, simd)
+                                                      samples, simd)
 
 
 def _in_velocity(kind: Any) -> Callable[[MethodSetting, ScaledChain, int], Stepper]:
     """Return a function that makes the stepper of a method with fixed steps in (u, v)."""
     return lambda setting, scaled, samples: FixedStepInVelocity(kind(setting.steps_per_period(scaled, samples)),
-                                                                 scaled, samples)
+                                                                scaled, samples)
 
 
 def _error_controlled(kind: Any) -> Callable[[MethodSetting, ScaledChain, int], Stepper]:

@@ -241,13 +241,13 @@ def _with_period(regime: Regime, period: int) -> Regime:
     return replace(regime, period=period, observed_contraction=contraction)
 
 
-def _periodic(check: np.ndarray, slowest_decay: float, periods_run: int) -> Regime:
+def _periodic(check: np.ndarray, slowest_contraction: float, periods_run: int) -> Regime:
     """The periodic regime of a coarse run, from its last check; `followed` where extrapolations led to it."""
     period, contraction, distance = check
     seen = float(contraction) if contraction >= 0.0 else None
     return Regime(name="periodic", period=int(period), observed_contraction=seen, distance=float(distance),
-                  periods_run=periods_run, followed=bool(slowest_decay > 0.0),
-                  followed_by="extrapolation" if slowest_decay > 0.0 else None)
+                  periods_run=periods_run, followed=bool(slowest_contraction > 0.0),
+                  followed_by="extrapolation" if slowest_contraction > 0.0 else None)
 
 
 def _to_measure(job: BatchJob, batch: Batch, member: int, periods_run: int, record: np.ndarray) -> BatchJob:
@@ -262,8 +262,7 @@ def unsettled(job: BatchJob, batch: Batch, member: int, periods_run: int) -> Ste
     """The result of a member that has used up its budget of steps."""
     maxima = job.scaled.scales.forces(batch.maxima(member, IRREGULAR_PERIODS)[0])
     state = job.scaled.to_si(batch.state.motion.y[:, member])
-    return SteadyState(job.scene, maxima, Regime.unsettled(periods_run), None, state,
-                      number=job.number)
+    return SteadyState(job.scene, maxima, Regime.unsettled(periods_run), None, state, number=job.number)
 
 
 def failed(job: BatchJob) -> SteadyState:

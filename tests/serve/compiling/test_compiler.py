@@ -15,8 +15,8 @@ from granchain_core import scene
 
 
 def test_a_compiler_that_fails_is_reported_with_what_it_said(monkeypatch: pytest.MonkeyPatch,
-                                                            caplog: pytest.LogCaptureFixture,
-                                                            capfd: pytest.CaptureFixture[str]) -> None:
+                                                             caplog: pytest.LogCaptureFixture,
+                                                             capfd: pytest.CaptureFixture[str]) -> None:
     compiled: list[str] = []
     monkeypatch.setattr(compiler, "compile_piece", lambda _, piece: compiled.append(piece))
     with caplog.at_level(logging.WARNING, logger="granchain"):
