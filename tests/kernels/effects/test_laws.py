@@ -128,14 +128,14 @@ def test_the_code_of_a_slot_has_a_name_of_its_own() -> None:
     def weight_of(slot):  # type: ignore[no-untyped-def]
         return 0.0
 
-    @weight_of.of(Unfinished)
+    @weight_of.of(loss.LinearDashpot)
     def _(slot):  # type: ignore[no-untyped-def]
         return slot.coefficient
 
     compiled = numba.njit(lambda slot: weight_of(slot))
-    assert compiled(Unfinished(3.0)) == 3.0
-    assert weight_of.implementations[Unfinished].__qualname__ == "weight_of__Unfinished"
-    assert "weight_of__Unfinished" in next(iter(compiled.inspect_llvm().values()))
+    assert compiled(loss.LinearDashpot(3.0)) == 3.0
+    assert weight_of.implementations[loss.LinearDashpot].__qualname__ == "weight_of__LinearDashpot"
+    assert "weight_of__LinearDashpot" in next(iter(compiled.inspect_llvm().values()))
 
 
 def test_what_is_never_absent_has_no_code_for_none() -> None:
