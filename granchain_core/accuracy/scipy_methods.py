@@ -15,7 +15,8 @@ from ..execution.stop import Stop
 from ..integrate import Counts
 from ..integrate.error_controlled import LEAST_STEPS_PER_PERIOD
 from ..integrate.scaling import ScaledChain, scale_chain
-from ..kernels.error_control.step import evaluate
+from ..kernels.compiling.entry import entry
+from ..kernels.equations.motion import evaluate_at_phase
 from ..kernels.status import EVALUATIONS
 from ..scene import Scene
 from ..scene.state import rest
@@ -62,6 +63,8 @@ class ScipyMotion:
         self.evaluations = 0
         self._row = scaled.bodies
         self._whole, self._slope, self._forces = np.zeros(scaled.size), np.zeros(scaled.size), scaled.forces()
+        # without Numba's dispatcher, whose time is not SciPy's
+        self._evaluate = entry(evaluate_at_phase, scaled.slots, 0.0, self._whole, self._slope, self._forces, False)
 
     def inner(self, y: np.ndarray) -> np.ndarray:
         """Return the beads' part (2N,) of a whole state array (2(N + 2),)."""
@@ -73,7 +76,7 @@ class ScipyMotion:
         row, full_state = self._row, self._whole
         self.evaluations += 1
         full_state[1 : row - 1], full_state[row + 1 : 2 * row - 1] = inner[: row - 2], inner[row - 2 :]
-        evaluate(self.scaled.slots, self.scaled.beta, t, full_state, self._slope, self._forces)
+        self._evaluate(self.scaled.slots, float(self.scaled.beta * t), full_state, self._slope, self._forces, False)
         return self.inner(self._slope)
 
     def overlaps(self, t: float, inner: np.ndarray) -> np.ndarray:

@@ -116,7 +116,7 @@ def compared_forces(measured: Series, motion: Motion, sensors: Sensors | None = 
             force = force + sensors.tip_mass * _acceleration(motion)
         misfit = Misfit.of(sensors.passed(motion.time, force, time[within]), measured_within)
         misfits[name] = ForceDifference(**asdict(misfit), force=name, compared=len(measured_within), samples=len(time),
-                                      at=float(time[within][misfit.index]), word=measured.word)
+                                        at=float(time[within][misfit.index]), word=measured.word)
     return misfits
 
 

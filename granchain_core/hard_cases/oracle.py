@@ -87,9 +87,9 @@ def solved(chain: PlainChain, start: np.ndarray, times: np.ndarray, method: str 
     closed = (gaps > 0.0) | ((gaps == 0.0) & (chain.rates(t, state) > 0.0))
     for _ in range(_MOST_EVENTS):
         solution: Any = solve_ivp(lambda s, y, c=closed: chain.slope(s, y, c), (t, times[-1]), state, method=method,
-                               rtol=max(rtol, 3e-14), atol=1e-2 * rtol, dense_output=True,
-                               max_step=chain.period / _LEAST_STEPS,
-                               events=[_event(chain, c, bool(closed[c])) for c in range(n + 1)])
+                                  rtol=max(rtol, 3e-14), atol=1e-2 * rtol, dense_output=True,
+                                  max_step=chain.period / _LEAST_STEPS,
+                                  events=[_event(chain, c, bool(closed[c])) for c in range(n + 1)])
         if solution.status < 0:
             raise ComputationError(f"SciPy's {method} gave up at scaled time {t:.6g}: {solution.message}",
                                    "solver-gave-up")
@@ -141,5 +141,5 @@ def restitution(law: str, strength: float, cut: bool) -> float:
 
     over.terminal, over.direction = True, -1.0  # type: ignore[attr-defined]
     solution: Any = solve_ivp(slope, (0.0, 10.0), [0.0, 1.0], method="DOP853", rtol=3e-14, atol=1e-16, events=over,
-                           max_step=0.02)
+                              max_step=0.02)
     return -float(solution.y[1, -1])

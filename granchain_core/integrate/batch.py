@@ -175,10 +175,13 @@ class Batch:
                     rows[:, member] = value
         members.beta[0, member] = scaled.beta
         schedule = state.schedule
-        schedule.begins[member], state.motion.y[:, member], schedule.drive_period[member] = 1, y, scaled.period
+        schedule.begins[member] = 1
+        schedule.drive_period[member] = scaled.period
         schedule.steps[member], schedule.fine_steps[member] = steps, steps * fine
         schedule.return_at[member], schedule.next_check[member] = return_at, earliest
-        state.search.fine_record[member], state.pairs.neighbour[member] = 0.0, NO_NEIGHBOUR
+        state.motion.y[:, member] = y
+        state.search.fine_record[member] = 0.0
+        state.pairs.neighbour[member] = NO_NEIGHBOUR
 
     def _takes(self, scaled: ScaledChain) -> bool:
         """Return whether a chain has the structure of the batch."""
@@ -211,7 +214,8 @@ class Batch:
         self.put(member, scaled, y, 1, periods, NEVER)
         self.put(neighbour, scaled, y + offset, 1, NEVER, NEVER)
         pairs = self.state.pairs
-        pairs.neighbour[member], pairs.neighbour[neighbour], pairs.distance[member] = neighbour, IS_NEIGHBOUR, distance
+        pairs.neighbour[member], pairs.neighbour[neighbour] = neighbour, IS_NEIGHBOUR
+        pairs.distance[member] = distance
 
     def checks_address(self) -> int:
         """Address of the kernel that checks a member's regime; the kernel is compiled first if necessary."""

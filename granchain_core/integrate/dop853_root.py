@@ -47,7 +47,7 @@ class Dop853RootStepper(ErrorControlledStepper):
         super().use(scaled)
 
     def run_range(self, y: np.ndarray, first: int, points: int, stride: int, samples: Samples,
-                out: KernelIO) -> tuple[int, int]:
+                  out: KernelIO) -> tuple[int, int]:
         """Call the kernel once over `points` grid points from `first` on; return status and rows filled."""
         wanted = SampleRange(first, points, self.grid, stride)
         status, rows = _RUN_DOP853_ROOT(self.type_key, self.method, self._vectors, self.trajectory(y), wanted,

@@ -11,7 +11,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from .compiling.jit import kernel
-from .effects.contact import elastic_force, positive_part
+from .effects.contact import elastic_force
 from .effects.dissipation import dashpot_force
 from .effects.preload import overlap
 from .effects.tension import cut_at_zero
@@ -19,6 +19,7 @@ from .equations.body_forces import force_on_bead
 from .forces.crossings import end_approaches, record_crossings
 from .forces.largest import Instant
 from .rk4.step import span_of, step, tabulated_displacement, tabulated_velocity
+from .simd.functions import positive_part
 from .status import EVALUATIONS, STEPS
 
 

@@ -7,5 +7,3 @@ from __future__ import annotations
 OVERLAP, RATE, OVERLAP_END, RATE_END, MOMENTUM_ERROR, DISPLACEMENT_ERROR, END_ROWS = range(7)
 #: Rows of the overlaps and of their rates at the start (0) and at the end (1).
 OVERLAP_AT, RATE_AT = (OVERLAP, OVERLAP_END), (RATE, RATE_END)
-#: Size of an overlap of which only the sign matters: its force is negligible.
-TINY = 1e-300

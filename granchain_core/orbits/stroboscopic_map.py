@@ -121,8 +121,8 @@ class StroboscopicMap:
         damping g(δ) other than the linear dashpot's: its saltation is the identity, since g(0) = 0, but the tangents
         in (u, v) have a term g'(δ) δ̇, which this method leaves out.
 
-        Only tests use it. It is here because its type `VelocityTangent` is in the list of specializations of
-        `run_flow`: if it were in tests/, a process without the tests could not read that list.
+        Only tests use it. `VelocityTangent` is among the kernels and not in tests/, because `run_flow` with these
+        tangents is kept on disk under the hash of the kernels' folder: an edit of code elsewhere would not be noticed.
         """
         scaled = self.engine.scaled
         if scaled.slots.dissipation is not None and not isinstance(scaled.slots.dissipation, LinearDashpot):

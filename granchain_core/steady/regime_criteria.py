@@ -83,15 +83,14 @@ def find_period(strobes: np.ndarray, longest: int = LONGEST_LOCKED_PERIOD, round
     distance is not known better than rounding·r/(1 − r), where r is the observed contraction factor.
     """
     periods_run = len(strobes) - 1
-    period, decay, distance, *_ = periodicity.detect_period(np.ascontiguousarray(strobes), longest, rounding,
-                                                            SETTLED_DISTANCE, 0.0, np.zeros(2),
-                                                            change_workspace(longest))
+    period, contraction, distance, *_ = periodicity.detect_period(
+        np.ascontiguousarray(strobes), longest, rounding, SETTLED_DISTANCE, 0.0, np.zeros(2), change_workspace(longest))
     if period == 0:
         return Regime.unsettled(periods_run)
-    if 0.0 < decay < 1.0:
-        distance = max(distance, rounding * decay / (1.0 - decay))
-    return Regime(name="periodic", period=int(period), observed_contraction=None if decay < 0.0 else float(decay),
-                  distance=float(distance), periods_run=periods_run)
+    if 0.0 < contraction < 1.0:
+        distance = max(distance, rounding * contraction / (1.0 - contraction))
+    return Regime(name="periodic", period=int(period), distance=float(distance), periods_run=periods_run,
+                  observed_contraction=None if contraction < 0.0 else float(contraction))
 
 
 def rounding_of(setting: MethodSetting) -> float:

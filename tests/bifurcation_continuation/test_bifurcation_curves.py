@@ -129,7 +129,7 @@ def test_a_diagram_shows_where_its_bifurcation_curves_are() -> None:
     first = told["period_doubling", 1]
     assert [point.y for point in first.points] == [4.5e-7, 5e-7]
     assert first.points[1].x == pytest.approx(bifurcation_point(*near("period_doubling")[:1], "period_doubling",
-                                                             near("period_doubling")[1]).x, rel=1e-6)
+                                                                near("period_doubling")[1]).x, rel=1e-6)
     assert 0.0 < first.points[1].x - first.points[0].x < 20.0  # f ∝ A0^{1/4} nearly: 13 Hz
     with pytest.raises(BadInput, match="rows are numbers from 0 to 1"):
         bifurcation_curves(found, rows=[2])

@@ -32,7 +32,7 @@ def test_what_a_scene_uses_is_cited(settings: list[str], named: list[str], capsy
     ("breather", ["precompressed chains", "dark breathers"]),
 ])
 def test_the_sources_of_the_scenes_beyond_the_paper_are_cited(scene: str, named: list[str],
-                                                             capsys: pytest.CaptureFixture[str]) -> None:
+                                                              capsys: pytest.CaptureFixture[str]) -> None:
     """These are the references of docs/scenes.md for the scenes that reproduce them."""
     assert main(["cite", scene, "--json"]) == 0
     assert [one["for"] for one in json.loads(capsys.readouterr().out)["citations"]][3:] == named

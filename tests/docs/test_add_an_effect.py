@@ -170,7 +170,7 @@ print(scene("sec2").c, [one.scene.c for one in variants("drag", scene("sec2"))])
 print([spec["more"] for spec in knob_state(session.scene)["specs"] if spec["name"] == "c"], "c" in KNOBS, "c" in CONTINUOUS)
 """).splitlines()
     assert printed == ["ground drag | True", "0.0 linear, vector of 16", "20.0 linear+drag, vector of 16", "0.0 [10.0, 0.0]",
-                    "[True] True True"]
+                       "[True] True True"]
 
 
 @pytest.mark.parametrize(("path", "right", "wrong", "sentence"), [

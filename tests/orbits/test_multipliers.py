@@ -138,7 +138,7 @@ def dashpot_wall(damping: float, period: float) -> StroboscopicMap:
     stroboscopic_map = StroboscopicMap(scene("sec2").evolve(N=1, F0=0.5), 1)
     scaled, beta = stroboscopic_map.engine.scaled, 2.0 * np.pi / period
     slots = scaled.slots._replace(chain=Chain(scaled.slots.chain.inverse_mass, np.array([1.0, 0.0])),
-                                   preload=Preload(np.array([-10.0, 0.0])),  # a negative one is a gap
-                                   dissipation=LinearDashpot(damping), driver=Harmonic(1.0, beta))
+                                  preload=Preload(np.array([-10.0, 0.0])),  # a negative one is a gap
+                                  dissipation=LinearDashpot(damping), driver=Harmonic(1.0, beta))
     stroboscopic_map.engine.use(replace(scaled, slots=slots, beta=beta))
     return stroboscopic_map

@@ -55,7 +55,7 @@ def test_equal_calls_of_the_quick_map_give_equal_bits() -> None:
 
 
 def test_where_fixed_steps_would_be_slow_the_flow_takes_their_place(whole: Branch,
-                                                                  monkeypatch: pytest.MonkeyPatch) -> None:
+                                                                    monkeypatch: pytest.MonkeyPatch) -> None:
     assert quick.quick_steps(scale_chain(scene("sec2").evolve(f=0.1))) == 0 < quick.quick_steps(scale_chain(scene("sec2")))
     monkeypatch.setattr(quick, "_MOST_QUICK_STEPS", 0)
     monkeypatch.setattr(quick.QuickMap, "end", None)

@@ -40,7 +40,7 @@ def test_hertz_collision_has_its_duration_peak_force_and_no_loss(speed, stiffnes
 
 
 @pytest.mark.parametrize("masses", [(1.0, 3.0), (5.0, 0.4)])
-def test_two_unlike_beads_part_as_momentum_and_energy_say_after_the_time_of_their_reduced_mass(masses):
+def test_two_unequal_beads_part_as_momentum_and_energy_say_after_the_time_of_their_reduced_mass(masses):
     """v₁' = (m₁ − m₂)/(m₁ + m₂) v, v₂' = 2m₁/(m₁ + m₂) v, and Hertz's duration with m* = m₁m₂/(m₁ + m₂)."""
     first, second = masses
     speed, reduced = 0.7, first * second / (first + second)

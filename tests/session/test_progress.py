@@ -33,7 +33,7 @@ def test_what_is_over_has_nothing_to_say_unless_it_was_stopped() -> None:
     for status in ("none", "done", "failed"):
         assert BRANCHES.of(status) == {"status": status, "progress": "", "running": False, "failure": ""}
     assert BRANCHES.of("stopped") == {"status": "stopped", "progress": "stopped; the orbits found so far are kept", "running": False,
-                                       "failure": ""}
+                                      "failure": ""}
     assert HARD_CASES.of("stopped")["progress"] == "stopped"
 
 

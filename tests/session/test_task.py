@@ -85,7 +85,7 @@ def test_a_task_ends_when_the_visitor_leaves(host: SayingHost, task: Task) -> No
     (BadInput("f must be positive."), "f must be positive.", False),
     (ZeroDivisionError("1/0"), FAULT, True)])
 def test_a_failure_is_said_and_a_fault_is_told_to_the_host(error: Exception, sentence: str, told: bool, host: SayingHost,
-                                                          task: Task) -> None:
+                                                           task: Task) -> None:
     task.start(failing(error))
     host.run_callbacks_until(lambda: not task.running and not host.callbacks)
     ids = host.fault_ids + [fault for _, fault in host.failed_computations]

@@ -111,9 +111,9 @@ def test_scenes_that_batches_cannot_run_have_no_draft() -> None:
     assert draft_curve(scene("sec2").evolve(tension="cut"), np.array([340.0]), Stop()) == []
 
 
-def test_constants_of_the_disturbance_leave_room() -> None:
-    """A disturbance is far larger than the settled distance, and far too small to change the sequence of contacts."""
-    assert 10.0 * checks.SETTLED_DISTANCE < checks._DISTURBANCE < 1e-2
+def test_constants_of_the_perturbation_leave_room() -> None:
+    """A perturbation is far larger than the settled distance, and far too small to change the sequence of contacts."""
+    assert 10.0 * checks.SETTLED_DISTANCE < checks._PERTURBATION < 1e-2
 
 
 @pytest.mark.parametrize(("frequency", "amplitude"), [(1439.3220338983051, 5e-6), (684.4, 1.728e-6)])

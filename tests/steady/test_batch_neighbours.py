@@ -157,9 +157,9 @@ def test_the_lanes_of_a_pair_are_free_for_any_scene_afterwards() -> None:
 @pytest.mark.parametrize("sentinel", [np.nan, 12345.0])
 @pytest.mark.parametrize("preload", [0.0, 0.5])
 def test_nothing_that_was_in_the_arrays_before_a_scene_is_read(preload: float, sentinel: float,
-                                                             monkeypatch: pytest.MonkeyPatch) -> None:
-    """If all arrays are filled before the first scene, coarse and fine runs, disturbances and pairs are the same bit by
-    bit.
+                                                               monkeypatch: pytest.MonkeyPatch) -> None:
+    """If all arrays are filled before the first scene, coarse and fine runs, perturbations and pairs are the same bit
+    by bit.
 
     Only entries that no scene writes keep their initial values.
     """

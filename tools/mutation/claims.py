@@ -15,7 +15,7 @@ STEADY = (
            "a slow approach is called settled", k.REGIMES),
     Mutant("faster-half-counts", _SECTION, "contraction = max(early, late)", "contraction = min(early, late)",
            "the decay is taken from the half of the record in which it is faster", k.PERIODICITY),
-    Mutant("lost-in-rounding-is-there", _REGIME, "distance = max(distance, rounding * decay / (1.0 - decay))", "distance = 0.0",
+    Mutant("lost-in-rounding-is-there", _REGIME, "distance = max(distance, rounding * contraction / (1.0 - contraction))", "distance = 0.0",
            "a change lost in rounding counts as no distance at all", k.CRITERIA),
     Mutant("longest-period-told", _SECTION, "if largest <= negligible:\n            return q",
            "if largest <= negligible:\n            return n", "an orbit of period 1 is reported as one of period 2",

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-#: The right-hand side against the (u, v) equations of the paper, NaN, equilibrium, v to w and back; the same for unlike
-#: beads; NaN in every member; values that are not finite.
+#: The right-hand side against the (u, v) equations of the paper, NaN, equilibrium, v to w and back; the same for
+#: unequal beads; NaN in every member; values that are not finite.
 MOTION = ("tests/kernels/equations/test_motion.py",)
-UNLIKE = ("tests/kernels/effects/test_scaled_numbers.py", "tests/kernels/effects/test_given_force.py",
-          "tests/kernels/error_control/test_force_kinks.py")
+UNEQUAL = ("tests/kernels/effects/test_scaled_numbers.py", "tests/kernels/effects/test_given_force.py",
+           "tests/kernels/error_control/test_force_kinks.py")
 VECTORS = ("tests/kernels/simd/test_vector_nan.py",)
 FAILURES_W = ("tests/integrate/test_not_finite.py", "-k", "first_bead")
 FASTMATH = ("tests/integrate/test_not_finite.py", "tests/kernels/equations/test_motion.py", "-k",
@@ -59,14 +59,14 @@ ROOT_FORCES = ("tests/kernels/dop853_root/test_dop853_root.py", "-k", "motion_an
 ROOT_TOUCH = ("tests/kernels/dop853_root/test_dop853_root.py", "-k", "brief_touch")
 MARKS = ("tests/kernels/simd/test_marks.py",)
 
-#: Eight chains at once: their order, their forces, unlike beads, the drive phase, their checks.
+#: Eight chains at once: their order, their forces, unequal beads, the drive phase, their checks.
 BATCH = ("tests/kernels/batch/test_batch_steps.py", "-k", "order_three and sec2")
 BATCH_ONE = ("tests/kernels/batch/test_batch_steps.py", "-k", "order_three and one")
 BATCH_KK = ("tests/kernels/batch/test_batch_steps.py", "-k", "order_three and Kuwabara")
 BATCH_PRESSED = ("tests/kernels/batch/test_batch_steps.py", "-k", "order_three and pressed")
 BATCH_FOUNDED = ("tests/kernels/batch/test_batch_steps.py", "-k", "order_three and founded")
 BATCH_FORCES = ("tests/kernels/batch/test_batch_steps.py", "-k", "largest_forces and sec2")
-UNLIKE_BATCH = ("tests/kernels/batch/test_unlike_beads.py", "-k", "unlike_beads")
+UNEQUAL_BATCH = ("tests/kernels/batch/test_unequal_beads.py", "-k", "unequal_beads")
 BATCH_PHASE = ("tests/integrate/test_continuation.py", "-k", "phase_of_a_batch")
 BATCH_CHECKS = ("tests/kernels/batch/test_checks.py",)
 REFILL = ("tests/kernels/batch/test_refill.py",)

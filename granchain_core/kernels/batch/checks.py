@@ -23,6 +23,7 @@ from ..compiling.jit import inline_numba, internal, kernel
 from ..equations.motion import copy
 from ..strobes.extrapolation import ORBITS, reduced_rank
 from ..strobes.periodicity import (
+    LARGEST_TRUSTED_CONTRACTION,
     LONGEST_PERIOD,
     ROUNDING,
     SETTLED_DISTANCE,
@@ -62,7 +63,7 @@ _ORBITS_TO_GROW = 4
 #: [period n] A batch: most extrapolations of the fine run.
 _MOST_EXTRAPOLATIONS = 6
 #: [period n] A batch: an orbit found by extrapolation is perturbed by this part of the motion.
-_DISTURBANCE = 1e-4
+_PERTURBATION = 1e-4
 #: [period n] A batch: number of orbits in the test of that perturbation.
 _TEST_ORBITS = 16
 #: [no threshold] Number of orbits from the second to the last quarter of that test; these two are compared.
@@ -74,7 +75,7 @@ _PART_LEFT = 0.97
 _PAUSE_AFTER_FAILED_TEST = 400
 #: [period n] A batch: upper limit of the reported contraction factor per orbit of a perturbation that has shrunk. Up to
 #: 100 beads, multipliers are then computed.
-_LARGEST_REPORTED_CONTRACTION = 0.9999
+_LARGEST_REPORTED_CONTRACTION = LARGEST_TRUSTED_CONTRACTION
 #: [period n] A batch: largest contraction factor per drive period that is assumed after an extrapolation. Larger
 #: factors are not measured accurately enough.
 _LARGEST_ASSUMED_CONTRACTION = 0.98
@@ -104,7 +105,10 @@ def extrapolate_member(state, member, n, contraction, change):
 
 @internal
 def check_coarse(state, member):
-    """Check whether a member's last strobes are periodic; if they only approach an orbit, extrapolate the transient."""
+    """Check whether a member's last strobes are periodic; if they only approach an orbit, extrapolate the transient.
+
+    Returns whether its regime is decided.
+    """
     search, schedule, record = state.search, state.schedule, state.record
     strobes = record.strobes[member, record.first_strobe[0, member] : record.strobe_count[member]]
     periods, count = record.periods[member], strobes.shape[0]
@@ -169,7 +173,7 @@ def perturb(state, member, period):
     keep_state_before(search, record.strobes[member, record.strobe_count[member] - 1], member)
     for q in range(2):
         for i in range(work.limit.shape[1]):
-            offset = (1 - 2 * (i % 2)) * _DISTURBANCE * work.scale[q]
+            offset = (1 - 2 * (i % 2)) * _PERTURBATION * work.scale[q]
             work.limit[q, i] = search.state_before[member, q, i] + offset
     for q in range(3):
         search.fine_record[member, FINE_FORCES + q] = largest_force(record, member, period, q)
@@ -183,6 +187,7 @@ def judge_perturbation(state, member):
     """Check whether a member's perturbation has decayed, at the end of the test.
 
     If so, the member returns to its orbit, and the contraction factor is recorded. Otherwise extrapolation pauses.
+    Returns whether its regime is decided, which is whether the perturbation has decayed.
     """
     search, record, scale = state.search, state.record, state.work.scale
     n, bodies = search.tested_period[member], state.work.limit.shape[1]
@@ -217,7 +222,8 @@ def judge_perturbation(state, member):
 def check_fine(state, member):
     """Check whether the coarse orbit's error has decayed in a fine member; if not, extrapolate its transient.
 
-    If changes are not smaller after an extrapolation, it is undone, and the member is not extrapolated again.
+    If changes are not smaller after an extrapolation, it is undone, and the member is not extrapolated again. Returns
+    whether the fine run is at its end, and the member therefore due.
     """
     record, search, schedule, scale = state.record, state.search, state.schedule, state.work.scale
     fine, last_check, count = search.fine_record[member], search.last_check[member], record.strobe_count[member]

@@ -16,7 +16,7 @@ from ..compiling.dispatch import by_slot
 from ..compiling.jit import inline_llvm
 from ..effects.dissipation import LAWS, exponent, primitive_factor, primitive_power
 from ..effects.preload import vector_overlap
-from ..simd.functions import at_least_tiny, clip, gate, larger, root_by_series
+from ..simd.functions import at_least_tiny, gate, larger, positive_part, root_by_series
 from ..simd.vector import load_batch, positive_mask, store
 from .unequal import over_mass, times_stiffness
 
@@ -91,7 +91,7 @@ def correct_contacts(values, y, overlaps, h, u0):
         if positive_mask(changed) != 0:
             moved = abs(overlap - before)
             r = larger(overlap, before) / moved
-            r_mid = clip(r - 0.5)
+            r_mid = positive_part(r - 0.5)
             error = impulse_error(r, three_halves_by_series(r), three_halves_by_series(r_mid))
             impulse = h * three_halves_by_series(moved) * error
             impulse = times_stiffness(values.unequal, values.wall, c, c == values.last, impulse)

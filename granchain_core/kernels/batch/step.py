@@ -26,7 +26,7 @@ from ..forces.peaks import (
     OUTPUT_UNRESOLVED,
     update_batch_peak,
 )
-from ..simd.functions import at_least_tiny, clip, gate, larger, root, root_by_series
+from ..simd.functions import at_least_tiny, gate, larger, positive_part, root, root_by_series
 from ..simd.vector import blank, load_batch, positive_mask, store
 from .unequal import over_mass, times_stiffness
 
@@ -52,26 +52,14 @@ class LeftBead(NamedTuple):
     primitive: Any
 
 
-@inline_llvm
-def by_sqrt(d):
-    """√d by the square-root instruction."""
-    return root(d)
-
-
-@inline_llvm
-def by_series(d):
-    """√d, d > 0, by an estimate and a series where simd/functions.py has one, otherwise by the instruction."""
-    return root_by_series(d)
-
-
 #: The function for the last of three roots. The fastest shares by measurement: docs/benchmarks.md, "The step of a
 #: batch".
-third_root = by_series if BATCH_SIZE == 8 else by_sqrt
+third_root = root_by_series if BATCH_SIZE == 8 else root
 
 
 @inline_llvm
 def contact(values, root_of, left, right, c, is_wall):
-    """Elastic force and primitive G/λ of contact c; `root_of` computes the root."""
+    """Elastic force and primitive G/λ of contact c, with a root by `root_of`: `root` or `root_by_series`."""
     d = at_least_tiny(vector_overlap(values.slots.preload, left, right, c))
     r = root_of(d)
     e = times_stiffness(values.unequal, values.wall, c, is_wall, d * r)
@@ -153,17 +141,17 @@ class ChainEnds(NamedTuple):
 def run_stage(values, stage, source, driver):
     """Compute one stage at the state `source` with the driver at `driver`; return its `ChainEnds`."""
     last, u = values.last, load_batch(source, 1)
-    e_first, first_primitive = contact(values, by_series, driver, u, 0, False)
+    e_first, first_primitive = contact(values, root_by_series, driver, u, 0, False)
     left, v_first = LeftBead(u, e_first, first_primitive), u
     if last > 1:
-        v_first, left = bead(values, by_series, stage, source, 1, left, False)
+        v_first, left = bead(values, root_by_series, stage, source, 1, left, False)
     for i in range(2, last - 2, 3):
-        _, left = bead(values, by_sqrt, stage, source, i, left, False)
-        _, left = bead(values, by_series, stage, source, i + 1, left, False)
+        _, left = bead(values, root, stage, source, i, left, False)
+        _, left = bead(values, root_by_series, stage, source, i + 1, left, False)
         _, left = bead(values, third_root, stage, source, i + 2, left, False)
     for i in range(max(2, last - (last - 2) % 3), last):
-        _, left = bead(values, by_sqrt, stage, source, i, left, False)
-    v_last, left = bead(values, by_sqrt, stage, source, last, left, True)
+        _, left = bead(values, root, stage, source, i, left, False)
+    v_last, left = bead(values, root, stage, source, last, left, True)
     return ChainEnds(e_first, v_first if last > 1 else v_last, left.e, v_last)
 
 
@@ -220,7 +208,7 @@ def update_jump(law, own_damping, h, approach, before, row, peaks, peak):
     store(before, row + 1, rate)
     zero, was, now = blank(overlap), positive_mask(overlap_before), positive_mask(overlap)
     if now & ~was != 0:
-        undamped = rate + own_damping * clip(overlap)
+        undamped = rate + own_damping * positive_part(overlap)
         _, closing = closing_rate(overlap_before, overlap, rate_before, undamped, own_damping, h)
         closed = gate(zero - overlap_before, gate(overlap, law.coefficient * closing))
         store(peaks, peak, larger(load_batch(peaks, peak), closed))

@@ -193,7 +193,7 @@ class KernelCache(_FunctionCache):
             super().save_overload(sig, data)
         except OSError as problem:
             warn_once(f"Compiled kernels cannot be kept in {CACHE_FOLDER} ({problem.strerror or problem}); those that "
-                     "are not there are compiled for this process only.")
+                      "are not there are compiled for this process only.")
         finally:
             self.release(self._path(sig, data.codegen))
 
@@ -220,7 +220,7 @@ class KernelCache(_FunctionCache):
                 return self._load_overload(sig, target_context)
         except OSError as problem:
             warn_once(f"Compiled kernels in {CACHE_FOLDER} cannot be read ({problem.strerror or problem}); they are "
-                     "compiled for this process only.")
+                      "compiled for this process only.")
             return None
 
     def _path(self, sig: Any, codegen: Any) -> Path:
@@ -265,4 +265,4 @@ def keep_on_disk(compiled: Any) -> None:
         compiled._cache = KernelCache(compiled.py_func)
     except AttributeError as missing:
         warn_once(f"Compiled kernels cannot be kept with Numba {numba.__version__} ({missing}); they are compiled for "
-                 "this process only.")
+                  "this process only.")

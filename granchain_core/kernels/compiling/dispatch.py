@@ -38,12 +38,20 @@ def _by_first_type(declared, forceinline, implementations):
     compiled = functools.cache(numba.njit(nogil=True, **INTERNAL_OPTIONS | {"forceinline": forceinline}))
 
     def choose(slot):
-        return compiled(chosen(slot.instance_class if isinstance(slot, types.BaseNamedTuple) else type(None)))
+        if isinstance(slot, types.NoneType):
+            return compiled(chosen(type(None)))
+        if isinstance(slot, types.BaseNamedTuple):
+            return compiled(chosen(slot.instance_class))
+        raise TypeError(f"`{declared.__name__}` chooses its code by its first argument, which must be None or a "
+                        f"NamedTuple with code, not {slot}.")
 
     generic._numba_type_ = ChoiceType(declared.__qualname__, choose)
 
     def of(*slot_classes):
         def register(implementation):
+            if implementation.__name__ == "_":  # in tracebacks of the compiler and in machine code
+                name = "__".join([declared.__name__, *(slot_class.__name__ for slot_class in slot_classes)])
+                implementation.__name__ = implementation.__qualname__ = name
             implementations.update(dict.fromkeys(slot_classes, implementation))
             return implementation
 

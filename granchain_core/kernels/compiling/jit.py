@@ -2,7 +2,7 @@
 
     `kernel`         has an entry point for Python, and releases the GIL; other kernels may call it too, and are then
                      linked with it
-    `brief_kernel`   the same for a function that takes microseconds: it keeps the GIL
+    `brief_kernel`   the same, for a function that takes microseconds in a short chain: it keeps the GIL
     `internal`       a function of kernels, compiled separately and linked into its callers
     `inline_llvm`    the same, inlined by LLVM, so that values stay in registers
     `inline_numba`   the same, inlined by Numba before types are inferred: for functions that each module calls once
@@ -102,7 +102,7 @@ def kernel(function):
 
 
 def brief_kernel(function):
-    """Like `kernel`, for one that takes microseconds: it keeps the GIL (decorator).
+    """Like `kernel`, for one that takes microseconds in a short chain: it keeps the GIL (decorator).
 
     If another thread wants the GIL too, releasing it and waiting to get it back takes longer than such a kernel.
     """

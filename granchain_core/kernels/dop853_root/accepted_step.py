@@ -9,7 +9,8 @@ from ..compiling.jit import inline_numba
 from ..dop853.tableau import DENSE_EVALUATIONS, STAGES
 from ..error_control.step import is_too_small
 from ..flow.event_time import nonnegative_root
-from ..simd.sums import inverse_sixteenth_root, largest_of
+from ..simd.functions import inverse_sixteenth_root
+from ..simd.sums import largest_of
 from ..simd.vector import at, splat8, with_first
 from ..status import DONE, EVALUATIONS, NOT_FINITE, REJECTED, STEP_TOO_SMALL
 from .chain import Point, powers, transform_at

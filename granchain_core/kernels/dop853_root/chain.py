@@ -22,14 +22,13 @@ import numpy as np
 
 from ..compiling.dispatch import by_slot
 from ..compiling.jit import inline_llvm
-from ..effects.contact import positive_part
 from ..effects.dissipation import LAWS, unit_primitive
 from ..effects.driver import driver_acceleration
 from ..effects.preload import row_overlap
 from ..equations.body_forces import force_on_bead
 from ..equations.chain_in_vector import chain_velocity
 from ..flow.event_time import smooth_power
-from ..simd.functions import chain_root, gate
+from ..simd.functions import chain_root, gate, positive_part
 from ..simd.sums import only_lane, repeat_like
 from ..simd.vector import at, blank, from_left, from_right, splat8, store, with_first
 

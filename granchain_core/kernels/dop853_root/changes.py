@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 from ..compiling.jit import inline_llvm, inline_numba, internal
 from ..contact_cubic import hermite_turn, hermite_value, turns
 from ..flow.event_time import nonnegative_root
-from ..simd.sums import largest_of, lowest_bit
-from ..simd.vector import at, positive_mask
+from ..simd.sums import largest_of
+from ..simd.vector import at, lowest_bit, positive_mask
 from .inside import change_before, load_distance, turn_of
 
 #: [step size] dop853-root: time is transformed if the contact's nearest event, at its present speed, is at most this

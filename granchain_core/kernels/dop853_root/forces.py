@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..compiling.jit import inline_llvm, internal
-from ..effects.contact import elastic_slope, positive_part
+from ..effects.contact import elastic_slope
 from ..effects.dissipation import dashpot_force, dashpot_slope
 from ..effects.driver import driver_acceleration
 from ..equations.body_forces import force_on_bead
@@ -16,6 +16,7 @@ from ..error_control.bracket import maximum_inside, value_at
 from ..error_control.force_search import FORCE_SECTIONS, SEARCHED, WORTH, is_monotone, may_hold_maximum
 from ..forces.largest import cubic_top, update_largest
 from ..forces.peaks import row_of
+from ..simd.functions import positive_part
 from ..simd.vector import at, blank, from_left, from_right, load8, with_first
 from ..status import EVALUATIONS
 from .chain import Point, no_transform, rates_at

@@ -23,7 +23,7 @@ from ..error_control.step import GOAL_TOLERANCE, evaluate, is_too_small
 from ..flow.event_time import smooth_power
 from ..forces.largest import SAMPLE, record_closing
 from ..samples import first_not_finite, write_sample
-from ..simd.sums import inverse_sixteenth_root
+from ..simd.functions import inverse_sixteenth_root
 from ..simd.vector import at, blank, positive_mask, splat8, store, with_first
 from ..status import (
     CANCELLED,
@@ -197,7 +197,7 @@ def run_dop853_root(method, work, trajectory, sample_range, samples, out):
     points, grid, every, counts = sample_range.points, sample_range.grid, sample_range.every, out.counts
     bodies, period = slots.chain.inverse_mass.size, drive.period
     context = RunContext(slots, chain_values(work.chain, slots), slots.driver, drive.beta, method, work, out,
-                      smooth_power(slots.dissipation), bodies - 2, period / grid, GOAL_TOLERANCE * period, every)
+                         smooth_power(slots.dissipation), bodies - 2, period / grid, GOAL_TOLERANCE * period, every)
     g, done, row, dt = sample_range.first, 0, 1, workspace.next_step[0]
     events, most_events, idle = 0, EVENTS_PER_CONTACT * (bodies - 1), 0
     start = start_of_run(context, g * context.spacing, y, bodies)
@@ -245,7 +245,7 @@ def run_dop853_root(method, work, trajectory, sample_range, samples, out):
                 start = with_contact_toggled(context, start, end.contact)
                 if (start.bits >> end.contact) & 1 != 0 and every > 0:
                     record_closing(slots.dissipation, at(start.rates.rate, end.contact), end.contact, context.last,
-                                 drive.beta * start.t, out.log)
+                                   drive.beta * start.t, out.log)
         if start.t >= period:
             start = StepStart(start.t - period, start.point, start.rates, start.forces, start.bits, start.closed)
             g, events, since = g - grid, 0, start.t

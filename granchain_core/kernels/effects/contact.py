@@ -15,8 +15,11 @@ import numpy as np
 
 from ..compiling.dispatch import by_slot
 from ..compiling.jit import inline_llvm, internal
-from ..simd.functions import clip, root
+from ..simd.functions import positive_part, root
 from .registry import in_simd_kernels
+
+#: Size of an overlap of which only the sign matters: its force is negligible.
+TINY = 1e-300
 
 
 @in_simd_kernels("rk4", "batch", "dop853_root")
@@ -31,12 +34,6 @@ class FrozenContacts(NamedTuple):
     """Slot of contacts whose state is fixed during an attempt: closed (N+1,) is 0 where a contact stays open."""
 
     closed: np.ndarray
-
-
-@internal
-def positive_part(overlap):
-    """[δ]_+, written so that a NaN overlap stays NaN rather than opening the contact."""
-    return clip(overlap)
 
 
 @by_slot

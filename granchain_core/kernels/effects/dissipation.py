@@ -18,10 +18,10 @@ from typing import NamedTuple
 
 from ..compiling.dispatch import by_slot, by_slot_inlined, require_terms
 from ..compiling.jit import inline_llvm
-from ..simd.functions import clip, gate, root
+from ..simd.functions import gate, positive_part, root
 from ..simd.vector import load_batch
-from ..step_ends import TINY
 from .batch_values import batch_values
+from .contact import TINY
 from .registry import in_simd_kernels
 
 
@@ -132,7 +132,7 @@ def dashpot_force(law, overlap, rate):
 
 @dashpot_force.of(*LAWS)
 def _(law, overlap, rate):
-    return damping(law, clip(overlap)) * rate
+    return damping(law, positive_part(overlap)) * rate
 
 
 @by_slot

@@ -17,7 +17,8 @@ from typing import NamedTuple
 
 from ..compiling.dispatch import by_slot
 from ..compiling.jit import internal
-from .contact import elastic_force, positive_part
+from ..simd.functions import positive_part
+from .contact import elastic_force
 from .dissipation import times_primitive
 from .driver import driver_acceleration
 from .preload import overlap

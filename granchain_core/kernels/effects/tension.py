@@ -19,7 +19,8 @@ import numpy as np
 
 from ..compiling.dispatch import by_slot
 from ..compiling.jit import internal
-from .contact import elastic_energy, positive_part
+from ..simd.functions import positive_part
+from .contact import elastic_energy
 from .dissipation import damping, dashpot_force, primitive, put_primitive
 from .preload import overlap
 

@@ -11,10 +11,9 @@ from typing import Any, NamedTuple
 
 from ..compiling.dispatch import by_slot, by_type
 from ..compiling.jit import inline_llvm
-from ..effects.contact import positive_part
 from ..effects.dissipation import LAWS, unit_primitive
 from ..effects.preload import row_overlap, row_values
-from ..simd.functions import chain_root
+from ..simd.functions import chain_root, positive_part
 from ..simd.vector import blank, from_left, from_right, load8, load16, load32, with_first
 from .body_forces import force_on_bead
 

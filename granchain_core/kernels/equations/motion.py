@@ -22,7 +22,7 @@ import numpy as np
 
 from ..compiling.jit import brief_kernel, inline_llvm, internal
 from ..effects.batch_values import batch_values
-from ..effects.contact import closed_overlap, elastic_energy, elastic_force, positive_part
+from ..effects.contact import closed_overlap, elastic_energy, elastic_force
 from ..effects.dissipation import dashpot_force, v_from_w, w_from_v, write_primitive
 from ..effects.driver import driver_displacement, driver_velocity
 from ..effects.energy_account import account_rates
@@ -30,6 +30,7 @@ from ..effects.given_force import put_given_force, put_given_primitive
 from ..effects.preload import overlap
 from ..effects.registry import check_effects
 from ..effects.tension import cut_tension, unless_force_free, write_force_free_primitive
+from ..simd.functions import positive_part
 from .body_forces import account_for_bodies, force_on_bead, stored_on_bead
 
 

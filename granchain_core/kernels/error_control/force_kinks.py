@@ -11,13 +11,12 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiling.dispatch import by_slot
-from ..effects.contact import positive_part
 from ..effects.dissipation import LAWS, power
 from ..effects.energy_account import add_to_account, ends_of
 from ..effects.preload import overlap
 from ..effects.tension import TensionCut, hold_force_free
 from ..equations.motion import write_w
-from ..simd.functions import gate, root
+from ..simd.functions import gate, positive_part, root
 from ..status import EVALUATIONS
 from .bracket import Bracket, root_inside, value_at
 from .step import evaluate, prepare_dense, stages, write_dense_state

@@ -18,12 +18,13 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiling.jit import inline_llvm, internal
-from ..effects.contact import elastic_force, elastic_slope, positive_part
+from ..effects.contact import elastic_force, elastic_slope
 from ..effects.dissipation import dashpot_force
 from ..effects.preload import overlap
 from ..effects.tension import cut_at_zero
 from ..forces.largest import cubic_top, force_slope
 from ..forces.peaks import row_of
+from ..simd.functions import positive_part
 from ..status import EVALUATIONS
 from .bracket import maximum_inside, value_at
 from .step import evaluate, prepare_dense, stages, write_dense_state

@@ -14,7 +14,7 @@ from ..effects.tension import TensionCut
 from ..status import DONE, EVALUATIONS, EVENTS, STEPS
 from .bracket import may_turn, value_at
 from .force_kinks import KINK, WRONG_SIDE, enter_force_free, first_kink
-from .step import Overlap, Step, accepted_step, attempt, crossing, is_too_small, prepare_dense, stages, turning_point
+from .step import Overlap, Step, accepted_in_t, attempt, crossing, is_too_small, prepare_dense, stages, turning_point
 
 #: [step size] dop853: target overlap just past an event, in units of the largest displacement: a few rounding errors.
 _OVERLAP_AIM = 1e-15
@@ -69,7 +69,7 @@ def first_event(step, counts):
             if value_at(signed_overlap, step, high) <= 0.0:
                 continue
         root = crossing(signed_overlap, step, low, high)
-        if root < first and not is_too_small(0.1 * root * h, t, drive.beta):
+        if root < first and not is_too_small(root * h, t, drive.beta):
             contact, first = c, root
     return contact, first
 
@@ -129,7 +129,7 @@ def located_step(method, trajectory, t, limit, counts):
     aimed, kinked, skip_wrong_side = -1, False, False
     while True:
         tried = h
-        status, h, factor = accepted_step(method, trajectory, t, tried, counts)
+        status, h, factor = accepted_in_t(method, trajectory, t, tried, counts)
         if status != DONE:
             return status, h, -1
         step, not_shortened = Step(trajectory, t, h), h == tried

@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..compiling.dispatch import by_type
-from ..compiling.jit import inline_numba, internal, kernel
+from ..compiling.jit import inline_numba, internal
 from ..effects.driver import driver_displacement, driver_velocity
 from ..effects.preload import overlap
 from ..equations.motion import motion
@@ -38,6 +38,9 @@ _MIN_FACTOR = 0.1
 _SAFETY = 0.9
 #: [no threshold] ε in the resolution of t, ε·(t + 1/β): the spacing of floating-point numbers at 1.
 _RESOLUTION = 2.2e-16
+#: [step size] Error control: a step is too small if this part of it does not change the time, as in Hairer's dop853.f.
+#: The times of its stages are about that far apart.
+_PART_RESOLVED = 0.1
 #: [step size] Error control: a step that ends closer to a goal (the period's end, a sample) than this, in periods, ends
 #: at the goal. Such a difference is the rounding of a sum of steps.
 GOAL_TOLERANCE = 1e-13
@@ -93,7 +96,7 @@ def dense_value(workspace, y, h, x, i):
     """Component i of the state at fraction x of the step of size h from y, whose dense output is prepared."""
 
 
-@kernel
+@internal
 def evaluate(slots, beta, t, y, dy, forces):
     """Evaluate the slope at local time t of the period; the drive phase is βt."""
     motion(slots, driver_displacement(slots.driver, beta * t), driver_velocity(slots.driver, beta * t), y, dy, forces)
@@ -106,7 +109,7 @@ def shrunk(method, h, error):
 
 
 @internal
-def growth(method, error, rejected):
+def next_factor(method, error, rejected):
     """Step-size factor after an accepted step; an error below 1e-12 gives the largest factor in any case.
 
     After a rejected attempt the step does not grow, as in Hairer's dop853.f, because it would be rejected again.
@@ -117,16 +120,16 @@ def growth(method, error, rejected):
 
 @internal
 def is_too_small(dt, t, beta):
-    """Whether a step dt at local time t is below the resolution of the time within a period.
+    """Whether a part `_PART_RESOLVED` of a step dt at local time t is below the resolution of the time within a period.
 
     The resolution at t itself would be too fine at the start of a period: steps too small to change the state would
     follow one another endlessly.
     """
-    return not beta * dt > _RESOLUTION * (1.0 + beta * t)
+    return not beta * (_PART_RESOLVED * dt) > _RESOLUTION * (1.0 + beta * t)
 
 
 @inline_numba
-def accepted_step(method, trajectory, t, h, counts):
+def accepted_in_t(method, trajectory, t, h, counts):
     """Shrink a step from t until its error is tolerable; return (status, size, factor for the next step)."""
     rejected = False
     while True:
@@ -135,11 +138,11 @@ def accepted_step(method, trajectory, t, h, counts):
         if not np.isfinite(error):
             return NOT_FINITE, h, 1.0
         if error <= 1.0:
-            return DONE, h, growth(method, error, rejected)
+            return DONE, h, next_factor(method, error, rejected)
         counts[REJECTED] += 1
         rejected = True
         h = shrunk(method, h, error)
-        if is_too_small(0.1 * h, t, trajectory.drive.beta):
+        if is_too_small(h, t, trajectory.drive.beta):
             return STEP_TOO_SMALL, h, 1.0
 
 

@@ -24,8 +24,8 @@ from ..error_control.step import (
     crossing,
     drive_phase,
     evaluate,
-    growth,
     is_too_small,
+    next_factor,
     shrunk,
     turning_point,
 )
@@ -105,11 +105,11 @@ def accepted_in_time(method, problem, time, h, counts):
         if not np.isfinite(error):
             return NOT_FINITE, h, 1.0
         if error <= 1.0:
-            return DONE, h, growth(method, error, rejected)
+            return DONE, h, next_factor(method, error, rejected)
         counts[REJECTED] += 1
         rejected = True
         h = shrunk(method, h, error)
-        if is_too_small(0.1 * (time_at(time, h) - time.start), time.start, problem.trajectory.drive.beta):
+        if is_too_small(time_at(time, h) - time.start, time.start, problem.trajectory.drive.beta):
             return STEP_TOO_SMALL, h, 1.0
 
 

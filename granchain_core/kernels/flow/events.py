@@ -5,6 +5,8 @@ A step returns (status, time, size, contact that changed at its end or −1); it
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from ..compiling.jit import inline_numba, internal
@@ -72,7 +74,7 @@ def locate_change(method, problem, time, h, c, counts):
 def step_to_opening(method, problem, t, goal, c, counts):
     """Step from t towards the opening of contact c, estimated at `goal`: onto it, or part of the way.
 
-    Returns (status, time, size, c or −1, goal); the status is LOST if the contact does not open there.
+    Returns (status, time, size, c or −1); the status is LOST if the contact does not open there.
     """
     slots, drive, _, workspace = problem.trajectory
     power, farthest = smooth_power(slots.dissipation), goal + 3.0 * (goal - t)
@@ -82,19 +84,19 @@ def step_to_opening(method, problem, t, goal, c, counts):
         error = attempt_in_time(method, problem, time, time.s)
         counts[EVALUATIONS] += STAGES
         if not np.isfinite(error):
-            return NOT_FINITE, time, 0.0, -1, goal
+            return NOT_FINITE, time, 0.0, -1
         d, speed = overlap(slots.preload, workspace.end, c), workspace.slope[c] - workspace.slope[c + 1]
         if not speed < 0.0:
-            return LOST, time, 0.0, -1, goal
+            return LOST, time, 0.0, -1
         located = abs(d) <= _LARGEST_EVENT_OVERLAP * max(1.0, workspace.scale[0]) or goal - d / speed == goal
         if located:
             break
         goal -= d / speed
         if not t < goal < farthest:
-            return LOST, time, 0.0, -1, goal
+            return LOST, time, 0.0, -1
         time = time_from(BEFORE, goal, t, power)
     if not located:
-        return LOST, time, 0.0, -1, goal
+        return LOST, time, 0.0, -1
     h = size_of(time, min(goal, drive.period) - t)
     if goal > drive.period:
         located = False
@@ -104,16 +106,52 @@ def step_to_opening(method, problem, t, goal, c, counts):
         located = False
         counts[REJECTED] += 1
         h = shrunk(method, h, error)
-        if is_too_small(0.1 * (time_at(time, h) - t), t, drive.beta):
-            return STEP_TOO_SMALL, time, h, -1, goal
+        if is_too_small(time_at(time, h) - t, t, drive.beta):
+            return STEP_TOO_SMALL, time, h, -1
         error = attempt_in_time(method, problem, time, h)
         counts[EVALUATIONS] += STAGES
-    return DONE, time, h, c if located else -1, goal
+    return DONE, time, h, c if located else -1
+
+
+class Aim(NamedTuple):
+    """The opening at which a step aims: contact `target` at the estimated time `goal`, if `active`.
+
+    `lost` is true once an opening was aimed at in vain; after that, the step aims at no other.
+    """
+
+    active: bool
+    target: int
+    goal: float
+    lost: bool
+
+
+@inline_numba
+def first_aim(slots, y, contacts, t, dt, last_closing):
+    """The `Aim` of a step's first attempt: the nearest opening, if it is near and no contact has just closed."""
+    target, wait = next_opening(slots, y, contacts)
+    return Aim(target >= 0 and wait < _OPENING_STEPS * dt and t > last_closing, target, t + wait, False)
+
+
+@inline_numba
+def tried_step(method, problem, t, time, h, aim, counts):
+    """Take an accepted step from t, of size h in `time` at most, or towards the opening of `aim`.
+
+    Returns (status, time, size, contact that opens at its end or −1, factor for the next step).
+    """
+    if aim.active:
+        status, time, h, located = step_to_opening(method, problem, t, aim.goal, aim.target, counts)
+        return status, time, h, located, 1.0
+    status, h, factor = accepted_in_time(method, problem, time, h, counts)
+    return status, time, h, -1, factor
 
 
 @internal
 def flow_step(method, problem, t, last_closing, counts):
     """Take one accepted step from y at local time t, at most to the period's end; `last_closing` is a time (−∞: none).
+
+    Each attempt is an accepted step (`tried_step`) and the first contact that changes in it (`first_event`). It is the
+    step if none does, and if one closes, up to there (`locate_change`). If one opens, the next attempt aims at that
+    opening; next to a closing, whose root of time it needs, it is a shorter step instead.
 
     Returns (status, time, size, contact); size 0 with a contact means that it changes at t itself.
     workspace.next_step[0] is the next step to try, in t.
@@ -122,39 +160,32 @@ def flow_step(method, problem, t, last_closing, counts):
     slots, drive, y, workspace = trajectory
     next_step, limit = workspace.next_step, drive.period
     dt = min(next_step[0], method.largest_step, limit - t)
-    target, wait = next_opening(slots, y, contacts)
-    goal = t + wait
-    aiming, lost = target >= 0 and wait < _OPENING_STEPS * dt and t > last_closing, False
+    aim = first_aim(slots, y, contacts, t, dt, last_closing)
     usual = time_from(AFTER if last_closing > -np.inf else PLAIN, last_closing, t, smooth_power(slots.dissipation))
     time, h = usual, size_of(usual, dt)
     for _ in range(_STEP_ATTEMPTS):
-        located, factor = -1, 1.0
-        if aiming:
-            status, time, h, located, goal = step_to_opening(method, problem, t, goal, target, counts)
-            if status == LOST:
-                aiming, lost = False, True
-                time, h = usual, size_of(usual, dt)
-                continue
-        else:
-            status, h, factor = accepted_in_time(method, problem, time, h, counts)
+        status, time, h, located, factor = tried_step(method, problem, t, time, h, aim, counts)
+        if status == LOST:
+            aim, time, h = Aim(False, -1, t, True), usual, size_of(usual, dt)
+            continue
+        if not aim.active:
             dt = min(dt, time_at(time, h) - t)
         if status != DONE:
             return status, time, h, -1
         contact, x = first_event(problem, time, h, located, counts)
         if contact < 0:
-            if not aiming:
+            if not aim.active:
                 next_step[0] = next_dt(time, h, factor, next_step[0], limit)
             return DONE, time, h, located
         if x * h == 0.0:
             return DONE, time, 0.0, contact
-        if contacts.closed[contact] != 0 and not lost:
-            if t > last_closing:
-                aiming, target, goal = True, contact, time_at(time, x * h)
-            else:
-                h *= _FIRST_STEP_PART * x
-                dt = time_at(time, h) - t
-            continue
-        return DONE, time, locate_change(method, problem, time, h * x, contact, counts), contact
+        if contacts.closed[contact] == 0 or aim.lost:
+            return DONE, time, locate_change(method, problem, time, h * x, contact, counts), contact
+        if t > last_closing:
+            aim = Aim(True, contact, time_at(time, x * h), False)
+        else:
+            h *= _FIRST_STEP_PART * x
+            dt = time_at(time, h) - t
     return STEP_TOO_SMALL, time, h, -1
 
 

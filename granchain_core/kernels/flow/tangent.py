@@ -19,12 +19,12 @@ import numpy as np
 from ..compiling.dispatch import by_slot, by_slot_inlined
 from ..compiling.jit import inline_llvm, inline_numba, internal
 from ..dop853.tableau import STAGES, A, C
-from ..effects.contact import elastic_slope, positive_part
+from ..effects.contact import TINY, elastic_slope
 from ..effects.dissipation import LAWS, damping
 from ..effects.preload import overlap
 from ..equations.body_forces import add_force_slope, add_force_trace
+from ..simd.functions import positive_part
 from ..simd.vector import BLOCK_WIDTH, aligned, blank, load8, store
-from ..step_ends import TINY
 from .attempt import record_stage
 from .event_time import dt_ds_at
 

@@ -16,11 +16,11 @@ import numpy as np
 
 from ..compiling.jit import inline_numba
 from ..dop853.tableau import STAGES, A, C
-from ..effects.contact import elastic_slope, positive_part
+from ..effects.contact import TINY, elastic_slope
 from ..effects.dissipation import damping
 from ..effects.preload import overlap
 from ..equations.body_forces import add_force_slope
-from ..step_ends import TINY
+from ..simd.functions import positive_part
 from .attempt import record_stage
 from .event_time import dt_ds_at
 from .run import apply_saltation

@@ -13,7 +13,7 @@ from ..compiling.dispatch import by_slot
 from ..compiling.jit import inline_llvm, internal
 from ..effects.dissipation import JUMP_LAWS, SMOOTH_LAWS
 from ..effects.preload import overlap
-from ..simd.functions import clip, root
+from ..simd.functions import positive_part, root
 from .largest import UNRESOLVED, record_closing
 
 
@@ -27,8 +27,8 @@ class Approach(NamedTuple):
 @inline_llvm
 def between_0_and_1(s):
     """The nearest number in [0, 1]; a NaN stays a NaN. For numbers and vectors up to 2^53; above, rounding gives 0."""
-    least = clip(s)
-    return least - clip(least - 1.0)
+    least = positive_part(s)
+    return least - positive_part(least - 1.0)
 
 
 @inline_llvm
@@ -64,7 +64,7 @@ def brief_touch(before, after, rate, rate_after, h):
     """
     fall = (rate - rate_after) / h
     top = 0.5 * (before + after) + 0.25 * (rate * rate + rate_after * rate_after) / fall
-    return root(clip(2.0 * fall * top))
+    return root(positive_part(2.0 * fall * top))
 
 
 @internal

@@ -17,14 +17,15 @@ import numpy as np
 from ..compiling.dispatch import by_slot
 from ..compiling.jit import inline_numba, internal
 from ..contact_cubic import hermite_turn, hermite_value
-from ..effects.contact import elastic_force, elastic_slope, positive_part
+from ..effects.contact import TINY, elastic_force, elastic_slope
 from ..effects.dissipation import JUMP_LAWS, SMOOTH_LAWS, closing_force, dashpot_force, dashpot_slope
 from ..effects.driver import driver_acceleration
 from ..effects.preload import overlap
 from ..effects.tension import cut_at_zero
 from ..equations.body_forces import force_on_bead
 from ..equations.motion import contact_force
-from ..step_ends import OVERLAP, RATE, TINY
+from ..simd.functions import positive_part
+from ..step_ends import OVERLAP, RATE
 from .peaks import INPUT, INPUT_JUMP, OUTPUT, OUTPUT_ELASTIC, OUTPUT_JUMP, PEAKS, row_of
 
 #: The slope of a force is only computed above this part of the largest force so far: a maximum inside a step exceeds

@@ -13,9 +13,9 @@ from math import copysign, sqrt
 from ..compiling.dispatch import by_slot
 from ..compiling.jit import inline_llvm, inline_numba, internal
 from ..contact_cubic import contact_root
-from ..effects.contact import three_halves
+from ..effects.contact import TINY, three_halves
 from ..effects.dissipation import JUMP_LAWS, SMOOTH_LAWS, exponent, primitive_factor, primitive_power
-from ..step_ends import DISPLACEMENT_ERROR, MOMENTUM_ERROR, OVERLAP, OVERLAP_END, RATE, RATE_END, TINY
+from ..step_ends import DISPLACEMENT_ERROR, MOMENTUM_ERROR, OVERLAP, OVERLAP_END, RATE, RATE_END
 
 #: Most events located in one step. The rest of the step is taken whole, at order 2. This shows in the difference from a
 #: computation with half the step, and therefore in the stated error.

@@ -13,11 +13,12 @@ import numpy as np
 
 from ..compiling.dispatch import by_slot
 from ..compiling.jit import inline_numba, internal
-from ..effects.contact import elastic_force, positive_part
+from ..effects.contact import elastic_force
 from ..effects.dissipation import LAWS, dashpot_force, primitive
 from ..effects.preload import vector_overlap
 from ..equations.body_forces import force_on_bead
 from ..forces.peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, update_peak
+from ..simd.functions import positive_part
 from ..simd.vector import BLOCK_WIDTH, from_left, from_right, load8, positive_mask, splat8, store, with_first
 from .step import tabulated_displacement, tabulated_velocity
 

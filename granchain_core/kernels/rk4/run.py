@@ -8,12 +8,13 @@ import numpy as np
 
 from ..compiling.dispatch import by_slot_inlined
 from ..compiling.jit import internal, kernel
-from ..effects.contact import elastic_force, positive_part
+from ..effects.contact import elastic_force
 from ..effects.preload import overlap
 from ..equations.motion import contact_force, motion
 from ..forces.largest import SAMPLE, update_forces
 from ..forces.peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, next_period, update_peak, write_largest_forces
 from ..samples import Samples, first_not_finite, write_sample, write_strobe
+from ..simd.functions import positive_part
 from ..status import CANCELLED, DONE, EVALUATIONS, NOT_FINITE, STEPS, STEPS_BETWEEN_STOP_CHECKS
 from .long_chain import LongChain, steps_without_events
 from .short_chain import ShortChain

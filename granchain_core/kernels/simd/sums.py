@@ -117,29 +117,3 @@ def repeat_like(typingctx, value, eight):
                                       ir.Constant(ir.VectorType(ir.IntType(32), len(lanes)), lanes))
 
     return value(value, eight), codegen
-
-
-@intrinsic
-def lowest_bit(typingctx, mask):
-    """The number of the lowest set bit."""
-
-    def codegen(context, builder, sig, args):
-        return builder.cttz(args[0], ir.Constant(ir.IntType(1), 0))
-
-    return types.int64(mask), codegen
-
-
-@intrinsic
-def inverse_sixteenth_root(typingctx, value):
-    """value^{−1/16} of a positive number to about 4 %, from its bits as an approximate logarithm.
-
-    With order 8, the step size changes as error^{−1/8}, which is (error²)^{−1/16}; 4 % of a step size does no harm.
-    """
-
-    def codegen(context, builder, sig, args):
-        bits = ir.IntType(64)
-        part = builder.ashr(builder.bitcast(args[0], bits), ir.Constant(bits, 4))
-        one = 1023 << 52
-        return builder.bitcast(builder.sub(ir.Constant(bits, one + one // 16 - (1 << 47)), part), ir.DoubleType())
-
-    return types.float64(types.float64), codegen

@@ -240,3 +240,13 @@ def positive_mask(typingctx, value):
         return builder.zext(builder.bitcast(above, ir.IntType(kind.count)), ir.IntType(64))
 
     return types.int64(value), codegen
+
+
+@intrinsic
+def lowest_bit(typingctx, mask):
+    """The number of the lowest set bit."""
+
+    def codegen(context, builder, sig, args):
+        return builder.cttz(args[0], ir.Constant(ir.IntType(1), 0))
+
+    return types.int64(mask), codegen

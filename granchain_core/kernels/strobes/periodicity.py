@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiling.jit import brief_kernel, inline_llvm, internal, kernel
+from ..compiling.jit import inline_llvm, internal, kernel
 
 #: [period n, followed, quasi-periodic] Longest period for which a batch tests, in drive periods, and longest period of
 #: an orbit searched for near a motion, in a batch or alone. Chains with a longer period are settled alone.
@@ -186,7 +186,7 @@ def earlier_contraction(strobes, scale, n, rounding, change):
     return contraction if 0.0 < contraction < 1.0 else -1.0
 
 
-@brief_kernel
+@kernel
 def detect_period(strobes, longest, rounding, settled, slowest, scale, change):
     """Find the shortest period of a record of strobes and the contraction towards it, as `Detected`.
 
@@ -267,7 +267,7 @@ def nearest_neighbours(strobes, order, scale, nearest):
                 k += step
 
 
-@brief_kernel
+@kernel
 def record_changes(strobes, n, scale, out):
     """Write the last out.size changes over n periods of a record into `out`, oldest first."""
     write_scale(strobes, scale)

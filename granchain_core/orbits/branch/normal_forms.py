@@ -133,7 +133,7 @@ def normal_form(kind: str, multiplier: complex, sides: tuple[MapNear, MapNear],
     for amplitude in amplitudes[kind]:
         try:
             form = _judged(kind, *(_COEFFICIENTS[kind](side, vectors, size) for side, vectors, size in
-                                    zip(sides, critical, (amplitude, 0.5 * amplitude), strict=True)))
+                                   zip(sides, critical, (amplitude, 0.5 * amplitude), strict=True)))
         except NotSmooth as obstacle:
             form = NormalForm(NOT_DECIDED, reason=str(obstacle))
         if not form.reason:

@@ -56,9 +56,9 @@ class OrbitCheckpoints:
         points, special = self._written.get(half.direction, (0, 0))
         self._written[half.direction] = len(half.points), len(half.special)
         self.folder.add({"period": period, "direction": half.direction, "first": [points, special],
-                       "points": [_as_json(point) for point in half.points[points:]],
-                       "special": [special_as_json(point) for point in half.special[special:]],
-                       "step": half.step.hex(), "ended": half.ended, "reason": half.reason})
+                         "points": [_as_json(point) for point in half.points[points:]],
+                         "special": [special_as_json(point) for point in half.special[special:]],
+                         "step": half.step.hex(), "ended": half.ended, "reason": half.reason})
 
     def begin(self, branch: Branch) -> None:
         """Add a branch in its state before it is continued."""

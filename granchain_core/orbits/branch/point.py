@@ -152,7 +152,7 @@ def record_along(equations: BranchEquations, x: np.ndarray, value: float,
         engine.start_scaled(x)
         record = OrbitRecord(np.zeros((room, 4)), np.zeros(PEAKS))
         status, done, rows = record_orbit(stepper.method, stepper.trajectory(engine.y), equations.period, record,
-                                           engine.counts.array, engine.stop.flag)
+                                          engine.counts.array, engine.stop.flag)
         if status != FULL:
             engine.raise_for(status, done)
             return engine, record._replace(turns=record.turns[:rows].copy())

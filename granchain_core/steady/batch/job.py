@@ -242,12 +242,12 @@ def _with_period(regime: Regime, period: int) -> Regime:
     return replace(regime, period=period, observed_contraction=contraction)
 
 
-def _periodic(check: np.ndarray, slowest_decay: float, periods_run: int) -> Regime:
+def _periodic(check: np.ndarray, slowest_contraction: float, periods_run: int) -> Regime:
     """The periodic regime of a coarse run, from its last check; extrapolations may have led to it."""
     period, contraction, distance = check
     observed = float(contraction) if contraction >= 0.0 else None
     return Regime(name="periodic", period=int(period), observed_contraction=observed, distance=float(distance),
-                  periods_run=periods_run, orbit_found_by=EXTRAPOLATION if slowest_decay > 0.0 else SETTLING)
+                  periods_run=periods_run, orbit_found_by=EXTRAPOLATION if slowest_contraction > 0.0 else SETTLING)
 
 
 def _to_measure(job: BatchJob, batch: Batch, member: int, periods_run: int, record: np.ndarray) -> BatchJob:

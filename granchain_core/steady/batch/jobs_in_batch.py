@@ -4,7 +4,7 @@ Every scene becomes a member of a batch, with coarse steps. Once its orbit is fo
 steps, without a return from the kernel. Once its regime is decided, the next scene takes its place.
 
 In the coarse run, `check_coarse` (kernels/batch/checks.py) bounds the distance to the orbit; an orbit that was reached
-by extrapolation (kernels/strobes/extrapolation.py) must survive a disturbance. The fine run (kernels/batch/begin.py)
+by extrapolation (kernels/strobes/extrapolation.py) must survive a perturbation. The fine run (kernels/batch/begin.py)
 continues with `check_fine` until the bound is small or no extrapolation is left. The remaining distance enters the
 stated error, together with the change of the forces. Motions that are not periodic are classified by their Lyapunov
 exponents (steady/exponent_measurements.py), measured with a neighbouring trajectory in another lane. A scene that is

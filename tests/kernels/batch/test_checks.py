@@ -34,8 +34,8 @@ def seen(record: np.ndarray, before: float | None = None, **numbers: float) -> B
     return batch
 
 
-def test_an_orbit_found_by_extrapolation_is_disturbed_before_it_is_believed() -> None:
-    """Repeated states count as periodic if the chain settled there; after an extrapolation, they are disturbed first.
+def test_an_orbit_found_by_extrapolation_is_perturbed_before_it_is_believed() -> None:
+    """Repeated states count as periodic if the chain settled there; after an extrapolation, they are perturbed first.
     """
     batch = seen(np.ones(60))
     assert checks.check_coarse.py_func(batch.state, MEMBER)
@@ -43,15 +43,15 @@ def test_an_orbit_found_by_extrapolation_is_disturbed_before_it_is_believed() ->
     assert not checks.check_coarse.py_func(batch.state, MEMBER)
     assert batch.state.search.tested_period[MEMBER] == 1
     moved = np.abs(batch.state.motion.y[[1, 2, ROW + 1, ROW + 2], MEMBER] - 1.0)
-    assert moved == pytest.approx(checks._DISTURBANCE, rel=1e-9)
+    assert moved == pytest.approx(checks._PERTURBATION, rel=1e-9)
 
 
 @pytest.mark.parametrize(("rate", "stable"), [
     (0.8, True), (1.2, False),
     ((checks._PART_LEFT - 0.01) ** (1 / checks._TEST_ORBITS), True),
     ((checks._PART_LEFT + 0.01) ** (1 / checks._TEST_ORBITS), False)])
-def test_an_orbit_is_believed_where_its_disturbance_decays(rate: float, stable: bool) -> None:
-    """If a disturbance of 1e-4 has shrunk after sixteen periods, the chain is put back; if it has grown, it was on no
+def test_an_orbit_is_believed_where_its_perturbation_decays(rate: float, stable: bool) -> None:
+    """If a perturbation of 1e-4 has shrunk after sixteen periods, the chain is put back; if it has grown, it was on no
     stable orbit.
 
     Displacements and velocities are scaled for this member, although others have used the workspace in the meantime.
@@ -79,7 +79,7 @@ def test_an_extrapolation_is_kept_only_if_the_change_after_it_is_smaller(before:
 
 @pytest.mark.parametrize(("before", "slowest"), [(1e-3, 0.9), (1e-9, 0.0)])
 def test_after_an_undone_extrapolation_an_orbit_is_not_one_that_was_extrapolated_to(before: float, slowest: float) -> None:
-    """Such an orbit is neither disturbed nor marked as followed: the contraction is the one before the extrapolation.
+    """Such an orbit is neither perturbed nor marked as followed: the contraction is the one before the extrapolation.
     """
     state = seen(1.0 + 1e-3 * 0.9 ** np.arange(60), change_before=before, extrapolate_from=10_000,
                  slowest_contraction=0.9, contraction_before=0.0).state

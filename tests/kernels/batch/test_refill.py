@@ -24,10 +24,10 @@ COUNT = 2 * BATCH_SIZE + 3
 
 def scene_of(number: int, structure: str) -> Scene:
     """Return a scene of three beads; everything that may differ between members differs from one number to the next."""
-    own = {"founded": {"kappa": 1e-3 * (1 + number % 4)}, "pressed": {"F0": 0.1 * (1 + number % 5)}, "unlike": {}}
+    own = {"founded": {"kappa": 1e-3 * (1 + number % 4)}, "pressed": {"F0": 0.1 * (1 + number % 5)}, "unequal": {}}
     found = scene("sec2").evolve(N=3, f=300.0 + 40.0 * number, A0=2e-7 * (1 + number % 3), D=60.0 + 10.0 * (number % 7),
                                  **own[structure])
-    if structure == "unlike":
+    if structure == "unequal":
         steel = found.bead(1)
         found = replace(found, pattern=(steel, replace(steel, mass=(0.4 + 0.1 * (number % 4)) * steel.mass)))
     return found
@@ -69,7 +69,7 @@ def seen(scenes: list[Scene], numbers: Sequence[int]) -> Found:
     return found
 
 
-@pytest.mark.parametrize("structure", ["founded", "pressed", "unlike"])
+@pytest.mark.parametrize("structure", ["founded", "pressed", "unequal"])
 def test_more_scenes_than_lanes_give_what_each_gives_alone(structure: str) -> None:
     """Strobes, largest forces and jumps agree to the last bit."""
     scenes = [scene_of(number, structure) for number in range(COUNT)]

@@ -5,9 +5,10 @@ effect with a missing term.
 from __future__ import annotations
 
 from types import ModuleType
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numba
+import numpy as np
 import pytest
 
 from granchain_core.kernels.compiling.dispatch import by_slot, by_type
@@ -105,6 +106,36 @@ def test_a_slot_without_code_is_named_in_python_and_by_the_compiler() -> None:
         pushed_by(Unfinished(1.0), 2.0)
     with pytest.raises(Exception, match=r"Unfinished .*has no `pushed_by`"):
         compiled(Unfinished(1.0), 2.0)
+
+
+@pytest.mark.parametrize("first", [2.0, 3, (2.0,), np.ones(1)], ids=["float", "int", "tuple", "array"])
+def test_an_argument_that_is_neither_none_nor_a_slot_has_no_code(first: Any) -> None:
+    """It does not count as an absent effect."""
+    @by_slot
+    def pulled_by(slot, value):  # type: ignore[no-untyped-def]
+        return value
+
+    compiled = numba.njit(lambda slot, value: pulled_by(slot, value))
+    with pytest.raises(TypeError, match="pulled_by"):
+        pulled_by(first, 2.0)
+    with pytest.raises(TypeError, match="`pulled_by` chooses its code by its first argument"):
+        compiled(first, 2.0)
+
+
+def test_the_code_of_a_slot_has_a_name_of_its_own() -> None:
+    """Tracebacks of the compiler and machine code contain it."""
+    @by_slot
+    def weight_of(slot):  # type: ignore[no-untyped-def]
+        return 0.0
+
+    @weight_of.of(loss.LinearDashpot)
+    def _(slot):  # type: ignore[no-untyped-def]
+        return slot.coefficient
+
+    compiled = numba.njit(lambda slot: weight_of(slot))
+    assert compiled(loss.LinearDashpot(3.0)) == 3.0
+    assert weight_of.implementations[loss.LinearDashpot].__qualname__ == "weight_of__LinearDashpot"
+    assert "weight_of__LinearDashpot" in next(iter(compiled.inspect_llvm().values()))
 
 
 def test_what_is_never_absent_has_no_code_for_none() -> None:

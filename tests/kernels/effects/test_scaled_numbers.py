@@ -33,7 +33,7 @@ def stiffness(a: Bead, b: Bead) -> float:
 
 @pytest.mark.parametrize("seed", range(5))
 @pytest.mark.parametrize("law", ["none", "linear"])
-def test_unlike_beads_move_as_the_equations_say(law: str, seed: int) -> None:
+def test_unequal_beads_move_as_the_equations_say(law: str, seed: int) -> None:
     """Forces, du/dt = v, m ẇ = F_left − F_right − k u and the stored energy agree with formulas in SI units; the
     kernels run uncompiled.
     """

@@ -41,7 +41,7 @@ def accepted(errors: list[float], t: float = 0.0) -> tuple[tuple[int, float, flo
     """Return the result of a step of size 1 from t, the attempted sizes, and the counts."""
     method, counts = Scripted(errors, []), np.zeros(4, dtype=np.int64)
     trajectory = SimpleNamespace(workspace=Workspace(), drive=step.DriveCycle(1.0, 2.0 * np.pi))
-    return step.accepted_step.py_func(method, trajectory, t, 1.0, counts), method.tried, counts
+    return step.accepted_in_t.py_func(method, trajectory, t, 1.0, counts), method.tried, counts
 
 
 def test_a_step_grows_at_most_sixfold() -> None:

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from granchain_core.kernels.compiling.jit import kernel
-from granchain_core.kernels.simd.functions import root
-from granchain_core.kernels.simd.sums import inverse_sixteenth_root, largest_of, lowest_bit, only_lane, sum_of
+from granchain_core.kernels.simd.functions import inverse_sixteenth_root, root
+from granchain_core.kernels.simd.sums import largest_of, only_lane, sum_of
 from granchain_core.kernels.simd.vector import (
     BLOCK_WIDTH,
     WIDTHS,
@@ -20,6 +20,7 @@ from granchain_core.kernels.simd.vector import (
     from_right,
     load_like,
     loader,
+    lowest_bit,
     positive_mask,
     splat8,
     store,

@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 
 from granchain_core.kernels.compiling.jit import kernel
-from granchain_core.kernels.effects.contact import positive_part
-from granchain_core.kernels.simd.functions import at_least_tiny, gate
+from granchain_core.kernels.simd.functions import at_least_tiny, gate, positive_part
 from granchain_core.kernels.simd.vector import aligned, load8, store
 
 pytestmark = pytest.mark.quick
