@@ -190,15 +190,9 @@ def bifurcation_diagram(scene: Scene, knob: str, values: Sequence[float] | np.nd
     >>> [point.distinct(bead=1) for point in found.points]
     [1, 1]
     """
-    knobs = [name for name, quantity in QUANTITIES.items() if quantity.is_continuous]
-    if knob not in knobs:
-        raise unknown_name("knob of a bifurcation diagram", knob, knobs)
-    if start not in CURVE_STARTS:
-        raise unknown_name("start", start, CURVE_STARTS)
+    _check_names(knob, start)
     require_scene(scene)
-    numbers = sorted(numbers_in(f"The values of {knob}", values))
-    if not 1 <= len(numbers) <= MOST_VALUES:
-        raise BadInput(f"A bifurcation diagram has 1 to {MOST_VALUES} values of its knob, not {len(numbers)}.")
+    numbers = _checked_values(knob, values)
     keep = whole_number("keep =", keep, 1, MOST_STROBES)
     chains = [(value, scene.evolve(**{knob: value})) for value in numbers]
     diagram = BifurcationDiagram(scene, knob, start)
@@ -208,6 +202,23 @@ def bifurcation_diagram(scene: Scene, knob: str, values: Sequence[float] | np.nd
             progress(len(diagram.points) / len(chains))
     diagram.points.sort(key=lambda point: point.value)
     return diagram
+
+
+def _check_names(knob: str, start: str) -> None:
+    """Raise `BadInput` for a knob that is not continuous, and for an unknown start."""
+    knobs = [name for name, quantity in QUANTITIES.items() if quantity.is_continuous]
+    if knob not in knobs:
+        raise unknown_name("knob of a bifurcation diagram", knob, knobs)
+    if start not in CURVE_STARTS:
+        raise unknown_name("start", start, CURVE_STARTS)
+
+
+def _checked_values(knob: str, values: Sequence[float] | np.ndarray) -> list[float]:
+    """Return the values of the knob in ascending order. Raises `BadInput` if there are none or too many."""
+    numbers = sorted(numbers_in(f"The values of {knob}", values))
+    if not 1 <= len(numbers) <= MOST_VALUES:
+        raise BadInput(f"A bifurcation diagram has 1 to {MOST_VALUES} values of its knob, not {len(numbers)}.")
+    return numbers
 
 
 def _points(chains: list[tuple[float, Scene]], start: str, keep: int, stop: Stop | None) -> Iterator[StrobePoint]:

@@ -135,18 +135,28 @@ def bifurcation_curves(parameter_map: ParameterMap, rows: Iterable[int] | None =
     curves: list[BifurcationCurve] = []
     for row in chosen:
         for pair in _pairs(parameter_map, row):
-            kind, point = _between(parameter_map, pair, stop)
-            if point is None or any(_lies_on(parameter_map, point, kind, pair.period, curve) for curve in curves):
+            curve = _new_curve(parameter_map, pair, heights, curves, stop)
+            if curve is None:
                 continue
-            scene = grid.cell(pair.inside).evolve(**{grid.x.knob: point.x})
-            try:
-                points = follow_curve(scene, kind, point.state, heights, pair.period, grid.x.knob, grid.y.knob, stop)
-            except ComputationError:
-                continue
-            curves.append(BifurcationCurve(kind, pair.period, *points))
+            curves.append(curve)
             if on_curve is not None:
-                on_curve(curves[-1])
+                on_curve(curve)
     return curves
+
+
+def _new_curve(parameter_map: ParameterMap, pair: _Pair, heights: list[float], known: list[BifurcationCurve],
+               stop: Stop | None) -> BifurcationCurve | None:
+    """The curve between two neighbouring cells; None if there is none, if it is known, or if it cannot be continued."""
+    grid = parameter_map.grid
+    kind, point = _between(parameter_map, pair, stop)
+    if point is None or any(_lies_on(parameter_map, point, kind, pair.period, curve) for curve in known):
+        return None
+    scene = grid.cell(pair.inside).evolve(**{grid.x.knob: point.x})
+    try:
+        points = follow_curve(scene, kind, point.state, heights, pair.period, grid.x.knob, grid.y.knob, stop)
+    except ComputationError:
+        return None
+    return BifurcationCurve(kind, pair.period, *points)
 
 
 def _pairs(parameter_map: ParameterMap, row: int) -> Iterator[_Pair]:

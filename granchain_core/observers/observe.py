@@ -89,17 +89,9 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
     >>> observed.displacement.shape, observed.residual.relative < 0.05
     ((1025, 2), True)
     """
-    if isinstance(time, ForceRecord):
-        if force is not None or output is not None:
-            raise BadInput("A record has its own forces; give either a record, or time, force and output.")
-        record = time
-    else:
-        record = force_record(time, force, output)
     sensors = Sensors(bandwidth=bandwidth)
-    record = prepared(record, scene, offset, gap, sensors)
-    if len(record.time) * scene.N > MOST_RECORDED:
-        raise BadInput(f"{len(record.time)} samples for {scene.N} beads are more than {MOST_RECORDED:.0e} values; "
-                       f"give at most {MOST_RECORDED // scene.N} samples.")
+    record = prepared(_record_of(time, force, output), scene, offset, gap, sensors)
+    _check_size(record, scene)
     spent = Stopwatch()
     begin = rest(scene) if start is None else checked_start(scene, start)
     chain = ForceDrivenChain(scene, record, Stop() if stop is None else stop)
@@ -108,6 +100,22 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
     interpolation = _interpolation_errors(chain, record, begin, finest)
     tell(1.0)
     return _observation(chain, record, sensors, finest, interpolation, spent)
+
+
+def _record_of(time: object, force: object, output: object) -> ForceRecord:
+    """The record itself if `time` is one, otherwise that of the arrays. Raises `BadInput` if both are given."""
+    if not isinstance(time, ForceRecord):
+        return force_record(time, force, output)
+    if force is not None or output is not None:
+        raise BadInput("A record has its own forces; give either a record, or time, force and output.")
+    return time
+
+
+def _check_size(record: ForceRecord, scene: Scene) -> None:
+    """Raise `BadInput` if the motion would have too many values."""
+    if len(record.time) * scene.N > MOST_RECORDED:
+        raise BadInput(f"{len(record.time)} samples for {scene.N} beads are more than {MOST_RECORDED:.0e} values; "
+                       f"give at most {MOST_RECORDED // scene.N} samples.")
 
 
 def _interpolation_errors(chain: ForceDrivenChain, record: ForceRecord, begin: State, finest: Refined) -> np.ndarray:

@@ -154,22 +154,11 @@ def run_many(scenes: Iterable[Scene], work: Callable[..., Any] = run,
     >>> [one.regime.period for one in found]
     [1, 1, 1]
     """
-    if isinstance(scenes, Scene):
-        raise BadInput("A batch is a list of scenes, not one scene; [scene] is a list of one.")
-    chains = series_in("The scenes of a batch", scenes)
-    for chain in chains:
-        require_scene(chain)
-    if not 1 <= len(chains) <= MOST_SCENES:
-        raise BadInput(f"A batch has 1 to {MOST_SCENES} scenes, not {len(chains)}.")
-    stop, ended = Stop() if stop is None else stop, Stop()
+    chains = _checked(scenes)
+    stop = Stop() if stop is None else stop
     listed: list[Any] = [None] * len(chains)
     failures, done = [""] * len(chains), 0
-
-    def some(shared: Iterator[tuple[int, Scene]]) -> Iterator[tuple[int, Outcome]]:
-        for number, chain in shared:
-            yield number, attempted(work, chain, {**options, "stop": ended})
-
-    outcomes = on_all_cores(some, enumerate(chains), ended, stop, workers) if scheduler is None else \
+    outcomes = _on_this_machine(chains, work, options, stop, workers) if scheduler is None else \
         results(scheduler, attempted, [(work, chain, options) for chain in chains], stop)
     for number, (result, failure) in outcomes:
         listed[number], failures[number], done = result, failure, done + 1
@@ -178,6 +167,30 @@ def run_many(scenes: Iterable[Scene], work: Callable[..., Any] = run,
     if done < len(chains):
         raise Cancelled
     return Runs(chains, listed, failures)
+
+
+def _checked(scenes: Iterable[Scene]) -> list[Scene]:
+    """Return the scenes of a batch as a list. Raises `BadInput` if one is not a scene, or if they are too many."""
+    if isinstance(scenes, Scene):
+        raise BadInput("A batch is a list of scenes, not one scene; [scene] is a list of one.")
+    chains = series_in("The scenes of a batch", scenes)
+    for chain in chains:
+        require_scene(chain)
+    if not 1 <= len(chains) <= MOST_SCENES:
+        raise BadInput(f"A batch has 1 to {MOST_SCENES} scenes, not {len(chains)}.")
+    return chains
+
+
+def _on_this_machine(chains: list[Scene], work: Callable[..., Any], options: dict[str, Any], stop: Stop,
+                     workers: int | None) -> Iterable[tuple[int, Outcome]]:
+    """The outcomes of all chains, each with its chain's number, as the cores finish them."""
+    ended = Stop()
+
+    def some(shared: Iterator[tuple[int, Scene]]) -> Iterator[tuple[int, Outcome]]:
+        for number, chain in shared:
+            yield number, attempted(work, chain, {**options, "stop": ended})
+
+    return on_all_cores(some, enumerate(chains), ended, stop, workers)
 
 
 def attempted(work: Callable[..., Any], chain: Scene, options: dict[str, Any]) -> Outcome:

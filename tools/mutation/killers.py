@@ -73,7 +73,7 @@ REFILL = ("tests/kernels/batch/test_refill.py",)
 NEIGHBOURS = ("tests/steady/test_batch_neighbours.py", "-k", "pair")
 LYAPUNOV = ("tests/steady/test_lyapunov.py", "-k", "chaotic_chain")
 ROTATION = ("tests/analysis/test_rotation_number.py", "-k", "circle_map or noise or short or in_turn or twice")
-ROTATION_STEPS = ("tests/analysis/test_rotation_number.py", "-k", "finer_steps")
+ROTATION_STEPS = ("tests/analysis/test_rotation_number_of_chains.py", "-k", "finer_steps")
 
 #: Tangents: their columns, and their determinant, which does not see a missing saltation.
 ROUTES = ("tests/orbits/test_tangents.py", "-k", "missing_saltation or one_derivative and changes4")
