@@ -232,6 +232,11 @@ class ScaledChain:
         return step
 
     @property
+    def holds_beads(self) -> bool:
+        """Whether a force from outside the chain, such as a foundation's, pulls every bead back to its place."""
+        return self._body_rates[0] > 0.0
+
+    @property
     def _body_rates(self) -> tuple[float, float]:
         """Return the largest −∂P/∂u / m and −∂P/∂v / m of the forces P from outside the chain on any bead.
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..integrate.scaling import scale_chain
 from ..orbits import Orbit
 from ..orbits.modes import eigenpair
 from ..orbits.stroboscopic_map import MULTIPLIER_ERROR, StroboscopicMap
@@ -27,12 +28,12 @@ def share_of_translation(difference: np.ndarray) -> float:
 
 
 def is_drift(scene: Scene, share: float, multiplier: complex | None) -> bool:
-    """Whether a growing difference with this share of a translation is a drift, which only a foundation prevents.
+    """Whether a growing difference with this share of a translation is a drift; a force that holds beads prevents it.
 
     `multiplier` is the one by which it grows, None if it is not known. A complex multiplier turns the difference
     through shapes of which only some are a translation.
     """
-    return scene.k == 0.0 and share >= TRANSLATION and (multiplier is None or is_real(multiplier))
+    return share >= TRANSLATION and (multiplier is None or is_real(multiplier)) and not scale_chain(scene).holds_beads
 
 
 def is_real(multiplier: complex) -> bool:

@@ -1,4 +1,6 @@
-"""docs/add-an-effect.md and docs/add-a-quadratic-drag.md are followed to the letter in copies of the repository."""
+"""docs/add-an-effect.md, docs/add-a-quadratic-drag.md and docs/add-a-cubic-spring.md are followed to the letter in
+copies of the repository.
+"""
 
 from __future__ import annotations
 
@@ -13,10 +15,12 @@ from granchain_core.kernels.effects.registry import in_simd_kernels
 
 PAGE = ROOT / "docs" / "add-an-effect.md"
 QUADRATIC = ROOT / "docs" / "add-a-quadratic-drag.md"
+SPRING = ROOT / "docs" / "add-a-cubic-spring.md"
 #: The headings under which the effect is mentioned.
-MENTIONED = {PAGE: "## 5. Mention it, and let a tool write the rest", QUADRATIC: "## 5. Mention it"}
+MENTIONED = {PAGE: "## 5. Mention it, and let a tool write the rest", QUADRATIC: "## 5. Mention it",
+             SPRING: "## 5. Mention it"}
 #: Numbers of files that each page edits, writes, and edits to mention the effect.
-COUNTS = {PAGE: (6, 3, 1), QUADRATIC: (6, 3, 1)}
+COUNTS = {PAGE: (6, 3, 1), QUADRATIC: (6, 3, 1), SPRING: (6, 3, 1)}
 
 
 def written_tests(page: Path) -> set[str]:
@@ -24,11 +28,9 @@ def written_tests(page: Path) -> set[str]:
     return {name for block in blocks(page) if block.is_new_file for name in re.findall(r"^def (test_\w+)", block.text, re.MULTILINE)}
 
 
-def passed(tree: Path) -> set[str]:
-    """Return the names of the tests in a tree's tests/physics; none may fail, since `follow` asserts that pytest
-    succeeds.
-    """
-    printed = follow(tree, "-m", "pytest", "-p", "no:cacheprovider", "-rA", "tests/physics")
+def passed(tree: Path, part: str = "tests/physics") -> set[str]:
+    """Return the names of the tests in a part of a tree; none may fail, since `follow` asserts that pytest succeeds."""
+    printed = follow(tree, "-m", "pytest", "-p", "no:cacheprovider", "-rA", part)
     return set(re.findall(r"^PASSED \S+::(test_\w+)", printed, re.MULTILINE))
 
 
@@ -44,7 +46,7 @@ def quadratic(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return edited_copy(QUADRATIC, tmp_path_factory.mktemp("quadratic") / "tree")
 
 
-@pytest.mark.parametrize("page", [PAGE, QUADRATIC], ids=lambda page: page.stem)
+@pytest.mark.parametrize("page", [PAGE, QUADRATIC, SPRING], ids=lambda page: page.stem)
 def test_the_page_edits_and_writes_few_files(page: Path) -> None:
     edits, new = files_of(page, MENTIONED[page])
     mentions = files_of(page)[0] - edits
@@ -54,6 +56,19 @@ def test_the_page_edits_and_writes_few_files(page: Path) -> None:
 def test_a_force_that_is_not_linear_in_the_velocity_passes_the_tests_the_page_writes(quadratic: Path) -> None:
     """They cover the tangent (by differences and by a second route), energy, the stable step and the stated error."""
     assert passed(quadratic) == written_tests(QUADRATIC)
+
+
+def test_a_spring_passes_the_tests_the_page_writes_and_a_slope_that_is_not_inserted_is_noticed(tmp_path: Path) -> None:
+    """Nothing is compiled: the tests call the terms and the equations as functions of Python."""
+    tree = edited_copy(SPRING, tmp_path / "tree")
+    assert passed(tree, "tests/kernels/equations/test_cubic_spring.py") == written_tests(SPRING)
+    file = tree / "granchain_core" / "kernels" / "equations" / "body_forces.py"
+    text = file.read_text(encoding="utf-8")
+    inserted = "return add_cubic_spring_slope(slots.cubic_spring, slope, u, du, inverse_mass * dt_ds)"
+    assert text.count(inserted) == 1
+    file.write_text(text.replace(inserted, "return slope"), encoding="utf-8")
+    with pytest.raises(AssertionError, match="FAILED .*test_every_slope_of_an_effect_is_inserted"):
+        follow(tree, "-m", "pytest", "-p", "no:cacheprovider", "-rf", "tests/kernels/equations/test_body_forces.py", "-k", "inserted")
 
 
 def test_the_new_effect_passes_the_tests_the_page_writes(tree: Path) -> None:
