@@ -94,9 +94,9 @@ def test_the_code_is_vector_code(kernel):
     assert code()[kernel]["nothing"]["packed"]["multiply"] > 100
 
 
-#: Most operands on the stack of a vector instruction, for each root in an inner loop. The largest of all effects are 0.5
-#: for a batch and 6.5 for a chain, whose loop contains the split step and calls of the sine, around which vectors are
-#: stored.
+#: Most operands on the stack of a vector instruction, for each root in an inner loop. The largest of all effects are
+#: 0.5 for a batch and 6.5 for a chain, whose loop contains the split step and calls of the sine, around which vectors
+#: are stored.
 MOST_ON_STACK = {"batch": 0.8, "chain": 7.5}
 
 
