@@ -3,29 +3,38 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from pathlib import Path
 
-#: File with the bytes of memory that a container may use (cgroup v2), or "max".
-_LIMIT = Path("/sys/fs/cgroup/memory.max")
+#: The control groups of the system (cgroup v2), and the file that names this process's own group.
+_GROUPS, _OWN_GROUP = Path("/sys/fs/cgroup"), Path("/proc/self/cgroup")
 
 
 def usable_memory() -> int | None:
-    """Return the bytes of this machine's memory, or those of its container's limit if smaller; None if unknown."""
-    known = [size for size in (_physical(), _limit()) if size is not None]
-    return min(known, default=None)
+    """Return the bytes of this machine's memory, or a smaller limit of a container or service; None if unknown."""
+    return min((*_physical(), *_limits()), default=None)
 
 
-def _physical() -> int | None:
-    """Return the bytes of the machine's memory; None where the system does not say."""
+def _physical() -> Iterator[int]:
+    """Yield the bytes of the machine's memory, unless the system does not say."""
     try:
-        return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+        yield os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     except (AttributeError, ValueError, OSError):
-        return None
+        return
 
 
-def _limit() -> int | None:
-    """Return the bytes that the container may use; None without a limit."""
+def _limits() -> Iterator[int]:
+    """Yield the limits of the outermost group, which a container has, and of the process's own, which a service has."""
+    for group in (_GROUPS, _GROUPS / _own_group()):
+        try:
+            yield int((group / "memory.max").read_text(encoding="ascii"))
+        except (OSError, ValueError):  # no such file, or "max"
+            continue
+
+
+def _own_group() -> str:
+    """Return the path of the process's group below `_GROUPS`, or "" if it is unknown."""
     try:
-        return int(_LIMIT.read_text(encoding="ascii"))
-    except (OSError, ValueError):
-        return None
+        return _OWN_GROUP.read_text(encoding="utf-8").rpartition("::/")[2].strip()
+    except OSError:
+        return ""
