@@ -19,16 +19,16 @@ from .controller import Controller
 
 
 def open_web_page() -> None:
-    """Make a new page in the document of the present request; the address may be a share link."""
+    """Fill the document of the present request with a web page; the address may be a share link."""
     pn.extension("katex", browser_info=False)  # otherwise Panel would add a root for it with every part
     document = pn.state.curdoc
     if document is None:
-        raise RuntimeError("the page can only be made inside a request; serve it instead of calling it")
+        raise RuntimeError("the web page can only be made inside a request; serve it instead of calling it")
     context = document.session_context
     session = Session(label="" if context is None else session_label(context.id))
     query = _query(document)
     initial_state, sentences = apply_address(session, query) if query.strip("?") else (None, [])
-    with validate(False):  # validation takes a sixth of the time to open a page, and the tests find such errors
+    with validate(False):  # validation takes a sixth of the time to open a web page, and the tests find such errors
         controller = Controller(document, session, initial_state)
         controller.views.put_into(document)
     pn.config.exception_handler = _handler(controller)
@@ -44,7 +44,7 @@ def _handler(controller: Controller) -> Callable[[Exception], None]:
     """Return a handler that reports a failure to the controller without keeping the controller alive.
 
     Panel keeps the handler as long as the document lives, and the controller refers to the document. With a strong
-    reference, no page would ever be freed.
+    reference, no document would ever be freed.
     """
     show_failure = weakref.WeakMethod(controller.show_failure)
 

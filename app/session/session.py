@@ -27,7 +27,7 @@ STARTS = VIEW_VALUES["start"]
 
 @dataclass
 class Session:
-    """The state of one open page. A method changes the state, or raises `BadInput` and leaves the state unchanged.
+    """The state of one open web page. A method changes the state, or raises `BadInput` and leaves the state unchanged.
 
     share.py lists the values of those fields that are part of a link (`VIEW`).
     """

@@ -14,7 +14,7 @@ from ...library_internals import Internal, internals
 INTERNALS = internals(
     __name__,
     Internal("bokeh.server.session.ServerSession", ("request_expiration",),
-             "a page that was left counts as a session and stays in memory for a minute, but nothing is computed "
+             "a web page that was left counts as a session and stays in memory for a minute, but nothing is computed "
              "for it"),
 )
 

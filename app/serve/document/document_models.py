@@ -12,7 +12,7 @@ from ...library_internals import Internal, internals
 INTERNALS = internals(
     __name__,
     Internal("bokeh.document.models.DocumentModelManager", ("freeze",),
-             "Bokeh collects the models of the document again for each part: a page opens more slowly"),
+             "Bokeh collects the models of the document again for each part: a web page opens more slowly"),
 )
 
 

@@ -65,7 +65,7 @@ COUNTERS = {
     "cancelled": "Computations of pictures that were cancelled.",
     "refused_sessions": "Sessions refused because `--max-sessions` were already open.",
     "refused_pictures": "Pictures refused because they would take too long.",
-    "refused_messages": "Messages that no page sends, too many frames, and too many unsent bytes; each closed its "
+    "refused_messages": "Messages that no web page sends, too many frames, and too many unsent bytes; each closed its "
                         "connection.",
     "errors": "Unexpected failures; each is in the log.",
 }
@@ -188,19 +188,19 @@ class Metrics:
         return [
             Metric("build_info", "gauge", "Always 1; the label is the running release of granchain.",
                    lambda: {__version__: 1}, "version"),
-            Metric("sessions", "gauge", "Sessions: pages that are open.", lambda: self.sessions),
+            Metric("sessions", "gauge", "Sessions: web pages that are open.", lambda: self.sessions),
             Metric("sessions_opened_total", "counter", "Sessions opened.", lambda: self.opened),
             *(Metric(f"{name}_total", "counter", text, partial(self.counted.__getitem__, name))
               for name, text in COUNTERS.items()),
             Metric("event_loop_lag_seconds", "gauge",
-                   f"Mean lag of the event loop in the last ten seconds; above {_BUSY_WAIT:g} the page says that the "
-                   "server is busy.", lambda: self.event_loop_lag),
+                   f"Mean lag of the event loop in the last ten seconds; above {_BUSY_WAIT:g} the web page says that "
+                   "the server is busy.", lambda: self.event_loop_lag),
             Metric("event_loop_lag_max_seconds", "gauge",
-                   f"Largest lag of the event loop in the last ten seconds; above {_BUSY_STALL:g} the page says that "
-                   "the server is busy.", lambda: self.largest_lag),
+                   f"Largest lag of the event loop in the last ten seconds; above {_BUSY_STALL:g} the web page says "
+                   "that the server is busy.", lambda: self.largest_lag),
             Metric("turn_wait_seconds", "gauge",
                    "Mean wait of computations before they could begin, in the last ten seconds; above "
-                   f"{_BUSY_WAIT:g} the page says that the server is busy.", self.turn_wait),
+                   f"{_BUSY_WAIT:g} the web page says that the server is busy.", self.turn_wait),
             Metric("resident_memory_bytes", "gauge", "Resident memory.", resident_memory, prefix="process"),
             Metric("threads", "gauge", "Threads of the operating system.", os_threads, prefix="process"),
             Metric("threads", "gauge", "Threads known to Python, which exclude those of numerical libraries.",

@@ -22,7 +22,7 @@ except ImportError:  # then `missing` lists the missing names, and nothing is re
 
 from ...library_internals import Internal, internals, missing
 
-_WITHOUT = "opening a page costs half as much again"
+_WITHOUT = "opening a web page costs half as much again"
 #: The undocumented parts of Bokeh that are used here.
 INTERNALS = internals(
     __name__,

@@ -12,7 +12,7 @@ from bokeh.models import ImportedStyleSheet
 
 from ...library_internals import Internal, internals
 
-_WITHOUT = "a page opens a tenth slower"
+_WITHOUT = "a web page opens a tenth slower"
 #: The undocumented parts of Panel that are used here.
 INTERNALS = internals(
     __name__,
