@@ -2,7 +2,8 @@
 
 They are knobs (docs/model.md), methods (docs/method.md), equations, scenes and the command that runs all tests
 (README.md), drives by a formula (docs/scenes.md), library internals in use (docs/libraries.md), metrics
-(docs/deployment.md), former names (docs/python.md), worker pools and connection times (docs/dashboard.md).
+(docs/deployment.md), former names (docs/python.md), worker pools and connection times
+(docs/dashboard-server.md).
 """
 
 from __future__ import annotations
@@ -95,13 +96,13 @@ def table_of_libraries() -> str:
 
 
 def table_of_connection_times() -> str:
-    """Return the table of docs/dashboard.md: the times in the script that watches the connection."""
+    """Return the table of docs/dashboard-server.md: the times in the script that watches the connection."""
     rows = re.findall(r"^ +(?:const )?([A-Z_]+) = (\d+)[,;] // (.+)$", FILES["connection.js"].read_text(encoding="utf-8"), re.MULTILINE)
     return "\n".join(["| constant | ms | what it is |", "|---|---|---|", *(f"| `{name}` | {value} | {words} |" for name, value, words in rows)])
 
 
 def table_of_worker_pools() -> str:
-    """Return the table of docs/dashboard.md: every thread pool, its limits and its purpose."""
+    """Return the table of docs/dashboard-server.md: every thread pool, its limits and its purpose."""
     rows = [f"| `{pool.name.upper()}` | {pool.workers} | {f'+{ADDED_NICENESS}' if pool.low_priority else '0'} | "
             f"{pool.per_owner_limit or '–'} | {pool.purpose} |" for pool in POOLS]
     return "\n".join(["| pool | threads | nice value | work of one session at once | what runs there |", "|---|---|---|---|---|", *rows])

@@ -7,7 +7,8 @@
   commands (README.md, docs/command-line.md), drives by a formula (docs/scenes.md), marks of figures (docs/marks.md),
   special points and their names in AUTO and MatCont (docs/branches.md, glossary.md), library internals
   (docs/libraries.md), names of Numba and LLVM (docs/compiling.md), metrics (docs/deployment.md), the map of the code
-  (docs/design.md), the dashboard's messages and worker pools (docs/dashboard.md);
+  (docs/design.md), the dashboard's messages (docs/dashboard.md), worker pools and times of the connection
+  (docs/dashboard-server.md);
 - the table of steps in each recipe docs/add-….md;
 - numbers from the code in sentences of the docs (tools/numbers.py);
 - a row for every new scene in the test of share links (tools/links.py);
@@ -102,8 +103,8 @@ _TABLES = (
     ("docs/design.md", "pages of the dashboard", table_of_pages),
     ("docs/dashboard.md", "messages of the browser", table_of_messages_of_the_browser),
     ("docs/dashboard.md", "messages of the server", table_of_messages_of_the_server),
-    ("docs/dashboard.md", "worker pools", table_of_worker_pools),
-    ("docs/dashboard.md", "times of the connection", table_of_connection_times),
+    ("docs/dashboard-server.md", "worker pools", table_of_worker_pools),
+    ("docs/dashboard-server.md", "times of the connection", table_of_connection_times),
     *recipes.tables(),
 )
 

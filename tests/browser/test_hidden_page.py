@@ -1,4 +1,4 @@
-"""A page that is hidden, frozen, or on a sleeping computer ("What happens when" in docs/dashboard.md)."""
+"""A page that is hidden, frozen, or on a sleeping computer ("What happens when" in docs/dashboard-server.md)."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ _NAME = re.compile(r"(?<![\w./-])(?:_[A-Za-z]\w*|[A-Za-z]\w*_\w*[A-Za-z0-9])(?![
 _PLACED = re.compile(r"`(?:\w+\.)?(_\w+|[A-Z][A-Z_0-9]+)`\s+(?:in |of |\()`([\w/]+\.py)`")
 #: Pages that also mention settings of other programs, metrics, or composed names of results: only constants and private
 #: names are checked there.
-_WITH_OTHER_NAMES = ("dashboard.md", "deployment.md", "result-files.md", "security.md")
+_WITH_OTHER_NAMES = ("dashboard.md", "dashboard-server.md", "deployment.md", "result-files.md", "security.md")
 
 
 @cache

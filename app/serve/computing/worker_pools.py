@@ -26,7 +26,7 @@ Result = TypeVar("Result")
 
 class WorkerPool:
     """At most `workers` threads for one kind of work, first come, first served. A thread is started when it is needed.
-    `purpose` says what the work is (docs/dashboard.md).
+    `purpose` says what the work is (docs/dashboard-server.md).
 
     The threads are daemons: a branch or a map takes minutes, and a server that shuts down does not wait for them.
     Threads of a `low_priority` pool leave the processor to others (priorities.py).
