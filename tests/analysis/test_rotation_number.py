@@ -201,6 +201,6 @@ def test_near_a_fraction_the_record_may_be_too_short() -> None:
     (circle(rigid(10.0 / 23.0)), "record is too short"), (circle(rigid(GOLDEN, 100)), "fewer than 200 states"),
     (circle(rigid(0.5 * GOLDEN, 300)) + np.tile([[[9.0], [0.0]], [[0.0], [0.0]]], (150, 1, 1)), "each of 2 curves"),
 ])
-def test_what_has_no_rotation_number(states: np.ndarray, reason: str) -> None:
+def test_states_without_a_rotation_number_have_a_reason(states: np.ndarray, reason: str) -> None:
     found = winding_of(states)
     assert found.value is None and found.error is None and reason in found.reason

@@ -63,7 +63,7 @@ def test_the_lines_of_a_force_are_combinations(name: str, orders: int, least: fl
     assert (np.abs(lines % each - each / 2) < each / 2 - resolution).sum() > 3  # not only harmonics
 
 
-def test_its_error_holds_for_finer_steps() -> None:
+def test_the_error_of_a_rotation_number_holds_for_finer_steps() -> None:
     """With the default steps, their error is a hundred times that of the average; six times as many steps show it."""
     chain = scene("sec2").evolve(f=1230.0)
     found = rotation_number(chain)
@@ -83,7 +83,7 @@ def test_summary_frequency_and_nearest_fraction_are_those_of_the_number(curve: R
     assert curve.digits > 8.0 and curve.attributes()["rotation_number"] == curve.value
 
 
-def test_from_another_start_it_is_the_same(curve: RotationNumber) -> None:
+def test_another_start_gives_the_same_rotation_number(curve: RotationNumber) -> None:
     """The attractor is reached from other states as well."""
     pushed = State(np.linspace(1e-8, 0.0, 11), np.zeros(11))
     again = rotation_number(CURVE, start=pushed)
@@ -91,14 +91,14 @@ def test_from_another_start_it_is_the_same(curve: RotationNumber) -> None:
 
 
 @pytest.mark.parametrize(("f", "regime"), [(340.0, "periodic"), (1090.0, "chaotic")])
-def test_only_a_quasi_periodic_motion_has_one(f: float, regime: str) -> None:
+def test_only_a_quasi_periodic_motion_has_a_rotation_number(f: float, regime: str) -> None:
     found = rotation_number(scene("sec2").evolve(f=f))
     assert found.value is None and found.error is None and found.second_frequency is None
     assert found.nearest_fraction is None and found.digits is None and np.isnan(found.convergence).all()
     assert found.summary() == [f"rotation number not decided: the motion is {regime}, not quasi-periodic"]
 
 
-def test_it_tells_how_far_it_is_and_can_be_stopped() -> None:
+def test_the_computation_reports_progress_and_can_be_stopped() -> None:
     seen: list[float] = []
     rotation_number(CURVE, 1000, progress=seen.append)
     assert seen == sorted(seen) and seen[0] > 0.0 and seen[-1] <= 1.0

@@ -44,7 +44,7 @@ def opened(page: Page) -> Locator:
     return overlay
 
 
-def test_the_status_line_says_what_is_asked_reached_and_how_long_it_took(visit: Visit) -> None:
+def test_the_status_line_has_requested_and_reached_accuracy_and_the_time(visit: Visit) -> None:
     """This is true of the current accuracy and of another one."""
     page = visit()
     line = page.get_by_role("button", name="asked")
@@ -66,7 +66,7 @@ def measured(shared: Visit) -> Page:
     return page
 
 
-def test_its_tab_opens_the_page(measured: Page) -> None:
+def test_the_tab_opens_the_page(measured: Page) -> None:
     measured.get_by_role("button", name="open the page").click()
     expect(measured.locator("#overlay .work canvas").first).to_be_visible()
     assert measured.evaluate(POINTS)
@@ -75,7 +75,7 @@ def test_its_tab_opens_the_page(measured: Page) -> None:
 
 
 @pytest.mark.long
-def test_points_appear_and_the_cheapest_way_is_told(measured: Page) -> None:
+def test_points_appear_and_the_cheapest_setting_is_named(measured: Page) -> None:
     page = measured
     overlay = opened(page)
     expect(overlay.get_by_role("button", name="measure again")).to_be_visible(timeout=COMPILED)
@@ -157,7 +157,7 @@ def fits(page: Page, overlay: Locator) -> None:
         assert box is not None and box["x"] >= 0 and box["x"] + box["width"] <= width and box["height"] > 200, width
 
 
-def test_steps_that_blow_up_are_told_and_a_stopped_measurement_keeps_its_points(visit: Visit) -> None:
+def test_diverging_steps_are_named_and_a_stopped_measurement_keeps_its_points(visit: Visit) -> None:
     page = visit("?v=1&scene=rig")
     overlay = opened(page)
     # at once: the button is there during the measurement, however long anything else takes

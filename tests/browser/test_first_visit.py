@@ -28,7 +28,7 @@ WebSocket.prototype.send = function (frame) {
 """
 
 
-def test_a_page_that_says_late_that_it_is_ready_gets_everything(visit: Visit) -> None:
+def test_a_page_that_is_ready_late_gets_everything(visit: Visit) -> None:
     """Parts of the page send requests before the page is ready. Panel loses changes made then, so the answers wait."""
     page = visit(script=SAYS_LATE_THAT_IT_IS_READY)
     expect(field(page, "f")).to_have_value("340")
@@ -51,7 +51,7 @@ OVER = """() => [...document.querySelectorAll("#stage :is(.title, .peak, #key, #
   .filter((one) => getComputedStyle(one).visibility === "visible").length"""
 
 
-def test_before_the_first_picture_every_part_says_what_is_coming(chromium: Browser, prepared: str) -> None:
+def test_before_the_first_picture_every_part_announces_its_content(chromium: Browser, prepared: str) -> None:
     """No texts overlap: the titles appear together with the pictures."""
     page = chromium.new_page(reduced_motion="reduce")
     page.add_init_script(HOLDS_ITS_MESSAGES)

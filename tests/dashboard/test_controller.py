@@ -28,7 +28,7 @@ from tools.dashboard_tables import messages_of_the_browser
     ({"do": "branches-double", "place": True}, "That special point is no longer on the page"),
     ({"do": "map-load", "number": True}, "That attractor is no longer on the page"),
     ({"do": "stability-section", "bead": True, "phase": 0}, "bead 'True' is not a whole number")])
-def test_what_is_no_number_gets_its_sentence(dashboard: Dashboard, message: dict[str, Any], sentence: str) -> None:
+def test_a_value_that_is_no_number_gets_a_sentence(dashboard: Dashboard, message: dict[str, Any], sentence: str) -> None:
     dashboard.receive(message)
     assert sentence in dashboard.session.sentence
 
@@ -57,7 +57,7 @@ def test_a_measurement_is_read_in_the_background(dashboard: Dashboard, text: str
     assert all(name.startswith("files") for name in threads) and bool(threads) == (len(text) <= LARGEST_UPLOAD)
 
 
-def test_the_effects_panel_is_told_the_slot_of_each_effect_and_the_slots_of_none(dashboard: Dashboard,
+def test_the_effects_panel_receives_the_slot_of_each_effect(dashboard: Dashboard,
                                                                                 monkeypatch: pytest.MonkeyPatch) -> None:
     """Its table shows the slot's type next to each switch; with a separate list, it would miss a new effect."""
     monkeypatch.setattr(COMPILER, "has", lambda *_: False)
@@ -79,7 +79,7 @@ def test_a_step_to_another_scene_has_the_curves_of_its_address(dashboard: Dashbo
     assert dashboard.session.curves == "auto" and (bar["rest"], bar["up"], bar["features"]) == (True, False, False)
 
 
-def test_each_page_and_the_curve_hear_whether_somebody_looks(dashboard: Dashboard) -> None:
+def test_visibility_is_reported_to_each_page_and_the_curve(dashboard: Dashboard) -> None:
     told: list[tuple[str, bool]] = []
     for row, page in zip(PAGES, dashboard.pages, strict=True):
         page.visibility_changed = partial(lambda *one: told.append(one), row.name)  # type: ignore[method-assign]
@@ -168,7 +168,7 @@ def test_a_reconnected_page_has_its_pause_back_and_the_rest_from_its_link(dashbo
     ("", ""), (f"&N={MOST_BEADS_IN_LINK}&start=previous", ""),
     (f"&N={MOST_BEADS_IN_LINK + 1}&start=previous", ", but the motion starts from rest"),
     (f"&N={MOST_BEADS_IN_LINK + 1}&drive=rest&strike=1", ""), ("&mode=live", ", but the live run has started again")])
-def test_a_reconnected_page_says_what_its_link_does_not_bring_back(dashboard: Dashboard, query: str,
+def test_a_reconnected_page_names_state_that_its_link_lacks(dashboard: Dashboard, query: str,
                                                                    different: str) -> None:
     """A settled motion starts from the same state as before, unless its chain is too long for a link."""
     dashboard.receive({"do": "go", "query": f"v=1&scene=sec2{query}"})

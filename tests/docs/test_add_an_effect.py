@@ -78,7 +78,7 @@ def test_the_new_effect_passes_the_tests_the_page_writes(tree: Path) -> None:
 
 @pytest.mark.long
 @pytest.mark.parametrize("made", ["tree", "quadratic"])
-def test_the_tests_that_know_every_scene_and_knob_know_the_new_ones(made: str, request: pytest.FixtureRequest) -> None:
+def test_the_tests_over_all_scenes_and_knobs_include_the_new_ones(made: str, request: pytest.FixtureRequest) -> None:
     """The tests of README, model page, share links, scales and gallery pass once the tool has been run."""
     tree = request.getfixturevalue(made)
     for part in ("tests/docs", "tests/session", "tests/dashboard", "tests/host.py", "tests/headless_dashboard.py", "tests/waiting.py", "docs", "tools", "CHANGELOG.md", "CONTRIBUTING.md"):
@@ -93,7 +93,7 @@ def test_the_tests_that_know_every_scene_and_knob_know_the_new_ones(made: str, r
     assert " passed" in printed and "failed" not in printed
 
 
-def test_slopes_of_forces_know_the_new_effect(tree: Path) -> None:
+def test_slopes_of_forces_include_the_new_effect(tree: Path) -> None:
     """v̇ of every bead, which enters Ḟ, agrees with the difference of velocities slightly later and earlier."""
     printed = follow(tree, "-c", """
 import numpy as np
@@ -119,7 +119,7 @@ print(np.abs(found - exact).max() / np.abs(exact).max())
     assert float(printed) < 1e-6  # h² of the difference, and 1e-16/h
 
 
-def test_vectors_that_do_not_know_the_new_effect_refuse_it(tree: Path) -> None:
+def test_vector_kernels_without_the_new_effect_refuse_it(tree: Path) -> None:
     """It is unmarked, or marked for kernels other than those of dop853-root: a motion without the drag would be wrong.
     """
     file = tree / "granchain_core" / "kernels" / "effects" / "drag.py"
@@ -142,12 +142,12 @@ except BadInput as problem:
         file.write_text(text, encoding="utf-8")
 
 
-def test_a_mark_names_folders_of_vectors() -> None:
+def test_a_mark_accepts_only_folders_of_simd_kernels() -> None:
     with pytest.raises(TypeError, match="name those with terms of the slot, of rk4, batch, dop853_root"):
         in_simd_kernels("effects")
 
 
-def test_the_new_effect_is_seen_and_its_absence_leaves_nothing(tree: Path) -> None:
+def test_the_new_effect_is_listed_and_leaves_no_slot_when_absent(tree: Path) -> None:
     """The scene lists it, the equation shows it, and a scene without it has no slot."""
     printed = follow(tree, "-c", """
 from app.cli.explain import explanation
@@ -196,6 +196,6 @@ print([spec["more"] for spec in knob_state(session.scene)["specs"] if spec["name
      "effect 'drag': Slots (kernels/equations/motion.py) has no field 'drag'"),
     ("scene/quantities.py", 'Quantity("c", "c"', 'Quantity("C", "c"', "effect 'drag': its knob 'c' is not among QUANTITIES"),
 ])
-def test_what_the_effect_forgets_is_named(tree: Path, path: str, right: str, wrong: str, sentence: str) -> None:
+def test_a_forgotten_term_of_the_effect_is_named(tree: Path, path: str, right: str, wrong: str, sentence: str) -> None:
     """Nothing is computed: the first import names the missing part and its effect."""
     assert f"TypeError: {sentence}" in import_with(tree, path, right, wrong)

@@ -77,7 +77,7 @@ def test_a_measurement_of_too_many_points_is_refused_in_every_format(name: str, 
             assert count == len(found.time if isinstance(found, Series) else found.frequency)
 
 
-def test_an_hdf5_file_is_called_as_the_visitor_called_it(dashboard: Dashboard, tmp_path: Path) -> None:
+def test_an_hdf5_file_keeps_the_visitors_name(dashboard: Dashboard, tmp_path: Path) -> None:
     """Messages about the file do not name a folder of the server."""
     with h5py.File(tmp_path / "a.h5", "w") as file:
         file["frequency"] = [40.0]
@@ -157,7 +157,7 @@ def test_bars_are_errors_or_the_extremes_of_repeats() -> None:
     assert [measured_columns(repeated, 0.5)[name] for name in ("low", "high")] == [[6.0], [8.0]]
 
 
-def test_the_sample_file_is_read_and_says_what_it_is(dashboard: Dashboard) -> None:
+def test_the_sample_file_is_read_and_marked_as_not_measured(dashboard: Dashboard) -> None:
     found = read_data((SAMPLES / "curve.csv").read_bytes())
     assert isinstance(found, Measured) and found.note.startswith("Not measured: computed by granchain")
     assert found.repeats is not None and found.repeats.max() == 3

@@ -23,7 +23,7 @@ def numbers(page_of: Callable[[str], PageUnderTest]) -> PageUnderTest:
     return page_of("numbers")
 
 
-def test_the_probe_draws_every_picture_while_somebody_looks(probe: PageUnderTest) -> None:
+def test_the_probe_draws_every_picture_while_the_page_is_open(probe: PageUnderTest) -> None:
     probe.deliver_picture()
     assert probe.sent == []
     probe.set_visible()
@@ -47,7 +47,7 @@ def test_the_probe_keeps_its_bead_and_a_shorter_chain_has_its_last_one(probe: Pa
         probe.do("probe-bead", bead=3)
 
 
-def test_every_final_picture_is_summed_up_and_its_tables_are_for_who_looks(numbers: PageUnderTest) -> None:
+def test_every_final_picture_is_summarised_and_tables_wait_for_a_viewer(numbers: PageUnderTest) -> None:
     numbers.deliver_picture(replace(picture(), final=False))
     assert numbers.sent == []
     numbers.deliver_picture()

@@ -21,7 +21,7 @@ def test_a_virtual_experiment_is_recorded_of_the_present_scene_and_says_so(dashb
     dashboard.run_callbacks_until(lambda: "rms" in str(dashboard.views.tabs.state.get("misfit")))
 
 
-def test_a_virtual_experiment_holds_up_nobodys_file(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_virtual_experiment_does_not_delay_files(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
     """It settles a chain in a queue where each visitor has a share; two threads read and write everybody's files."""
     threads: dict[str, str] = {}
 

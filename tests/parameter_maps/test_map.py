@@ -51,7 +51,7 @@ def test_every_cell_is_the_curves_point_at_its_amplitude(found: ParameterMap) ->
             assert np.isnan(cell["error_estimate"]) == (point.force_errors.output is None)
 
 
-def test_scaled_cells_are_the_same(found: ParameterMap) -> None:
+def test_a_scaled_chain_has_the_same_cells(found: ParameterMap) -> None:
     # along a tilted line of the map
     s = AMPLITUDES[1] / AMPLITUDES[0]
     other = parameter_map(scene("sec2").scaled(s), ("f", s**0.25 * FREQUENCIES), ("A0", s * AMPLITUDES))
@@ -89,7 +89,7 @@ def test_the_first_cells_are_spread_over_the_whole_diagram() -> None:
     assert (np.diff(grid.spacing()[order]) <= 0).all()
 
 
-def test_a_stopped_diagram_says_what_is_missing() -> None:
+def test_a_stopped_map_says_how_many_cells_are_missing() -> None:
     count, stop = [0], Stop()
 
     def look(_: ParameterMap, __: float) -> None:
@@ -122,7 +122,7 @@ def test_a_wrong_grid_is_one_clear_sentence(x: tuple, y: tuple, words: str) -> N
 # Files
 
 
-def test_a_map_comes_back_and_xarray_labels_it(found: ParameterMap, tmp_path: Path) -> None:
+def test_a_map_is_read_back_and_labelled_in_xarray(found: ParameterMap, tmp_path: Path) -> None:
     file = save_parameter_map(found, tmp_path / "map.h5")
     again = load_parameter_map(file)
     assert again.cells.tobytes() == found.cells.tobytes() and again.grid.digest == found.grid.digest

@@ -30,12 +30,12 @@ def test_the_diode_turned_round_is_its_reverse() -> None:
     assert not np.array_equal(ours.force, short("diode").force)
 
 
-def test_equal_beads_do_not_know_their_end() -> None:
+def test_equal_beads_move_the_same_driven_from_either_end() -> None:
     assert np.array_equal(short("sec2", N=4, end="last").displacement, short("sec2", N=4).displacement)
 
 
 @pytest.mark.parametrize("end", ["first", "last"])
-def test_what_is_thrown_counts_from_the_driver_and_what_is_heavy_from_the_first_bead(end: str) -> None:
+def test_start_velocities_count_from_the_driver_and_masses_from_the_first_bead(end: str) -> None:
     chain = replace(scene("impact-train").evolve(N=6, site=2, impurity=0.5, strike=0.02, end=end),
                     start_velocity=((3, -0.01),))
     assert chain.velocities_at_start().tolist() == [0.02, 0.0, -0.01, 0.0, 0.0, 0.0]

@@ -45,7 +45,7 @@ def test_a_scene_with_impurities_and_thrown_beads_survives_json_too(one):
 
 
 @given(SCENES)
-def test_setting_the_knobs_it_has_changes_nothing(one):
+def test_setting_knobs_to_their_values_changes_nothing(one):
     """`evolve` with the scene's own knobs, as numbers or as the text a user would type, is the identity."""
     own = {name: value for name, value in one.knobs.items() if name != "kappa"}
     assert one.evolve(**own) == one
@@ -62,7 +62,7 @@ def test_knobs_can_be_changed_one_by_one_or_together(one, knobs):
 
 
 @given(SCENES, SCENES)
-def test_the_digest_tells_physics_apart_and_nothing_else(one, other):
+def test_the_digest_depends_on_the_physics_alone(one, other):
     """Different knobs give a different digest. Another name or title gives the same digest."""
     assert replace(one, name="x", title="y", ranges=(), preset=()).digest == one.digest
     if {**one.knobs, "b": one.pattern} != {**other.knobs, "b": other.pattern}:

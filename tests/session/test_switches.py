@@ -17,7 +17,7 @@ from granchain_core.precompile.warm import compile_piece, structure
 @pytest.mark.parametrize(("shown", "name"), [  # without damping, there is no tension to cut; see below
     (shown, name) for shown in scene_names() for name, effect in SWITCHES.items()
     if name != ACCOUNT_SWITCH and effect.possible(scene(shown))])
-def test_a_switch_changes_what_is_compiled_and_comes_back(name: str, shown: str) -> None:
+def test_a_switch_changes_the_compiled_structure_and_can_be_undone(name: str, shown: str) -> None:
     session = Session(scene=scene(shown))
     before = structure(session.scene)
     was = present(name, session.scene, account=False)
@@ -28,7 +28,7 @@ def test_a_switch_changes_what_is_compiled_and_comes_back(name: str, shown: str)
     assert structure(session.scene) == before
 
 
-def test_what_the_visitor_had_comes_back() -> None:
+def test_a_switch_turned_back_restores_the_visitors_values() -> None:
     session = Session(scene=scene("rig").evolve(k=12345.0, dissipation="tsuji", D=40.0, F0=3.0))
     for name in ("dashpot", "foundation", "preload"):
         session.switch(name, False)
@@ -39,7 +39,7 @@ def test_what_the_visitor_had_comes_back() -> None:
     assert (session.scene.dissipation, session.scene.D) == ("tsuji", 40.0)
 
 
-def test_another_scene_forgets_what_was_remembered() -> None:
+def test_another_scene_drops_remembered_values() -> None:
     session = Session(scene=scene("sec2").evolve(F0=7.0))
     session.switch("preload", False)
     session.choose("sec2")
@@ -61,7 +61,7 @@ def test_without_damping_there_is_no_tension_to_cut() -> None:
 
 
 @pytest.mark.parametrize("name", ["wall", "", ACCOUNT_SWITCH, "D"])
-def test_what_is_no_effect_of_a_knob_is_refused(name: str) -> None:
+def test_effects_without_a_knob_cannot_be_switched(name: str) -> None:
     with pytest.raises(BadInput, match=f"no switchable effect '{name}'"):
         changes(name, True, scene("sec2"), {})
 

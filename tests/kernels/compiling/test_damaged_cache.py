@@ -36,7 +36,7 @@ def filled(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.parametrize("private", ["caching.UserProvidedCacheLocator", "caching.Cache._index_key", "runtime.rtsys",
                                      "serialize.dumps"])
-def test_with_another_numba_kernels_are_compiled_for_the_process_and_one_line_says_so(private: str, tmp_path: Path) -> None:
+def test_with_another_numba_kernels_are_not_cached_and_one_line_says_so(private: str, tmp_path: Path) -> None:
     lacking = "import sys, types, numba\nfrom numba.core import caching, runtime, serialize\n"
     if private == "serialize.dumps":  # Numba itself calls it, so only later imports must miss it
         lacking += ("sys.modules[serialize.__name__] = another = types.ModuleType('another')\n"
@@ -107,7 +107,7 @@ def flipped(content: bytes) -> bytes:
 
 
 @pytest.mark.parametrize("damage", [lambda _: b"", halved, flipped, lambda _: b"x"], ids=["empty", "halved", "flipped", "short"])
-def test_a_damaged_kernel_is_dropped_said_in_one_line_and_compiled_again(damage, filled: Path, tmp_path: Path) -> None:
+def test_a_damaged_kernel_is_reported_in_one_line_and_compiled_again(damage, filled: Path, tmp_path: Path) -> None:
     kept = shutil.copytree(filled, tmp_path / "cache")
     (file,) = kept.rglob("*.nbc")
     whole = file.read_bytes()
@@ -121,12 +121,12 @@ def test_a_damaged_kernel_is_dropped_said_in_one_line_and_compiled_again(damage,
     assert not mark.exists(), "a server would compile kernels that are marked as compiled in its own process"
 
 
-def test_a_whole_kernel_is_loaded(filled: Path) -> None:
+def test_an_undamaged_kernel_is_loaded(filled: Path) -> None:
     answer, messages = used(filled)
     assert answer["right"] and answer["loaded"] == 1 and messages == []
 
 
-def test_a_full_disk_is_said_once_and_the_kernel_runs(filled: Path, tmp_path: Path) -> None:
+def test_a_full_disk_is_reported_once_and_the_kernel_runs(filled: Path, tmp_path: Path) -> None:
     answer, messages = used(filled, _FULL + PROGRAM)
     assert answer["right"] and answer["loaded"] == 1 and messages == []  # kernels already on disk are used
     answer, messages = used(tmp_path, _FULL + PROGRAM)
@@ -148,7 +148,7 @@ def test_flipped_bits_throughout_the_file_are_seen(filled: Path, tmp_path: Path)
             assert not path.exists()
 
 
-def test_a_file_that_holds_another_version_is_not_believed(tmp_path: Path) -> None:
+def test_a_file_with_another_version_is_not_loaded(tmp_path: Path) -> None:
     files = cache._Files(str(tmp_path), "f", "stamp")
     files.save("one", "code of one")
     files.save("two", "code of two")

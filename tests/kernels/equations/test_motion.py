@@ -111,7 +111,7 @@ def acceleration_from_w(scaled, theta, y, compiled, step=1e-6):
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("preload", [0.0, 3.0])
 @pytest.mark.parametrize("where", [1, 3, 5])
-def test_a_nan_in_a_bead_is_seen_in_both_its_contacts(law, preload, where):
+def test_a_nan_in_a_bead_reaches_both_its_contacts(law, preload, where):
     """A NaN displacement gives NaN forces and slopes next to it: it never acts as a mere gap in the chain."""
     chosen = scene("sec2").evolve(N=5, dissipation=law, F0=preload)
     u, v = random_state(chosen, 0)
@@ -133,7 +133,7 @@ def test_rest_without_overlap_is_an_equilibrium_and_preload_keeps_it_one():
 
 
 @pytest.mark.parametrize("law", LAWS)
-def test_a_velocity_goes_into_w_and_comes_back(law):
+def test_a_velocity_is_converted_to_w_and_back(law):
     """`evaluate_at_phase` converts v into w = v − (G_left − G_right)/m, and the first half of the slope is v again."""
     chosen = scene("sec2").evolve(N=5, dissipation=law)
     u, v = random_state(chosen, 1)

@@ -52,7 +52,7 @@ CHAINS: dict[str, dict[str, object]] = {
 ROUNDING = 1e-12
 
 
-def test_every_two_values_stand_together_in_a_chain() -> None:
+def test_the_chains_cover_every_pair_of_properties() -> None:
     shown = [scene("sec2").evolve(**changes) for changes in CHAINS.values()]
     rows = [(one.dissipation, next((width for width in CHAIN_WIDTHS if width >= one.N + 2), "long"), one.F0 > 0.0,
              one.kappa > 0.0, one.dimer != 1.0 or one.taper != 1.0) for one in shown]
@@ -79,7 +79,7 @@ def test_steps_along_the_chain_are_the_scalar_steps(changes: dict[str, object]) 
     assert (fast.counts.array == slow.counts.array).all()
 
 
-def test_a_curve_in_batches_is_what_each_frequency_gives_by_itself() -> None:
+def test_a_curve_in_batches_equals_its_frequencies_alone() -> None:
     frequencies = np.array([340.0, 470.0, 615.0, 900.0, 1130.0, 1576.0])
     for point in iter_curve(scene("sec2"), frequencies):
         alone = CurvePoint.of(settle_to_forces(scene("sec2").evolve(f=point.frequency), None, Stop()))
