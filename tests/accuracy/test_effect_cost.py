@@ -43,14 +43,14 @@ def test_an_effect_costs_the_difference_whatever_the_machine_does_meanwhile(monk
     assert (found.difference, found.spread, found.percent) == (30.0, 0.0, 50.0)
 
 
-def test_what_is_timed_are_the_steps_that_were_taken() -> None:
+def test_the_timed_steps_are_the_steps_taken() -> None:
     """With real kernels, a step takes a positive time, without an upper limit, and the numbers are consistent."""
     found = effect_cost(Variant(CHAIN), Variant(CHAIN.evolve(dissipation="none")), CODE)
     assert min(found.with_it, found.without) > 0.0
     assert found.percent == pytest.approx(100.0 * found.difference / found.without)
 
 
-def test_timing_stops_at_once_and_is_held_up() -> None:
+def test_timing_stops_at_once_and_pauses() -> None:
     stop, held = Stop(), []
 
     def pause() -> None:

@@ -100,7 +100,7 @@ def test_progress_reaches_the_end_while_rows_are_added(monkeypatch: pytest.Monke
 
 
 @pytest.mark.long
-def test_what_fails_is_named_and_kept(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_failed_rows_are_named_and_kept(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     """One solver gives up and another is too slow once: their rows have sentences, and the others continue."""
     slow = iter([True])
 
@@ -202,7 +202,7 @@ def test_the_naive_force_is_wrong_and_names_where_it_blows_up() -> None:
     assert all(one.force.shape == found.force.shape for one in found.lines if not one.failure)
 
 
-def test_an_error_of_the_force_is_told_of_the_largest_pulse_and_the_pulse_is_shown() -> None:
+def test_the_error_of_the_naive_force_is_that_of_the_largest_pulse_which_is_shown() -> None:
     """At 1130 Hz, the wall is pressed hard once in three drive periods."""
     found, whole = naive_comparison(scene("sec2").evolve(f=1130.0), Stop()), settle(scene("sec2").evolve(f=1130.0)).run
     assert np.abs(found.force).max() == pytest.approx(whole.max_output_force, rel=0.1)  # ten periods from rest
@@ -212,7 +212,7 @@ def test_an_error_of_the_force_is_told_of_the_largest_pulse_and_the_pulse_is_sho
             assert told >= np.abs(found.force).max() * (1.0 - 1e-12)
 
 
-def test_a_second_reference_without_preload_or_damping_is_one_too() -> None:
+def test_the_second_reference_needs_neither_preload_nor_damping() -> None:
     """The overlaps at which SciPy's solver restarts include the preload; without damping, there is no G."""
     for shown in (SHORT.evolve(F0=1.0), SHORT.evolve(dissipation="none"), SHORT.evolve(tension="cut")):
         plain, _ = solve(shown, "DOP853", 1e-12, 2, 16)
@@ -220,7 +220,7 @@ def test_a_second_reference_without_preload_or_damping_is_one_too() -> None:
         assert np.abs(plain - located).max() < 1e-6 * np.abs(located).max()  # each is more accurate than 1e-8
 
 
-def test_what_a_method_costs_is_the_time_of_its_own_thread(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_time_of_a_method_is_that_of_its_own_thread(monkeypatch: pytest.MonkeyPatch) -> None:
     """A visitor who computes at the same time does not make a method appear slower."""
     times = iter((1.0, 1.25))
     monkeypatch.setattr(MEASURING.time, "thread_time", lambda: next(times))

@@ -34,7 +34,7 @@ def points() -> dict[str, BifurcationPoint]:
 
 @pytest.mark.parametrize(("kind", "condition"), [
     ("period_doubling", lambda mu: mu + 1.0), ("fold", lambda mu: mu - 1.0), ("neimark_sacker", lambda mu: abs(mu) - 1.0)])
-def test_the_orbit_there_has_the_critical_multiplier(points: dict[str, BifurcationPoint], kind: str,
+def test_the_orbit_on_a_bifurcation_curve_has_the_critical_multiplier(points: dict[str, BifurcationPoint], kind: str,
                                                      condition: Callable[[complex], complex]) -> None:
     found = points[kind]
     assert abs(condition(found.multiplier)) <= 1e-6
@@ -60,7 +60,7 @@ def test_on_one_side_of_a_neimark_sacker_point_the_motion_is_quasi_periodic(
     assert settle(shown, beside).regime.name == name
 
 
-def test_beyond_a_fold_there_is_no_such_orbit(points: dict[str, BifurcationPoint]) -> None:
+def test_beyond_a_fold_the_orbit_does_not_exist(points: dict[str, BifurcationPoint]) -> None:
     at, (shown, start, period) = points["fold"].x, near("fold")
     assert granchain_core.orbit(shown.evolve(f=at - 0.5), period, start).stable
     with pytest.raises(ComputationError, match="found no orbit of 5 drive periods"):

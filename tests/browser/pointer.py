@@ -10,7 +10,7 @@ from __future__ import annotations
 #: By module: the tests.
 POINTER_TESTS: dict[str, tuple[str, ...]] = {
     "test_accuracy_page": (
-        "test_points_appear_and_the_cheapest_way_is_told",
+        "test_points_appear_and_the_cheapest_setting_is_named",
     ),
     "test_branches_page": (
         "test_hover_tells_and_a_click_loads_orbits_stable_and_unstable",
@@ -30,8 +30,8 @@ POINTER_TESTS: dict[str, tuple[str, ...]] = {
         "test_a_bead_that_is_pointed_at_is_joined_to_its_column_and_a_column_to_its_bead",
     ),
     "test_map_page": (
-        "test_it_is_moved_in_the_browser_alone",
-        "test_a_cell_tells_its_values",
+        "test_panning_the_map_needs_no_server",
+        "test_hovering_shows_the_values_of_a_cell",
         "test_a_click_sets_f_and_A0",
     ),
     "test_probe_page": (
@@ -39,7 +39,7 @@ POINTER_TESTS: dict[str, tuple[str, ...]] = {
         "test_a_click_in_the_map_probes_the_bead_and_a_drag_moves_time",
     ),
     "test_stability_page": (
-        "test_multipliers_tell_themselves_and_a_chosen_one_moves_the_chain",
+        "test_hovering_shows_a_multiplier_and_choosing_it_animates_its_mode",
     ),
     "test_stories": (
         "test_a_term_with_a_capital_has_its_definition",

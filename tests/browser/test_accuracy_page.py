@@ -66,7 +66,7 @@ def measured(shared: Visit) -> Page:
     return page
 
 
-def test_its_tab_opens_the_page(measured: Page) -> None:
+def test_the_tab_opens_the_page(measured: Page) -> None:
     measured.get_by_role("button", name="open the page").click()
     expect(measured.locator("#overlay .work canvas").first).to_be_visible()
     assert measured.evaluate(POINTS)
@@ -75,7 +75,7 @@ def test_its_tab_opens_the_page(measured: Page) -> None:
 
 
 @pytest.mark.long
-def test_points_appear_and_the_cheapest_way_is_told(measured: Page) -> None:
+def test_points_appear_and_the_cheapest_setting_is_named(measured: Page) -> None:
     page = measured
     sheet = opened(page)
     expect(sheet.get_by_role("button", name="measure again")).to_be_visible(timeout=COMPILED)
@@ -157,7 +157,7 @@ def fits(page: Page, sheet: Locator) -> None:
         assert box is not None and box["x"] >= 0 and box["x"] + box["width"] <= width and box["height"] > 200, width
 
 
-def test_steps_that_blow_up_are_told_and_a_stopped_measurement_keeps_its_points(visit: Visit) -> None:
+def test_diverging_steps_are_named_and_a_stopped_measurement_keeps_its_points(visit: Visit) -> None:
     page = visit("?v=1&scene=rig")
     sheet = opened(page)
     # at once: the button is there during the measurement, however long anything else takes

@@ -28,7 +28,7 @@ def violations(page: Page, within: str | None = None) -> dict[str, list[str]]:
 
 
 @pytest.mark.long
-def test_axe_finds_nothing(visit: Visit) -> None:
+def test_axe_finds_no_violations(visit: Visit) -> None:
     page = visit("?v=1&look=light")
     page.wait_for_selector(".peak-names button", timeout=COMPILED)
     places = everywhere(page)

@@ -98,7 +98,7 @@ def test_a_link_to_the_page_begins_by_itself_over_the_resonance_curve(visit: Vis
     assert source(page, "branches", "curve") == curve
 
 
-def test_a_motion_that_does_not_repeat_is_said_to_lie_on_no_branch(at: Visit) -> None:
+def test_an_irregular_motion_is_reported_to_lie_on_no_branch(at: Visit) -> None:
     page = at("?v=1&scene=sec2&f=1750&page=branches")
     sheet = page.locator('[data-overlay="branches"]')
     expect(sheet).to_contain_text("is on no branch", timeout=COMPILED)
@@ -170,7 +170,7 @@ def test_the_page_fits_and_moved_knobs_grey_the_branch(visit: Visit) -> None:
     expect(sheet.locator(".stale")).to_have_count(0)
 
 
-def test_a_chain_without_such_an_orbit_is_told_in_a_sentence(at: Visit) -> None:
+def test_a_chain_without_an_orbit_of_the_period_is_reported_in_a_sentence(at: Visit) -> None:
     page = at("?v=1&scene=rig&f=140&k=0")
     sheet = opened(page)
     stop(sheet)

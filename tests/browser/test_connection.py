@@ -202,7 +202,7 @@ def test_a_silent_socket_is_given_up_while_the_server_answers(page: Page) -> Non
     assert (value(page), value(page, "D")) == ("1130", "90")
 
 
-def test_what_the_server_never_heard_of_comes_back_too(chromium: Browser, tmp_path: Path, request: pytest.FixtureRequest) -> None:
+def test_knobs_moved_while_the_server_is_silent_are_restored(chromium: Browser, tmp_path: Path, request: pytest.FixtureRequest) -> None:
     """The knobs have the values that the visitor saw last, not those that the server received last."""
     moved = {"f": "700", "kappa": "0.002"}
     with running(tmp_path) as server, opened(chromium, server, request.node) as page:

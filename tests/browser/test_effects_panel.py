@@ -57,7 +57,7 @@ def page(measured: Page, request: pytest.FixtureRequest, log: Path) -> Page:
     return measured
 
 
-def test_a_cost_is_not_there_before_it_was_measured(page: Page) -> None:
+def test_the_panel_shows_no_cost_before_it_is_measured(page: Page) -> None:
     first = page.evaluate("rowsSeen")[0]
     assert not re.search(r"\d ns", first) and re.search("not measured yet|measuring|compiling", first), first
 
@@ -86,7 +86,7 @@ def test_the_foundation_comes_with_its_knob(page: Page) -> None:
     expect(field(page, "k")).to_have_value("0")
 
 
-def test_the_energy_account_is_told_in_the_status_line(page: Page) -> None:
+def test_the_status_line_shows_the_energy_account(page: Page) -> None:
     tab = page.locator("#tabs")
     expect(activity(tab, "energy account")).to_contain_text("switched off")
     page.get_by_role("switch", name="energy account").click()
@@ -98,7 +98,7 @@ def test_the_energy_account_is_told_in_the_status_line(page: Page) -> None:
 
 
 @pytest.mark.long
-def test_what_is_computed_is_what_is_asked_for(visit: Visit) -> None:
+def test_the_panel_lists_every_activity_with_its_state(visit: Visit) -> None:
     """The chain has three beads, because a whole sweep of eleven took four minutes on a busy machine."""
     page = visit("?v=1&scene=sec2&N=3")
     page.get_by_role("tab", name="effects").click()

@@ -28,7 +28,7 @@ WebSocket.prototype.send = function (frame) {
 """
 
 
-def test_a_page_that_says_late_that_it_is_ready_gets_everything(visit: Visit) -> None:
+def test_a_page_that_is_ready_late_gets_everything(visit: Visit) -> None:
     """Parts of the page send requests before the page is ready. Panel loses changes made then, so the answers wait."""
     page = visit(script=SAYS_LATE_THAT_IT_IS_READY)
     expect(field(page, "f")).to_have_value("340")

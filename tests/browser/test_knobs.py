@@ -78,7 +78,7 @@ def test_a_knob_that_turns_nothing_says_so(at: Visit) -> None:
     more.click()
 
 
-def test_wrong_values_get_their_sentence(at: Visit) -> None:
+def test_invalid_values_are_refused_with_a_sentence(at: Visit) -> None:
     page = at()
     settled(page)
     expect(page.locator("#foot #regime")).not_to_contain_text("the curve is being computed")

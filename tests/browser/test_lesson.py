@@ -12,7 +12,7 @@ from test_axe import violations
 from granchain_core import scene_names
 
 
-def test_scales_and_the_largest_forces_are_said_where_they_are(at: Visit) -> None:
+def test_scales_and_largest_forces_are_labelled_in_their_figures(at: Visit) -> None:
     page = at("?v=1&scene=sec2&f=850")
     settled(page)
     peaks = page.locator("#stage .peak")

@@ -19,7 +19,7 @@ def test_a_shared_link_brings_the_picture_back(visit: Visit) -> None:
     assert (knob(other, "f"), knob(other, "D")) == ("615.3", "80")
 
 
-def test_what_a_link_names_and_is_not_there_leaves_the_address(visit: Visit) -> None:
+def test_unknown_names_of_a_link_leave_the_address(visit: Visit) -> None:
     """Otherwise, a reload would report it again, and the theme would stay as it happened to be."""
     page = visit("?v=1&scene=sec2&tab=foo&page=bar&look=pink")
     expect(page.locator("#foot .sentence")).to_contain_text("bar")
@@ -61,19 +61,19 @@ def test_the_address_follows_the_page_and_a_reload_keeps_everything(visit: Visit
     expect(field(page, "f")).to_have_value("850")
 
 
-def test_a_scene_that_shows_its_own_curves_needs_no_word_of_them(visit: Visit) -> None:
+def test_a_link_omits_the_default_curves_of_its_scene(visit: Visit) -> None:
     page = visit("?v=1&scene=fig12-60")
     expect(page.get_by_label("paper’s features")).to_be_checked()
     page.wait_for_function("location.search === '?v=1&scene=fig12-60'")
 
 
-def test_a_bad_field_of_a_link_is_told_and_the_others_count(visit: Visit) -> None:
+def test_a_bad_field_of_a_link_is_reported_and_the_others_count(visit: Visit) -> None:
     page = visit("?v=1&scene=sec2&f=615&D=lots")
     expect(page.get_by_role("alert").filter(has_text="lots")).to_be_visible()
     assert knob(page, "f") == "615"
 
 
-def test_what_a_file_does_not_say_is_chosen_and_the_misfit_is_said(visit: Visit, tmp_path: Path) -> None:
+def test_missing_units_of_a_file_are_chosen_and_the_misfit_is_shown(visit: Visit, tmp_path: Path) -> None:
     page = visit()
     page.get_by_role("tab", name="data").click()
     chosen = page.locator('input[type="file"]')

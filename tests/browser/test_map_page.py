@@ -73,7 +73,7 @@ def test_the_map_has_the_place_of_the_curve_and_every_cell_once(page: Page) -> N
     assert len(set(cells["number"])) == len(cells["number"]) == 60 * 40
 
 
-def test_it_shows_force_or_regime(page: Page) -> None:
+def test_the_map_shows_force_or_regime(page: Page) -> None:
     cells = source(page, "map", "cells")
     assert "period 1" in cells["regime"] and len(set(cells["regime"])) > 2
     assert visible(page, "force") and not visible(page, "regime")
@@ -83,7 +83,7 @@ def test_it_shows_force_or_regime(page: Page) -> None:
     assert visible(page, "force") and not visible(page, "regimes")
 
 
-def test_it_is_moved_in_the_browser_alone(page: Page) -> None:
+def test_panning_the_map_needs_no_server(page: Page) -> None:
     """The server would refuse a message about it (`address` in conftest.py)."""
     edge, middle = left_edge(page), place(page, "map", 1800.0, 3.0)
     page.mouse.move(*middle)
@@ -97,7 +97,7 @@ def test_it_is_moved_in_the_browser_alone(page: Page) -> None:
     until(page, lambda: abs(left_edge(page) - edge) < 1e-6 * edge)
 
 
-def test_a_cell_tells_its_values(page: Page) -> None:
+def test_hovering_shows_the_values_of_a_cell(page: Page) -> None:
     one = cell(page)
     hover(page, lambda: place(page, "map", one["x"], one["y"]), one["tooltip"])
     for words in ("Hz", "m: ", "N"):

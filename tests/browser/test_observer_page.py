@@ -42,7 +42,7 @@ def opened(page: Page) -> Locator:
     return sheet
 
 
-def test_it_breaks_without_foundation_synchronises_with_it_and_rests_unseen(visit: Visit) -> None:
+def test_the_observer_synchronises_with_a_foundation_only_and_rests_when_hidden(visit: Visit) -> None:
     page = visit(reduced_motion="no-preference")
     sheet = opened(page)
     expect(sheet).to_contain_text("it drifts: a common shift of all its beads grows exponentially, an instability, because "

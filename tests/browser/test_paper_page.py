@@ -47,7 +47,7 @@ def test_figures_are_drawn_with_caption_and_rows(visit: Visit) -> None:
     assert page.evaluate("granchain.pages.get('paper').figure.model('drive').background_fill_color") == "#161a21"
 
 
-def test_a_figure_is_given_up_when_the_page_is_left_and_others_fit(visit: Visit) -> None:
+def test_leaving_the_page_stops_a_figure_and_every_figure_fits(visit: Visit) -> None:
     page = visit()
     sheet = opened(page)
     chosen(sheet, "9")  # the longest one: four curves

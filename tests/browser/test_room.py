@@ -167,7 +167,7 @@ def test_a_moved_knob_moves_no_picture(at: Visit, theme: str) -> None:
 
 @pytest.mark.long
 @pytest.mark.parametrize("theme", ["light", "projector"])
-def test_what_the_paper_states_is_named_at_its_frequency(at: Visit, theme: str) -> None:
+def test_frequencies_that_the_paper_states_are_labelled(at: Visit, theme: str) -> None:
     # with more damping than the rig's 35.4, the curve has as many names and takes a sixth of the time
     page = at(f"?v=1&scene=rig&D=65&look={theme}")
     stated = page.locator(".peak-names .stated")

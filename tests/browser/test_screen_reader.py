@@ -6,7 +6,7 @@ from knobs import COMPILED, Visit, settled, type_into
 from playwright.sync_api import expect
 
 
-def test_the_pictures_are_told_in_words_and_tables(visit: Visit) -> None:
+def test_the_pictures_are_described_in_words_and_tables(visit: Visit) -> None:
     page = visit("?v=1&scene=sec2&f=850")
     settled(page)
     summary = page.locator("#summary")

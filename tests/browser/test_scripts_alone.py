@@ -213,7 +213,7 @@ def test_an_event_that_is_not_declared_is_an_error(page: Page) -> None:
     assert page.evaluate("granchain.on('page:map', (data) => { window.heard = data; }); granchain.publish('map', 3); heard") == 3
 
 
-def test_what_the_page_before_a_reload_kept_is_taken_once(page: Page) -> None:
+def test_state_kept_before_a_reload_is_restored_once(page: Page) -> None:
     page.evaluate("sessionStorage.setItem('granchain-resume', JSON.stringify({ playing: false }))")
     page.reload()
     taken = page.evaluate("[granchain.connection.resumeState, granchain.connection.takeResumeState(),"

@@ -27,7 +27,7 @@ def axis_title(page: Page, axis: str) -> str:
     return str(page.evaluate(f'figures.documentOf("section").get_model_by_name("{axis}").axis_label'))
 
 
-def test_the_tab_tells_and_what_nobody_looks_at_is_not_computed(visit: Visit) -> None:
+def test_the_tab_shows_stability_and_a_closed_page_computes_nothing(visit: Visit) -> None:
     page = visit()
     tab = page.locator("#tabs")
     settled(page)
@@ -50,7 +50,7 @@ def test_the_tab_tells_and_what_nobody_looks_at_is_not_computed(visit: Visit) ->
     expect(tab).to_contain_text("2 drive periods")
 
 
-def test_multipliers_tell_themselves_and_a_chosen_one_moves_the_chain(visit: Visit) -> None:
+def test_hovering_shows_a_multiplier_and_choosing_it_animates_its_mode(visit: Visit) -> None:
     page = visit(reduced_motion="no-preference")
     sheet = opened(page)
     until(page, lambda: marks(page, "within") == 22)

@@ -157,7 +157,7 @@ def figures_of_the_open_page_are_exported(page: Page, tmp_path: Path) -> None:
     assert download.value.suggested_filename == "sec2-340Hz-page.svg" and "real part of" in text and text.count("<path") > 10
 
 
-def test_in_a_frame_there_are_the_pictures_and_nothing_to_turn(visit: Visit) -> None:
+def test_an_embedded_page_has_pictures_and_no_knobs(visit: Visit) -> None:
     page = visit("?v=1&scene=sec2&f=850&embed=1", viewport={"width": 900, "height": 520})
     for gone in ("#side", "#tabs", "#curvebar"):
         expect(page.locator(gone)).to_be_hidden()

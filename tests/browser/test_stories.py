@@ -60,7 +60,7 @@ def tells(page: Page, story: Story, number: int, revealed: bool) -> None:
 
 @pytest.mark.long
 @pytest.mark.parametrize("story", stories(overlay_names())[0], ids=lambda story: story.name)
-def test_a_story_shows_what_it_tells(at: Visit, story: Story) -> None:
+def test_the_pictures_of_a_story_are_those_of_its_text(at: Visit, story: Story) -> None:
     """Each step is opened on a laptop or a phone, then viewed on the other, where the next step is opened."""
     page = at()
     now, other = LAPTOP, PHONE
@@ -96,7 +96,7 @@ def test_a_story_is_read_whole_on_a_laptop(at: Visit) -> None:
     expect(tab.get_by_text("This is the 1:1 resonance.")).to_be_in_viewport(ratio=1)
 
 
-def test_a_step_back_is_the_step_it_was(at: Visit) -> None:
+def test_going_back_shows_the_earlier_step_again(at: Visit) -> None:
     """The second step is reached through another frequency, so going back and forth must not change its motion."""
     page = at()
     (story,) = (one for one in stories(overlay_names())[0] if one.name == "coexisting")

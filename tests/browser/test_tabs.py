@@ -46,7 +46,7 @@ def test_a_name_of_no_page_opens_none(at: Visit) -> None:
     expect(page.locator("#tabs")).to_be_visible()
 
 
-def test_what_a_hidden_window_stops(visit: Visit) -> None:
+def test_a_hidden_window_pauses_an_analysis_and_not_a_map(visit: Visit) -> None:
     """An analysis pauses; a map continues, and so does the curve unless the map or a page covers it."""
     page = visit()
     hide = """(hidden) => {

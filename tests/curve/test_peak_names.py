@@ -67,7 +67,7 @@ def test_a_valley_without_a_push_in_every_period_has_no_name(curve: list[CurvePo
     assert extremum_name("valley", third, SEC2) is None
 
 
-def test_what_one_visitor_has_named_is_not_computed_for_the_next(curve: list[CurvePoint], monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_names_of_peaks_are_shared_by_visitors(curve: list[CurvePoint], monkeypatch: pytest.MonkeyPatch) -> None:
     """If a class looks at one curve, its extrema are settled once."""
     scene_of_its_own = SEC2.evolve(D=SEC2.D * 1.0001)  # whose names have not been requested before
     settled_at: list[float] = []

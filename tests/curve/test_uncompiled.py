@@ -39,7 +39,7 @@ def tries(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     return found
 
 
-def test_it_says_so_once_and_is_not_under_way(tries: list[str]) -> None:
+def test_a_curve_that_cannot_be_compiled_says_so_once_and_is_not_under_way(tries: list[str]) -> None:
     host, figure, placed = Host(), CurveFigure(lambda _: None), []
     curves = CurveController(host, figure, CurveBar(lambda _: None), lambda: placed.append(True))  # type: ignore[arg-type]
     curves.restart_when_quiet(host.session.scene)
@@ -54,7 +54,7 @@ def test_it_says_so_once_and_is_not_under_way(tries: list[str]) -> None:
     assert len(host.faults) == 1 and tries == [CURVE_KERNELS]
 
 
-def test_it_is_begun_once_another_attempt_has_succeeded(tries: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_curve_begins_once_another_attempt_to_compile_has_succeeded(tries: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
     """For example, the next picture's attempt."""
     host = Host()
     curves = CurveController(host, CurveFigure(lambda _: None), CurveBar(lambda _: None), lambda: None)  # type: ignore[arg-type]

@@ -191,7 +191,7 @@ def test_a_curve_is_read_right(content: str | bytes, answers: Answers | None, fr
 
 
 @pytest.mark.parametrize(("content", "about", "reason"), [one[1:] for one in ASKED], ids=[one[0] for one in ASKED])
-def test_what_is_uncertain_is_asked_with_the_first_rows(content: str | bytes, about: tuple[str, ...], reason: str) -> None:
+def test_a_question_about_an_unclear_file_shows_its_first_rows(content: str | bytes, about: tuple[str, ...], reason: str) -> None:
     with pytest.raises(Unclear, match=reason) as asked:
         read_data(data(content))
     question = asked.value.question
@@ -257,7 +257,7 @@ def test_units_source_and_note_stay_with_the_data() -> None:
     assert (found.units, found.source, found.note) == ({"frequency": "kHz", "force": "mN"}, "mine.csv", "rig 2, sensor A")
 
 
-def test_what_a_figure_cannot_use_is_not_read() -> None:
+def test_a_file_is_read_for_the_quantities_that_are_wanted() -> None:
     """A file with force and amplitude is read as a curve or as a drive, depending on what is wanted."""
     text = b"f [Hz],F [N],A0 [um]\n60,1.5,7\n70,2,8\n"
     assert isinstance(read_data(text), Measured)

@@ -65,7 +65,7 @@ def test_only_samples_within_the_motion_count(time: np.ndarray, count: int) -> N
     assert f"at {count} of {len(time)} samples" in out.sentence
 
 
-def test_no_force_no_size_and_a_virtual_experiment() -> None:
+def test_no_force_is_not_compared_and_a_force_of_zeros_has_no_relative_misfit() -> None:
     time = np.linspace(0.0, 1.0, 8)
     assert compared_forces(series(time), RAMP) == {}
     silent = compared_forces(series(time, np.zeros(8), note="virtual experiment by granchain"), RAMP)["input_force"]
@@ -76,6 +76,6 @@ def test_no_force_no_size_and_a_virtual_experiment() -> None:
     (series(np.linspace(0.0, 1.0, 8), np.r_[np.zeros(7), np.nan]), "Sample 7 of the measured input force is not a finite number"),
     (series(np.linspace(5.0, 6.0, 8), np.zeros(8)), "the samples are from 5 to 6 s, the motion is from 0 to 2 s"),
     ("force.csv", "not a value of type str")])
-def test_what_cannot_be_compared_is_one_sentence(measured: Series, words: str) -> None:
+def test_forces_that_cannot_be_compared_are_refused_with_a_sentence(measured: Series, words: str) -> None:
     with pytest.raises(BadInput, match=words):
         compared_forces(measured, RAMP)

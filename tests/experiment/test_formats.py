@@ -52,7 +52,7 @@ def test_a_content_that_is_too_large_is_refused(place: int, tmp_path: Path) -> N
         read_data(content, most_bytes=10)
 
 
-def test_what_no_format_recognises_is_refused_as_text() -> None:
+def test_content_of_no_known_format_is_refused_as_text() -> None:
     assert format_of(b"") is TEXT is FORMATS[-1]
     with pytest.raises(BadInput, match="Excel"):
         read_data(b"PK\x03\x04")

@@ -46,7 +46,7 @@ def test_every_version_of_hdf5s_layout_is_read(layout: str, tmp_path: Path) -> N
     assert isinstance(found, Measured) and list(found.force) == list(FORCE)
 
 
-def test_a_seal_that_does_not_fit_is_damage(tmp_path: Path) -> None:
+def test_a_seal_that_does_not_match_is_reported_as_damage(tmp_path: Path) -> None:
     path = save_curve(resonance_curve(scene("sec2").evolve(N=2), [1800.0, 2000.0]), tmp_path / "curve.h5")
     content = bytearray(path.read_bytes())
     content[len(content) // 2] ^= 1

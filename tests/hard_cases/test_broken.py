@@ -108,7 +108,7 @@ def test_wrong_scaling_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
         "scaling from 1e-12 to 1e-4 m, fixed steps", "scaling from 1e-12 to 1e-4 m, adaptive"]
 
 
-def test_change_per_period_taken_for_the_distance_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_change_per_period_in_place_of_the_distance_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     def gullible(strobes: np.ndarray) -> Regime:
         change = float(np.abs(strobes[-1] - strobes[-2]).max() / np.abs(strobes).max())
         return Regime("periodic" if change < 1e-4 else "unsettled", 1, 0.5, change, len(strobes))
@@ -119,7 +119,7 @@ def test_change_per_period_taken_for_the_distance_is_noticed(monkeypatch: pytest
     assert slow > 0
 
 
-def test_a_nan_that_nobody_sees_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_unnoticed_nan_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(numbers.Injector, "outcome", lambda self: self.restore())
     count, wrong = numbers.injections(40)
     assert wrong == count

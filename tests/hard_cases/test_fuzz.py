@@ -46,7 +46,7 @@ def found() -> list[Verdict]:
 
 
 @pytest.mark.long
-def test_everything_holds_in_every_scene() -> None:
+def test_every_check_holds_in_random_scenes() -> None:
     """No exception is allowed, although two computations that agree by chance understate the error in one of 1000
     scenes.
     """
@@ -60,7 +60,7 @@ def test_most_scenes_are_judged() -> None:
     assert {"done", "refused: BadInput"} <= {v.outcome for v in found()}
 
 
-def test_a_draw_is_its_seed_and_number() -> None:
+def test_a_scene_is_drawn_from_its_seed_and_number() -> None:
     again = [draw(SEED, i, ONE) for i in (3, 47)]
     assert [(d.knobs, d.special) for d in again] == [(found()[i].draw.knobs, found()[i].draw.special) for i in (3, 47)]
     assert draw(SEED + 1, 3, ONE).knobs != again[0].knobs
@@ -81,7 +81,7 @@ def moved(result: Run, by: float) -> Run:
     return replace(result, displacement=wrong)
 
 
-def test_nothing_is_noticed_where_nothing_is_wrong() -> None:
+def test_a_correct_run_is_not_reported() -> None:
     assert faults(lambda result: result) == set()
 
 
@@ -101,12 +101,12 @@ def test_a_stated_error_that_is_too_small_is_noticed() -> None:
     assert "bound" in faults(lambda result: replace(result, displacement_error=1e-3 * result.displacement_error))
 
 
-def test_done_without_being_it_is_noticed() -> None:
+def test_a_run_that_is_called_done_too_early_is_noticed() -> None:
     assert faults(lambda result: replace(result, displacement_error=0.5)) == {"done, with a stated error above the accuracy asked for"}
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf])
-def test_what_is_not_finite_is_noticed(bad: float) -> None:
+def test_numbers_that_are_not_finite_are_noticed(bad: float) -> None:
     assert {"displacement is not finite", "silent error"} <= faults(lambda result: moved(result, bad))
 
 
@@ -145,7 +145,7 @@ def test_a_hang_is_ended_and_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     assert verdict.outcome == "hang" and verdict.faults[0][0] == "hang"
 
 
-def test_a_spoiled_knob_that_is_taken_is_noticed() -> None:
+def test_an_invalid_knob_that_is_accepted_is_noticed() -> None:
     assert ("a spoiled knob was accepted", 1.0) in check(replace(EASY, spoiled=True)).faults
 
 

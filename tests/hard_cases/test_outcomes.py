@@ -28,7 +28,7 @@ from granchain_core.scene.validity import ONSET_OF_YIELD, YIELD_STRESS, peak_pre
 from granchain_core.store import load, save
 
 
-def test_done_with_its_figures() -> None:
+def test_a_finished_run_has_status_done_and_its_figures() -> None:
     result = run(scene("sec2"), periods=1, record=1, samples=8)
     assert result.status == "done"
     assert result.cost.steps > 0 and result.displacement_error is not None and result.energy_residual is not None
@@ -122,7 +122,7 @@ def test_a_step_in_the_middle_of_a_long_call_is_found_again() -> None:
     assert (caught.value.bead, caught.value.step) == (1, step)
 
 
-def test_step_too_small() -> None:
+def test_a_step_too_small_has_a_status_of_its_own() -> None:
     """During the run, a contact becomes so stiff that no step is small enough."""
     engine = Engine(scene("sec2"), MethodSetting("dop853", 1.0, 1e-6), 8)
     engine.record(1)
@@ -161,7 +161,7 @@ def test_contacts_that_open_and_close_while_no_time_passes_fail_with_a_sentence(
     assert caught.value.status == "chatter"
 
 
-def test_no_convergence_with_its_history() -> None:
+def test_a_failed_newton_iteration_has_its_residuals() -> None:
     with pytest.raises(ComputationError, match=r"residuals were \d") as caught:
         orbit(scene("rig").evolve(f=140.0, k=0.0), period=1)
     assert caught.value.status == "no-convergence"
@@ -175,7 +175,7 @@ def test_every_failure_has_a_known_name() -> None:
     assert written == set(FAILURES)
 
 
-def test_outside_validity_is_a_warning() -> None:
+def test_pressures_outside_the_models_validity_are_a_warning() -> None:
     gentle, strong = scene("sec2"), scene("sec2").evolve(A0=1e-5, F0=1e4)
     assert warnings(run(gentle, periods=0, record=1, samples=8)) == []
     found = warnings(run(strong, periods=0, record=1, samples=64))

@@ -63,7 +63,7 @@ def test_a_picture_shows_ours_beside_something_else(case) -> None:  # type: igno
     assert pairs and any(seen(shown, ours.values, other.values) for ours, other in pairs)
 
 
-def test_what_is_hardly_apart_is_not_seen() -> None:
+def test_traces_that_hardly_differ_do_not_count_as_different() -> None:
     x = np.linspace(0.0, 1.0, 50)
     near = Picture(x, "x", "y", (Trace("granchain", x), Trace("naive", 1.02 * x)))
     assert not seen(near, *(trace.values for trace in near.traces))

@@ -28,7 +28,7 @@ def engine(method: str, samples: int = 8, **knobs) -> Engine:
 
 
 @pytest.mark.parametrize(("method", "_"), TOLERATED)
-def test_two_halves_are_the_whole_bit_by_bit(method, _):
+def test_a_run_in_two_halves_equals_one_run_bit_by_bit(method, _):
     """An engine that records twice gives the same as one that records once."""
     whole, halves = engine(method), engine(method)
     together = whole.record(32)

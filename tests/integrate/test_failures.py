@@ -60,7 +60,7 @@ def test_the_bead_beside_a_broken_contact_is_named(method, samples, f, contact):
 
 
 @pytest.mark.parametrize("method", LOCATED)
-def test_the_kernel_of_whole_periods_looks_as_well(method):
+def test_the_kernel_of_whole_periods_notices_numbers_that_are_not_finite(method):
     engine = Engine(scene("sec2"), MethodSetting(method, tolerance=1e-6), 1)
     engine.periods(2)
     break_contact(engine, 4)
@@ -98,7 +98,7 @@ def test_the_repeated_call_that_finds_the_bead_is_cancelled_as_any_other(method,
 
 
 @pytest.mark.parametrize("method", LOCATED)
-def test_a_bead_that_is_not_found_is_not_named(method):
+def test_no_bead_is_named_if_none_is_identified(method):
     """If every number is finite, no bead is named as the first that failed."""
     engine = Engine(scene("sec2"), MethodSetting(method, tolerance=1e-6), 8)
     engine.record(8)

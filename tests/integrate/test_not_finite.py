@@ -25,7 +25,7 @@ def test_the_first_bead_that_is_not_finite(value: float, bead: int, row: int) ->
 
 
 @pytest.mark.parametrize("method", ["rk4", "dop853"])
-def test_a_contact_that_is_not_a_number_is_said_by_the_kernel(method: str) -> None:
+def test_the_kernel_reports_a_contact_that_is_not_a_number(method: str) -> None:
     """The state is finite when the call begins; a failure within a step ends the run with a sentence."""
     engine = Engine(scene("sec2").evolve(N=3), MethodSetting(method, tolerance=1e-6), 4)
     engine.record(8)

@@ -50,7 +50,7 @@ class Counting(Stop):
 
 
 @pytest.mark.parametrize("chain", [scene("sec2").evolve(N=2000, A0=1e-5), scene("sec2").evolve(f=0.5)], ids=["long", "slow"])
-def test_there_is_a_pause_within_a_period(chain: Scene) -> None:
+def test_a_computation_pauses_within_a_period(chain: Scene) -> None:
     stop = Counting()
     Engine(chain, fixed_step_setting(), 1, stop=stop).periods(2)
     assert stop.pauses > 4

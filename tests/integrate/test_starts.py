@@ -50,7 +50,7 @@ def test_a_state_is_carried_on_to_where_its_motion_is_at_phase_0(sample: int) ->
     assert there.velocity == pytest.approx(MOTION.velocity[-1], abs=1e-3 * np.abs(MOTION.velocity).max())
 
 
-def test_a_state_at_phase_0_stays_what_it_is() -> None:
+def test_a_state_at_phase_0_is_not_changed() -> None:
     begin = state_at(0)
     there = at_phase_0(CHAIN, begin)
     assert there.phase == 0.0 and (there.displacement == begin.displacement).all()
@@ -76,7 +76,7 @@ def test_a_run_goes_on_from_any_of_its_samples(method: str, samples: int) -> Non
 @pytest.mark.parametrize("call", [
     lambda start: lyapunov_spectrum(CHAIN, 20, start=start), lambda start: next(iter_section(CHAIN, start, 4)),
     lambda start: orbit(CHAIN, start=start)], ids=["lyapunov", "section", "orbit"])
-def test_what_goes_by_whole_periods_takes_any_phase(call: Callable[[State], Any]) -> None:
+def test_functions_that_run_whole_periods_take_any_phase(call: Callable[[State], Any]) -> None:
     at_once, later = call(state_at(5)), call(at_phase_0(CHAIN, state_at(5)))
     for name in ("exponents", "displacement", "multipliers"):
         if hasattr(at_once, name):
@@ -113,12 +113,12 @@ def test_a_phase_that_is_no_fraction_is_refused_with_the_nearest() -> None:
     lambda start: settle(CHAIN.evolve(drive="rest"), start), lambda start: lyapunov_spectrum(CHAIN, 20, start=start),
     lambda start: drive(CHAIN, Signal.burst(1e-7, 2000.0, 1, 0.001), start=start)],
     ids=["run", "settle", "orbit", "live", "undriven", "lyapunov", "drive"])
-def test_what_is_no_state_of_the_chain_is_refused(call: Callable[[Any], object], start: Any, sentence: str) -> None:
+def test_a_state_of_another_chain_is_refused(call: Callable[[Any], object], start: Any, sentence: str) -> None:
     with pytest.raises(BadInput, match=sentence):
         call(start)
 
 
-def test_lists_are_numbers_too() -> None:
+def test_a_state_may_be_given_by_lists() -> None:
     start = State([0.0, 0.0], [0.01, 0.0])  # type: ignore[arg-type]
     assert run(CHAIN, periods=0, record=1, start=start).velocity[0] == pytest.approx([0.01, 0.0])
 

@@ -76,7 +76,7 @@ def test_without_avx_in_numbas_settings_there_is_no_avx512(monkeypatch: pytest.M
 
 
 @pytest.mark.quick
-def test_a_machine_that_tells_no_features_has_no_avx512(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_machine_with_unknown_features_has_no_avx512(monkeypatch: pytest.MonkeyPatch) -> None:
     def unknown() -> FeatureMap:
         raise RuntimeError
 
@@ -87,7 +87,7 @@ def test_a_machine_that_tells_no_features_has_no_avx512(monkeypatch: pytest.Monk
 
 
 @pytest.mark.quick
-def test_where_numba_does_not_tell_its_features_a_batch_has_four_scenes(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_with_unknown_features_a_batch_has_four_scenes(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(numba.config, "CPU_FEATURES", None)
     monkeypatch.setattr(numba.config, "CPU_NAME", None)
     monkeypatch.delattr(codegen, "get_host_cpu_features")

@@ -75,7 +75,7 @@ def least_beyond_start(d0: float, s0: float, d1: float, s1: float) -> float:
 
 
 @given(_STEP)
-def test_whatever_crosses_zero_is_looked_into(step: tuple[float, float, float, float]) -> None:
+def test_every_cubic_that_crosses_zero_is_searched(step: tuple[float, float, float, float]) -> None:
     """No form misses a cubic that crosses zero and turns at most once, and a root is reported only if it crosses; its
     values where it turns decide whether it does.
 
@@ -97,7 +97,7 @@ def test_whatever_crosses_zero_is_looked_into(step: tuple[float, float, float, f
 
 
 @given(_STEP)
-def test_the_forms_that_ask_how_near_it_comes_look_into_nothing_else(step: tuple[float, float, float, float]) -> None:
+def test_the_finer_predicates_search_no_further_steps(step: tuple[float, float, float, float]) -> None:
     """`may_turn` and `may_touch` refine `turns`, which refines `may_change`."""
     d0, s0, d1, s1 = step
     assume(d0 * d1 > 0.0)

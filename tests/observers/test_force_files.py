@@ -53,7 +53,7 @@ def test_short_names_with_a_unit_of_force_are_the_two_forces(header: str) -> Non
     assert record.output is not None and record.output.max() > 0.0 and "left out" not in record.understood
 
 
-def test_a_comparison_that_is_not_made_is_said_first() -> None:
+def test_an_omitted_comparison_is_stated_first() -> None:
     rows = "\n".join(f"{i * STEP:.9g},{value:.9g},{2.0 * value:.9g}" for i, value in enumerate(pulse()))
     record = read_force_csv(f"time_s,force_N,wall sensor\n{rows}")
     assert record.output is None
@@ -82,7 +82,7 @@ def lines(changes: dict[int, str]) -> str:
     (csv(0.0 * pulse()), "zero at every sample"), ("", "empty"),
     (csv(pulse(), step=1e-3), r"Line 18: a pulse of 0.5 N may be as short as .* nearest valid spacing"),
 ])
-def test_what_cannot_be_is_refused_with_its_line(text: str, sentence: str) -> None:
+def test_invalid_numbers_are_refused_with_their_line(text: str, sentence: str) -> None:
     with pytest.raises(BadInput, match=sentence):
         observe(CHAIN, read_force_csv(text))
 
@@ -92,7 +92,7 @@ def test_units_that_contradict_the_header_are_refused() -> None:
         read_force_csv(csv(pulse(), header="time_s,force_mN"), force_unit="N")
 
 
-def test_a_number_with_two_readings_is_asked_for_and_read_as_answered() -> None:
+def test_an_ambiguous_number_is_asked_for_and_read_as_answered() -> None:
     """The command's option --decimal gives the answer."""
     text = "\n".join(f"{row}.100;0,5" for row in range(1, 13))
     with pytest.raises(Unclear, match=r"'1\.100' is 1\.1 with a decimal point and 1100 with a decimal comma"):
@@ -124,7 +124,7 @@ def test_any_file_is_read_or_refused(text: str | bytes) -> None:
         assert str(refused).endswith((".", "?"))
 
 
-def test_a_gap_is_bridged_only_as_chosen_and_said() -> None:
+def test_a_gap_is_bridged_only_as_chosen_and_is_reported() -> None:
     time, force = np.arange(200) * STEP, 0.2 + 0.1 * np.sin(np.arange(200) * 0.05)
     kept = np.r_[0:80, 100:200]
     with pytest.raises(BadInput, match="choose zero"):
@@ -245,7 +245,7 @@ def test_the_command_refuses_in_one_sentence(words, sentence: str, tmp_path: Pat
     assert sentence in said.err and said.out == "" and "Traceback" not in said.err
 
 
-def test_data_that_stand_elsewhere_are_not_read(tmp_path: Path) -> None:
+def test_external_data_of_a_file_are_not_read(tmp_path: Path) -> None:
     secret, crafted = tmp_path / "secret.bin", tmp_path / "crafted.h5"
     secret.write_bytes(np.arange(100.0).tobytes())
     with h5py.File(crafted, "w") as file:

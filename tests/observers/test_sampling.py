@@ -96,7 +96,7 @@ def test_steps_of_a_chain_that_cuts_tension_are_known_to_the_error_that_is_state
     assert error(seen.displacement, true) <= seen.integration_error <= shown.accuracy
 
 
-def test_an_observer_without_foundation_does_not_hide_what_it_loses() -> None:
+def test_the_error_of_an_observer_without_foundation_is_within_the_stated_one() -> None:
     free = scene("fig11-free")
     r = recorded(free, 2000)
     seen = observe(free, r.time, r.force, start=r.start)

@@ -47,7 +47,7 @@ def test_without_foundation_the_observer_drifts_and_the_verdict_says_so() -> Non
     (FREE, TRANSLATION, 4.4 + 0j, True), (FREE, TRANSLATION, -2.2 + 0j, True), (FREE, TRANSLATION, None, True),
     (FREE, TRANSLATION, 4.4 + 0.1j, False), (FREE, 0.99 * TRANSLATION, 4.4 + 0j, False), (FOUNDED, 1.0, 4.4 + 0j, False),
 ])
-def test_a_drift_is_a_shift_that_nothing_holds_and_that_does_not_turn(chain: Scene, share: float, multiplier: complex | None,
+def test_a_drift_is_a_common_shift_without_restoring_force_or_oscillation(chain: Scene, share: float, multiplier: complex | None,
                                                                       drifts: bool) -> None:
     assert is_drift(chain, share, multiplier) is drifts
 
@@ -166,7 +166,7 @@ def test_a_chain_that_is_not_periodic_has_a_rate_and_no_multiplier() -> None:
     assert found.rate is not None and found.sentence
 
 
-def test_one_multiplier_is_not_fitted_by_two() -> None:
+def test_a_growth_by_one_multiplier_is_fitted_by_one_and_a_rotation_by_two() -> None:
     one = 4.4 ** np.arange(8)[:, None] * np.arange(1.0, 7.0)
     rate, error = rate_of(one)
     assert rate == pytest.approx(4.4) and error == pytest.approx(0.0, abs=1e-12)

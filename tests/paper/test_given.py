@@ -47,7 +47,7 @@ def test_the_first_line_says_what_a_file_is_and_in_which_units(tmp_path: Path) -
     ("frequency_Hz,velocity_m_s\n50,1\n0,1\n", "Line 3: a frequency must be above 0"),
     ("frequency_Hz,velocity_m_s\n50,1\n60,abc\n", "Line 3: 'abc' is not a number"),
 ])
-def test_what_is_not_certain_is_refused(text: str, said: str, tmp_path: Path) -> None:
+def test_ambiguous_files_are_refused(text: str, said: str, tmp_path: Path) -> None:
     with pytest.raises(BadInput, match=r"data\.csv") as problem:
         read_experiment(written(tmp_path, text))
     assert said in str(problem.value)
@@ -67,7 +67,7 @@ def test_a_figure_says_which_files_it_takes(number: str, header: str, files: tup
         read_given(number, figure.takes, figure.frequencies, [one.format(name) for one in files])
 
 
-def test_a_missing_file_is_told() -> None:
+def test_a_missing_file_is_reported() -> None:
     with pytest.raises(BadInput, match=r"Cannot read none\.csv"):
         read_experiment("none.csv")
 

@@ -51,7 +51,7 @@ def test_every_cell_is_the_curves_point_at_its_amplitude(found: ParameterMap) ->
             assert np.isnan(cell["error_estimate"]) == (point.force_errors.output is None)
 
 
-def test_scaled_cells_are_the_same(found: ParameterMap) -> None:
+def test_a_scaled_chain_has_the_same_cells(found: ParameterMap) -> None:
     # along a tilted line of the map
     s = AMPLITUDES[1] / AMPLITUDES[0]
     other = parameter_map(scene("sec2").scaled(s), ("f", s**0.25 * FREQUENCIES), ("A0", s * AMPLITUDES))
@@ -89,7 +89,7 @@ def test_the_first_cells_are_spread_over_the_whole_diagram() -> None:
     assert (np.diff(grid.spacing()[order]) <= 0).all()
 
 
-def test_a_stopped_diagram_says_what_is_missing() -> None:
+def test_a_stopped_map_says_how_many_cells_are_missing() -> None:
     count, stop = [0], Stop()
 
     def look(_: ParameterMap, __: float) -> None:

@@ -114,7 +114,7 @@ def fails(message: str) -> None:
     raise ValueError(message)
 
 
-def test_what_fails_on_a_worker_is_one_sentence_and_what_is_stopped_ends(client: Any) -> None:
+def test_a_failure_on_a_worker_is_one_sentence_and_a_stop_ends_the_work(client: Any) -> None:
     with pytest.raises(ComputationError, match="A worker could not do its part: ValueError: no disk; look at its log"):
         list(results(client, fails, [("no disk",)]))
     stop = Stop()

@@ -159,7 +159,7 @@ BARE = scene("sec2").evolve(N=2, dissipation="none")
 
 
 @pytest.mark.parametrize("effect", [one for one in EFFECTS if one.possible(BARE)], ids=lambda effect: effect.name)
-def test_an_effect_dissipates_if_its_row_says_so(effect: Effect) -> None:
+def test_the_row_of_an_effect_says_whether_it_dissipates(effect: Effect) -> None:
     """The chain has this effect alone, except that a tension cut needs a dashpot, which dissipates the energy."""
     engine = Engine(BARE.evolve(**effect.usual), MethodSetting("rk4-split"), 16, account=True)
     _, work, lost = engine.record(16 * 2).energy.T

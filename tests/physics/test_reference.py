@@ -53,7 +53,7 @@ def test_a_finer_accuracy_comes_nearer_to_the_reference(name):
     assert (result.status == "done") == (result.displacement_error <= 1e-11)
 
 
-def test_undamped_chain_is_as_near_as_its_instability_lets_it_be():
+def test_the_error_of_an_undamped_chain_is_its_instabilitys():
     """Without damping, errors grow by a factor of 5e4. Only trusted samples are compared, and the stated error is true.
     """
     true = reference("sec2-340-none")

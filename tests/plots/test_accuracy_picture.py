@@ -18,13 +18,13 @@ ROWS = [Row("rk4", "1 × the default steps", float("inf"), 0.0, 0, 1.0, "It was 
         Row("euler" if "euler" in compared_methods() else "rk4", "", 40.0, 0.002, 9, 1.0)]
 
 
-def test_every_way_has_a_mark_of_its_own_without_colour() -> None:
+def test_every_method_has_a_mark_of_its_own_without_colour() -> None:
     shown = styles()
     assert list(shown) == list(compared_methods())
     assert len({(one["marker"], str(one["dash"]), one["filled"]) for one in shown.values()}) == len(shown)
 
 
-def test_what_has_no_finite_error_has_no_point_and_large_errors_stand_at_the_top() -> None:
+def test_rows_without_a_finite_error_have_no_point_and_large_errors_are_at_the_top() -> None:
     columns = points(ROWS)
     assert columns["dop853"]["ms"] == []
     assert columns["rk4"]["ms"][0] == pytest.approx(1.0) and columns["rk4"]["error"][0] == 1e-5
@@ -44,7 +44,7 @@ def test_marks_are_there_only_where_something_is_marked() -> None:
 
 
 @pytest.mark.parametrize("compact", [False, True])
-def test_everything_that_changes_is_found_by_its_name(compact: bool) -> None:
+def test_changing_models_are_named(compact: bool) -> None:
     asked = Annotations(1e-6, 1e-11, (0.001, 1e-7), (0.004, 1e-8))
     plot = accuracy(ROWS, asked, THEMES["projector"], compact)
     for name, columns in points(ROWS).items():

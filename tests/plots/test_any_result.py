@@ -118,6 +118,6 @@ def test_a_motion_has_the_figures_of_the_page_probe(kind: str, options: dict[str
     (lambda: granchain.figure(granchain.resonance_curve(CHAIN, [2000.0]), measured="mine.csv"), "not a value of type str"),
     (lambda: granchain.figure(granchain.orbit(CHAIN), bead=1), "The figure of a Orbit has no option 'bead'"),
 ])
-def test_what_cannot_be_drawn_is_one_sentence(make, words: str) -> None:  # type: ignore[no-untyped-def]
+def test_results_that_cannot_be_drawn_are_refused_with_a_sentence(make, words: str) -> None:  # type: ignore[no-untyped-def]
     with pytest.raises(BadInput, match=words):
         make()

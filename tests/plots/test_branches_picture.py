@@ -68,7 +68,7 @@ def test_a_piece_begins_where_the_last_one_ended_and_holds_one_kind_of_orbit(bra
     assert orbits["motion"][0].startswith("stable, |μ| 0.") and float(orbits["residual"][0]) < 1e-8
 
 
-def test_special_points_are_told_with_their_uncertainty(branch: Branch) -> None:
+def test_the_words_of_a_special_point_have_its_uncertainty(branch: Branch) -> None:
     told = {s.kind: special_words(s, branch) for s in branch.special}
     assert told["period_doubling"].startswith("period doubling at 255.") and " ± 0.00" in told["period_doubling"]
     grazing = next(s for s in branch.special if s.kind == "grazing")
@@ -80,7 +80,7 @@ def test_special_points_are_told_with_their_uncertainty(branch: Branch) -> None:
     assert shown["period doubling"] and not shown["fold"]  # there is no fold
 
 
-def test_what_grows_piece_by_piece_is_what_is_drawn_at_once(branch: Branch) -> None:
+def test_a_branch_drawn_piece_by_piece_equals_one_drawn_at_once(branch: Branch) -> None:
     arm, growth = branch.half_branches[0], BranchRows(max(p.max_output_force_elastic for p in branch.points))
     rows: dict[str, list[float]] = {"x": [], "y": [], "place": []}
     lines: dict[tuple[str, int], list[float]] = {}

@@ -31,7 +31,7 @@ def test_a_figure_is_made_after_a_visitor_has_left() -> None:
     assert figure_item(Plot(name="shown"))["root_id"]
 
 
-def test_what_fails_leaves_no_document_behind() -> None:
+def test_a_figure_that_cannot_be_made_leaves_no_document() -> None:
     before = len(_PATCHED_CURDOCS)
     with pytest.raises(ValueError):
         figure_item("no figure")  # type: ignore[arg-type]

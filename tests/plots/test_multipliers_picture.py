@@ -45,7 +45,7 @@ def test_inside_and_outside_are_sets_of_their_own_and_the_observer_has_both() ->
     assert data(plane_state(found, observer=False), "observer outside")["x"] == []
 
 
-def test_what_is_far_out_stands_at_the_edge_with_its_modulus() -> None:
+def test_a_multiplier_outside_the_figure_is_at_its_edge_with_its_modulus() -> None:
     state = plane_state(with_multipliers(-9.0, 0.1))
     edge = data(state, "reach")["x"][1]
     assert edge == 2.4 and data(state, "outside")["x"] == [pytest.approx(-0.9 * edge)]
@@ -53,7 +53,7 @@ def test_what_is_far_out_stands_at_the_edge_with_its_modulus() -> None:
     assert data(plane_state(with_multipliers(0.3)), "reach")["x"][1] == pytest.approx(1.18)
 
 
-def test_a_multiplier_tells_its_frequency_and_its_decay() -> None:
+def test_the_words_of_a_multiplier_have_frequency_and_decay() -> None:
     third = replace(orbit(), period=3, scene=scene("sec2").evolve(f=1130.0))  # frequencies are folded into a third
     value, modulus, angle, decay = multiplier_words(0.5j, third)
     assert value == "+0.0000 + 0.5000 i" and modulus == "0.50"
@@ -63,7 +63,7 @@ def test_a_multiplier_tells_its_frequency_and_its_decay() -> None:
     assert multiplier_words(2.0, third)[3].startswith("grows by a factor e") and multiplier_words(0.0, third)[1] == "0e0"
 
 
-def test_a_trail_joins_what_moved_a_little_and_fades() -> None:
+def test_a_trail_joins_multipliers_that_moved_a_little_and_fades() -> None:
     before = [np.array([0.5, 0.01 + 0j]), np.array([0.6 + 0j])]
     state = plane_state(with_multipliers(-0.7, 0.65), before=before)
     assert data(state, "past")["x"] == [0.5, 0.6]  # a multiplier near zero leaves no trail

@@ -84,7 +84,7 @@ def test_figure_3_shows_as_many_pushes_as_the_paper_counts() -> None:
         assert begins == pushes
 
 
-def test_figure_6_marks_what_is_not_periodic_and_what_is_stated() -> None:
+def test_figure_6_marks_irregular_motions_and_stated_features() -> None:
     drawn = paper_figure(result("6"), THEMES["light"])
     assert source(drawn, "stated")["words"] == ["60 Hz, 1:1 resonance", "90 Hz, 1:1 anti-resonance", "100 Hz, 1:2 resonance"]
     curve = next(dict(one.data) for one in drawn.select({"type": ColumnDataSource}) if "sentence" in one.data)

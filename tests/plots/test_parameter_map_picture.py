@@ -33,7 +33,7 @@ def data(plot: Any, name: str) -> dict[str, list[Any]]:
     return dict(plot.select_one({"name": name}).data)
 
 
-def test_cells_meet_half_way_and_coarse_ones_stand_for_those_around_them() -> None:
+def test_cells_meet_half_way_and_coarse_cells_cover_finer_ones() -> None:
     plot = parameter_map(filled(0, 4), THEMES["light"])
     cells = data(plot, "cells")
     assert cells["number"] == [0, 4] and cells["spacing"][0] > 1 == cells["spacing"][1]
@@ -67,7 +67,7 @@ def test_the_marks_on_bifurcation_curves_say_of_which_kind_they_are() -> None:
         assert marks.view.filter.indices[0] == 0 and marks.view.filter.indices[-1] == 59 and len(marks.view.filter.indices) == 9
 
 
-def test_only_what_is_computed_is_drawn() -> None:
+def test_only_computed_cells_are_drawn() -> None:
     plot = parameter_map(nothing(GRID), THEMES["dark"])
     assert data(plot, "cells")["number"] == [] and data(plot, "mark") == {"x": [], "y": []}
     assert scale_models(nothing(GRID).cells[:0]) == {}
@@ -86,7 +86,7 @@ def test_the_scale_of_forces_has_round_ticks(low: float, high: float, ticks: lis
     assert scale_models(cells)["force ticks"]["ticks"] == ticks
 
 
-def test_a_cell_is_told_with_its_error_or_without_a_claim() -> None:
+def test_the_words_of_a_cell_have_its_error_where_one_is_stated() -> None:
     cell = filled(4).cells[4]
     assert cell_words(GRID, cell) == "2000 Hz, 1 µm: period 2, largest output force 2.5 N, largest observed, no error stated"
     cell["error_estimate"] = 3e-5

@@ -24,7 +24,7 @@ def test_an_orbit_is_shown_with_the_way_to_it_and_every_second_point_joined() ->
     assert state["displacements"]["end"] > 8.0 and state["displacement"]["axis_label"] == "displacement of bead 3 (nm)"
 
 
-def test_what_does_not_repeat_is_shown_by_what_it_does_in_the_end() -> None:
+def test_an_irregular_motion_is_shown_by_the_end_of_its_record() -> None:
     state = section_state(shown(period=0, unstable=True))
     assert state["path"]["data"]["u"] == [] and state["displacements"]["end"] < 2.0
     assert state["unstable orbit"]["data"]["u"] == [1.0, 1.0] and state["orbit"]["data"]["u"] == []

@@ -169,7 +169,7 @@ def harmonic() -> Run:
 
 @pytest.mark.parametrize("kind", ["velocity", "displacement"])
 @pytest.mark.parametrize("count", [4, 5, 10, 20, 100, 400])
-def test_what_samples_leave_out_is_stated(kind: str, count: int, harmonic: Run) -> None:
+def test_the_error_of_sampling_a_drive_is_stated(kind: str, count: int, harmonic: Run) -> None:
     """Compare with the harmonic run. With 4 velocity samples per period, every second one gives the same lines."""
     found = drive(SAMPLED, sampled(kind, np.arange(17 * count + 1) / (count * SAMPLED.f)))
     every = (8 if kind == "displacement" else 1) * count // math.gcd(400, count)  # instants in both records
@@ -186,7 +186,7 @@ def test_what_samples_leave_out_is_stated(kind: str, count: int, harmonic: Run) 
 
 
 @pytest.mark.parametrize("kind", ["velocity", "displacement"])
-def test_a_motion_that_is_meant_as_it_is_has_no_error_by_samples(kind: str) -> None:
+def test_an_exact_motion_of_the_driver_has_no_sampling_error(kind: str) -> None:
     """Coarse or uneven times then make no difference. A formula has no samples either."""
     time = np.r_[0.0:0.01:1e-4, 0.02:0.03:1e-4]
     exact = sampled(kind, time, exact=True)
@@ -216,7 +216,7 @@ def test_a_gap_in_a_measured_motion_is_refused_with_its_line(
         sampled(kind, time)
 
 
-def test_a_gap_is_bridged_as_chosen_and_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_gap_is_bridged_as_chosen_and_reported(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     time = np.delete(np.arange(0.0, 0.01, 1e-5), np.s_[50:450])
     zero, line = (sampled("velocity", time, gap=gap) for gap in ("zero", "interpolate"))
     assert len(zero.time) == len(time) + 2 and (zero.velocity == 0.0).sum() == 2
@@ -269,7 +269,7 @@ def test_a_measured_velocity_or_displacement_drives_the_chain(tmp_path: Path, ca
     (["run", "sec2", "--drive", "burst=300:3:0.1", "--gap", "zero"], "--gap is for --drive FILE"),
     (["run", "sec2", "--gap", "zero"], "--gap is for --drive FILE"),
     (["curve", "sec2", "--from", "1", "--to", "2", "--points", "2", "--drive", "burst=300:3:0.1"], "--drive")])
-def test_what_cannot_be_is_refused_with_a_sentence(words: list[str], sentence: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_invalid_drives_are_refused_with_a_sentence(words: list[str], sentence: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(words) == 2
     assert sentence in capsys.readouterr().err
 
@@ -350,7 +350,7 @@ def test_one_measured_force_is_drawn_beside_the_computed_one_and_within_its_axis
     assert granchain.figure(found).select_one({"name": "measured output"}) is None
 
 
-def test_a_raised_flag_ends_a_long_chain_within_milliseconds_of_work() -> None:
+def test_the_stop_flag_ends_a_long_chain_within_milliseconds() -> None:
     """How often the flag is read depends on the work done, steps times bodies, not on the number of steps."""
     stop = Stop()
     chain = MovedChain(scene("sec2").evolve(N=3000), sine(1e-7, 300.0, 2.0), stop)
@@ -362,7 +362,7 @@ def test_a_raised_flag_ends_a_long_chain_within_milliseconds_of_work() -> None:
     assert chain.counts.steps <= most
 
 
-def test_a_record_too_long_for_the_low_pass_is_said(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_record_too_long_for_the_low_pass_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
     """A record of 5,000 beads has at most 10,000 instants, and 0.1 s of a 1 kHz sensor needs 12,800."""
     signal, sensors = sine(1e-7, 100.0, 10.0), Sensors(bandwidth=1000.0)
     short = _fine_enough(signal, scene("sec2").evolve(N=11), sensors)

@@ -23,7 +23,7 @@ def test_the_dashboard_answers_with_the_scene_and_ends() -> None:
         urllib.request.urlopen(board.url, timeout=5)
 
 
-def test_a_taken_port_is_told_in_the_servers_own_words() -> None:
+def test_a_taken_port_is_reported_in_the_servers_own_words() -> None:
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
         taken.listen()

@@ -99,7 +99,7 @@ def test_the_nearest_whole_number_is_named() -> None:
     (lambda: basins(CHAIN, ("u1", 0.0), ("u2", [0.0])), "The values of u1 must be a list"),
     (lambda: CHAIN.evolve(f=True), "drive frequency f must be a number"),
     (lambda: CHAIN.evolve(accuracy=0), "^accuracy = 0 is outside")])
-def test_what_is_of_another_kind_is_refused_with_a_sentence(call: Callable[[], Any], sentence: str) -> None:
+def test_arguments_of_a_wrong_type_are_refused_with_a_sentence(call: Callable[[], Any], sentence: str) -> None:
     with pytest.raises(BadInput, match=sentence):
         call()
 

@@ -62,7 +62,7 @@ def test_the_citation_and_the_list_of_changes_name_the_version() -> None:
     assert f"\n## [{__version__}]" in (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
 
 
-def test_the_docker_image_gets_nothing_else() -> None:
+def test_the_docker_image_gets_only_files_that_the_ignore_file_lets_through() -> None:
     """Unrelated files and Python's leftovers are not sent to the builder."""
     sent = {name: let_through(ROOT / name) for name in (
         "app/server.py", "docs/glossary.md", "docs/model.md", "tests/conftest.py", ".git/config", "app/x.pyc",

@@ -26,7 +26,7 @@ CHAIN = scene("sec2").evolve(N=2)
 @pytest.mark.parametrize(("formula", "value", "expected"), [
     ("constant-displacement", 7e-6, 7e-6), ("constant-velocity", 3e-3, 3e-3 / (2 * np.pi * 60)),
     ("constant-acceleration", 1.5, 1.5 / (2 * np.pi * 60) ** 2)])
-def test_a_formula(formula: str, value: float, expected: float) -> None:
+def test_a_formula_gives_the_amplitude_of_constant_velocity_or_acceleration(formula: str, value: float, expected: float) -> None:
     assert Amplitude(formula, (value,)).at(60.0) == pytest.approx(expected)
     assert read_amplitude(f"{formula}={value}") == Amplitude(formula, (value,))
 
@@ -70,7 +70,7 @@ def test_every_point_has_its_own_amplitude() -> None:
         assert point.max_output_force == pytest.approx(alone.max_output_force, rel=1e-9)
 
 
-def test_it_is_saved_with_the_curve(tmp_path: Path) -> None:
+def test_the_amplitude_is_saved_with_the_curve(tmp_path: Path) -> None:
     drive = Amplitude("constant-velocity", (6e-3,))
     curve = resonance_curve(CHAIN, [1800.0, 2000.0], amplitude=drive)
     save_curve(curve, tmp_path / "a.h5")
@@ -81,7 +81,7 @@ def test_it_is_saved_with_the_curve(tmp_path: Path) -> None:
     assert load_curve(tmp_path / "b.h5").amplitude is None
 
 
-def test_the_command_line_takes_it_and_goes_on_with_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_command_line_takes_an_amplitude_and_resumes_with_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     words = ["curve", "sec2", "--set", "N=2", "--from", "1800", "--to", "2000", "--points", "3", "--json", "--out", str(tmp_path / "a.h5")]
     assert main([*words, "--amplitude", "constant-velocity=6e-3"]) == 0
     printed = json.loads(capsys.readouterr().out)
@@ -92,7 +92,7 @@ def test_the_command_line_takes_it_and_goes_on_with_it(tmp_path: Path, capsys: p
     assert "a finished curve that was computed with other options" in capsys.readouterr().err
 
 
-def test_what_is_unclear_in_a_file_is_asked_with_its_rows(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_question_about_an_amplitude_file_shows_its_rows(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "shaker.csv"
     path.write_text("1.8;5\n2.0;6\n", encoding="utf-8")
     words = ["curve", "sec2", "--set", "N=2", "--from", "1800", "--to", "2000", "--points", "2", "--amplitude", str(path)]
@@ -134,7 +134,7 @@ def test_a_branch_follows_its_amplitude_and_keeps_it(tmp_path: Path) -> None:
     (["map", "sec2", "--x", "f=1900:2000:2", "--y", "A0=1e-7:2e-7:2"], "A0 cannot vary independently"),
     (["branch", "sec2", "--knob", "D", "--from", "1", "--to", "2"], "make f a knob"),
 ])
-def test_knobs_that_do_not_go_with_it_are_refused(words: list[str], sentence: str, tmp_path: Path,
+def test_knobs_that_contradict_a_given_amplitude_are_refused(words: list[str], sentence: str, tmp_path: Path,
                                                   capsys: pytest.CaptureFixture[str]) -> None:
     assert main([*words, "--amplitude", "constant-velocity=6e-3", "--out", str(tmp_path / "a.h5")]) == 2
     assert sentence in capsys.readouterr().err

@@ -30,7 +30,7 @@ def test_the_diode_turned_round_is_its_reverse() -> None:
     assert not np.array_equal(ours.force, short("diode").force)
 
 
-def test_equal_beads_do_not_know_their_end() -> None:
+def test_equal_beads_move_the_same_driven_from_either_end() -> None:
     assert np.array_equal(short("sec2", N=4, end="last").displacement, short("sec2", N=4).displacement)
 
 

@@ -19,7 +19,7 @@ def same(one: ScaledChain, other: ScaledChain) -> bool:
 
 
 @pytest.mark.parametrize("name", scene_names())
-def test_a_scene_at_another_frequency_is_what_it_is_scaled_anew(name: str) -> None:
+def test_a_scaled_scene_moved_to_another_frequency_equals_one_scaled_anew(name: str) -> None:
     known = scale_chain(scene(name))
     moved = scene(name).evolve(f=1.37 * scene(name).f)
     found = scale_like(known, moved)

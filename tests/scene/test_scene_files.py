@@ -128,7 +128,7 @@ def test_text_in_another_encoding_and_taken_names_are_refused(tmp_path: Path) ->
         scene(tmp_path / "sec2.toml")
 
 
-def test_the_page_names_every_entry_and_its_sentence_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_page_names_every_entry_and_the_sentence_about_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert [name for name in (*WORDS, *TABLES, *TABLES["chain"]) if f"`{name}`" not in TEXT and f"`[{name}]`" not in TEXT] == []
     (promised,) = re.findall(r"^taper\.toml: (.*?), …$", TEXT, re.MULTILINE)
     (tmp_path / "taper.toml").write_text('parent = "sec2"\n[knobs]\ntapper = 0.5\n', encoding="utf-8")

@@ -45,7 +45,7 @@ def test_a_scene_with_impurities_and_thrown_beads_survives_json_too(one):
 
 
 @given(SCENES)
-def test_setting_the_knobs_it_has_changes_nothing(one):
+def test_setting_knobs_to_their_values_changes_nothing(one):
     """`evolve` with the scene's own knobs, as numbers or as the text a user would type, is the identity."""
     own = {name: value for name, value in one.knobs.items() if name != "kappa"}
     assert one.evolve(**own) == one

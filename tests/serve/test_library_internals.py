@@ -19,12 +19,12 @@ ROWS = [row for table in library_internals.tables().values() for row in table]
 
 
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: row.owner)
-def test_the_installed_releases_have_what_is_used(row: Internal) -> None:
+def test_the_installed_releases_have_the_names_that_are_used(row: Internal) -> None:
     """The test fails with the name of a missing one; docs/libraries.md says what happens then."""
     assert missing([row]) == []
 
 
-def test_what_is_not_there_is_named() -> None:
+def test_missing_names_of_libraries_are_listed() -> None:
     rows = [Internal("bokeh.document.Document", ("callbacks", "no_such_name"), ""), Internal("bokeh.no_such_module", ("it",), ""),
             Internal("bokeh.model.Model.select", ("no_such_keyword",), ""), Internal("bokeh.model", ("Model",), "")]
     assert [name for _, name in missing(rows)] == [

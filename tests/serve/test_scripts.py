@@ -38,7 +38,7 @@ def imports(name: str) -> dict[str, set[str]]:
 
 
 @pytest.mark.parametrize("name", FILES)
-def test_what_a_module_imports_is_served_and_exported_there(name: str) -> None:
+def test_every_import_of_a_script_is_served_and_exported(name: str) -> None:
     source = FILES[name].read_text(encoding="utf-8")
     assert len(imports(name)) == len(re.findall(r"^import\b", source, re.MULTILINE)), "an import of another form"
     for url, names in imports(name).items():
@@ -75,7 +75,7 @@ def test_no_other_file_is_served(path: str) -> None:
         served(root + path)
 
 
-def test_an_address_changes_with_what_is_served() -> None:
+def test_the_address_of_a_script_changes_with_its_content() -> None:
     """Files of an earlier version that the browser has cached have other addresses."""
     assert re.fullmatch(r"components/app\.scripts/Scripts_[0-9a-f]{12}/__javascript_modules__/parts/toolkit/svg\.js", address("svg.js"))
 

@@ -64,7 +64,7 @@ def test_pages_that_were_left_are_forgotten(caplog: pytest.LogCaptureFixture) ->
         one.stop()
 
 
-def test_a_page_that_could_not_be_made_is_no_visitor(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_page_that_could_not_be_made_is_not_counted_as_a_session(monkeypatch: pytest.MonkeyPatch) -> None:
     """It would never be counted as having left."""
     def fails(*_: object) -> None:
         raise ZeroDivisionError
@@ -82,7 +82,7 @@ def test_a_page_that_could_not_be_made_is_no_visitor(monkeypatch: pytest.MonkeyP
 
 
 @pytest.mark.parametrize("forgotten", [True, False])
-def test_what_takes_long_is_said_before_it_is_computed_and_ends_with_the_visit(
+def test_a_long_computation_is_refused_first_and_ends_with_the_session(
         forgotten: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     """A heavy request, ten thousand beads at 0.1 Hz, is refused, insisted on, and abandoned.
 

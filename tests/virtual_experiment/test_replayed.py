@@ -68,7 +68,7 @@ def test_a_record_that_begins_before_the_shaker_is_replayed_from_rest(tmp_path: 
         assert sentence in capsys.readouterr().err
 
 
-def test_a_tip_is_compared_too() -> None:
+def test_the_inertia_of_a_tip_is_part_of_the_comparison() -> None:
     sensors = Sensors(rate=50e3, tip_mass=0.01, bandwidth=5e3)
     found = read_data(virtual_series_csv(CHAIN, 10, sensors).encode())
     assert isinstance(found, Series) and found.velocity is not None
@@ -80,7 +80,7 @@ def test_a_tip_is_compared_too() -> None:
     assert left is not None and bare is not None and left < 0.02 < 10.0 * left < bare
 
 
-def test_measured_forces_tell_in_which_period_a_record_begins() -> None:
+def test_measured_forces_determine_the_period_in_which_a_record_begins() -> None:
     """In a motion of period 2, the drive velocity is the same in both periods, but the state is not."""
     chain = scene("sec2").evolve(N=3, f=1900.0)
     settled = settle(chain)
@@ -95,7 +95,7 @@ def test_measured_forces_tell_in_which_period_a_record_begins() -> None:
         assert left is not None and left < 0.05
 
 
-def test_a_displacement_tells_the_phase_as_a_velocity_does() -> None:
+def test_a_displacement_determines_the_phase_as_a_velocity_does() -> None:
     time, omega = np.linspace(0.0, 5e-3, 501), 2e3 * np.pi
     moving = Series(time, CHAIN.A0 * omega * np.cos(omega * time + 1.0), None, None, "made")
     standing = Series(time, None, None, None, "made", displacement=3e-7 + CHAIN.A0 * np.sin(omega * time + 1.0))
@@ -104,7 +104,7 @@ def test_a_displacement_tells_the_phase_as_a_velocity_does() -> None:
     assert one.displacement == pytest.approx(CHAIN.A0 * np.sin(1.0)) == other.displacement
 
 
-def test_a_recorded_run_is_a_beginning(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_record_may_begin_with_a_recorded_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """The second half of a motion from rest starts where the file of the first half ends."""
     whole = run(CHAIN, periods=0, record=6, samples=400)
     half = 3 * 400
@@ -145,7 +145,7 @@ def test_a_record_that_begins_at_rest_is_not_warned_of() -> None:
      Series(np.linspace(0.0, 5e-3, 501), np.cos(2e3 * np.pi * np.linspace(0.0, 5e-3, 501)), None, None, "made"),
      "a drive phase does not determine its state"),
     (scene("impact"), Series(np.linspace(0.0, 1.0, 9), np.zeros(9), None, None, "made"), "drive")])
-def test_what_has_no_settled_beginning_is_refused(chain, series: Series, words: str) -> None:  # type: ignore[no-untyped-def]
+def test_records_without_a_settled_beginning_are_refused(chain, series: Series, words: str) -> None:  # type: ignore[no-untyped-def]
     with pytest.raises(BadInput, match=words):
         settled_beginning(chain, series)
 

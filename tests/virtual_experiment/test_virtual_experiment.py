@@ -161,7 +161,7 @@ def test_an_impossible_experiment_is_refused(make, sentence: str) -> None:  # ty
         make()
 
 
-def test_an_observer_takes_it_and_says_what_it_is(tmp_path: Path) -> None:
+def test_an_observer_takes_a_virtual_experiment_and_names_it(tmp_path: Path) -> None:
     """A series may have more columns than the observer needs. An unclear table is refused."""
     path = tmp_path / "virtual.csv"
     path.write_text(virtual_series_csv(CHAIN, 3, Sensors(noise=0.001)), "utf-8")

@@ -98,7 +98,7 @@ ERROR_CONTROLLED = (
     Mutant("error-of-displacements-only", _DOP853, "for row in range(2):\n        largest", "for row in range(1):\n        largest",
            "errors of the velocities are not controlled", k.DOP853_ORDER),
     Mutant("step-too-small-unseen", _CONTROL, "        if is_too_small(0.1 * h, t, trajectory.drive.beta):", "        if is_too_small(2.0 + h, t, trajectory.drive.beta):",
-           "a step that shrinks to nothing continues forever", ("tests/hard_cases/test_outcomes.py::test_step_too_small",)),
+           "a step that shrinks to nothing continues forever", ("tests/hard_cases/test_outcomes.py::test_a_step_too_small_has_a_status_of_its_own",)),
     Mutant("chatter-unseen", _CONTROLLED_RUN, "if events > EVENTS_PER_CONTACT * (bodies - 1):", "if events < 0:",
            "contacts that open and close endlessly are computed without an error",
            ("tests/hard_cases/test_outcomes.py::test_contacts_that_open_and_close_while_no_time_passes_fail_with_a_sentence",)),

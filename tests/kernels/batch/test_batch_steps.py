@@ -121,7 +121,7 @@ def test_batches_follow_the_largest_forces(case):
 
 
 @pytest.mark.parametrize("case", ["sec2", "Kuwabara–Kono"])
-def test_a_member_does_not_know_of_the_others(case):
+def test_a_member_is_bitwise_independent_of_the_others(case):
     """Alone, among other scenes and in another lane, a scene gives the same numbers to the last bit."""
     scenes = scenes_of(case)
     together = run_all(scenes, 1.0)[0]

@@ -121,7 +121,7 @@ def excess(power: float, r: float) -> float:
 
 
 @pytest.mark.parametrize("r", [1e-6, 0.05, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95, 1.0])
-def test_what_a_batch_step_across_an_event_gives_too_much(r: float) -> None:
+def test_quadrature_errors_of_a_batch_step_across_an_event(r: float) -> None:
     """The errors in contact_correction.py agree with their definitions for every law; that of the next step to 3e-8."""
     half, speed, h, c = max(r - 0.5, 0.0), 0.7, 0.2, 0.3
     beside = ((r**1.5 + 4.0 * (r + 0.5) ** 1.5 + (r + 1.0) ** 1.5) / 6.0 - 0.4 * ((r + 1.0) ** 2.5 - r**2.5))

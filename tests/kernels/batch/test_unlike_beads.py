@@ -23,7 +23,7 @@ def dimer(f: float) -> Scene:
     return replace(base, pattern=(steel, replace(steel, mass=0.4 * steel.mass, young=2.0 * steel.young)))
 
 
-def test_unlike_beads_in_a_batch() -> None:
+def test_unlike_beads_move_in_a_batch_as_alone() -> None:
     """The strobes of three periods from rest agree with dop853 to 1e-6 at a twelfth of the default step, where a batch
     of order 3 reaches about 2e-7.
     """

@@ -70,7 +70,7 @@ def is_warm(tree: Path, cache: Path, word: str = "ask") -> bool:
     return done.stdout.strip() == "True"
 
 
-def test_what_is_called_compiled_is_so_for_its_content_alone(tmp_path: Path) -> None:
+def test_kernels_count_as_compiled_by_the_content_of_their_sources(tmp_path: Path) -> None:
     """Nothing is recompiled for a copy with the same sources, touched files or a new comment, only for an edit."""
     tree, clone, cache = copied_core(tmp_path / "one"), copied_core(tmp_path / "two"), tmp_path / "cache"
     assert not is_warm(tree, cache)
@@ -120,7 +120,7 @@ def reworded(tree: Path) -> Path:
     return tree
 
 
-def test_other_words_compile_nothing_and_another_number_does(compiled: tuple[Path, Path], tmp_path: Path) -> None:
+def test_reworded_comments_compile_nothing_and_another_constant_does(compiled: tuple[Path, Path], tmp_path: Path) -> None:
     tree, cache = reworded(tmp_path / "one"), shutil.copytree(compiled[1], tmp_path / "cache")
     for _ in ("parsed", "known by its bytes"):
         hits, misses = hits_and_misses(cache, tree, PLACE)

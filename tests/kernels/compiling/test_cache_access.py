@@ -45,13 +45,13 @@ def chosen_in(base: Path, monkeypatch: pytest.MonkeyPatch, writable: bool = True
     return cache_folder.cache_folder()
 
 
-def test_what_one_user_compiled_another_can_read(tmp_path: Path) -> None:
+def test_another_user_can_read_compiled_kernels(tmp_path: Path) -> None:
     """Root may warm an image that somebody else runs: files get the permissions that the user's umask leaves."""
     assert mode_with(0o022, tmp_path) == 0o644
 
 
 @pytest.mark.parametrize(("umask", "rights"), [(0o002, 0o755), (0o000, 0o755), (0o077, 0o700)])
-def test_nobody_else_can_write_what_is_compiled_whatever_the_umask_leaves(umask: int, rights: int, tmp_path: Path) -> None:
+def test_nobody_else_can_write_compiled_kernels_with_any_umask(umask: int, rights: int, tmp_path: Path) -> None:
     """This is true of the folder, the folders in it, and the files."""
     assert mode_with(umask, tmp_path) == rights & 0o666
     before = os.umask(umask)
@@ -75,7 +75,7 @@ def denied(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path / "file" / "cache"
 
 
-def test_where_nothing_can_be_written_the_temporary_folder_is_ours_alone(denied: Path, tmp_path: Path) -> None:
+def test_the_temporary_folder_is_ours_alone_if_no_other_is_writable(denied: Path, tmp_path: Path) -> None:
     answer, messages = used(denied)
     ours = tmp_path / "tmp" / f"granchain-{os.getuid()}"
     assert answer["right"] and Path(answer["folder"]).parent == ours and messages == []
@@ -84,7 +84,7 @@ def test_where_nothing_can_be_written_the_temporary_folder_is_ours_alone(denied:
 
 
 @pytest.mark.parametrize("planted", ["open to all", "readable by all", "a link", "a file", "open inside"])
-def test_a_temporary_folder_that_may_be_anothers_is_not_used(planted: str, denied: Path, tmp_path: Path,
+def test_a_temporary_folder_that_others_can_write_is_not_used(planted: str, denied: Path, tmp_path: Path,
                                                              monkeypatch: pytest.MonkeyPatch) -> None:
     ours = tmp_path / "tmp" / f"granchain-{os.getuid()}"
     if planted == "a link":

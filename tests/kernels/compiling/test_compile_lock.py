@@ -36,7 +36,7 @@ def test_processes_that_want_one_kernel_compile_it_once(tmp_path: Path) -> None:
     assert not list(tmp_path.rglob("*.lock"))
 
 
-def test_who_waits_gets_the_lock_next_and_who_has_no_patience_goes_without(tmp_path: Path) -> None:
+def test_a_waiting_process_gets_the_lock_or_compiles_without_it(tmp_path: Path) -> None:
     first, second, third = (CompileLock(tmp_path / "f.nbc") for _ in range(3))
     first.acquire()
     assert first.held
@@ -136,7 +136,7 @@ def test_a_kernel_that_another_process_has_just_compiled_is_not_compiled_again(
     assert locks() == []
 
 
-def test_a_process_that_is_killed_locks_nobody_out(tmp_path: Path) -> None:
+def test_a_killed_process_releases_its_lock(tmp_path: Path) -> None:
     held = subprocess.Popen(
         [sys.executable, "-c", "import sys, time; from pathlib import Path\n"
          "from granchain_core.kernels.compiling.compile_lock import CompileLock\n"

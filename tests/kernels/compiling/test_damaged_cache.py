@@ -123,12 +123,12 @@ def test_a_damaged_kernel_is_dropped_said_in_one_line_and_compiled_again(damage,
     assert not mark.exists(), "a server would compile kernels that are marked as compiled in its own process"
 
 
-def test_a_whole_kernel_is_loaded(filled: Path) -> None:
+def test_an_undamaged_kernel_is_loaded(filled: Path) -> None:
     answer, messages = used(filled)
     assert answer["right"] and answer["loaded"] == 1 and messages == []
 
 
-def test_a_full_disk_is_said_once_and_the_kernel_runs(filled: Path, tmp_path: Path) -> None:
+def test_a_full_disk_is_reported_once_and_the_kernel_runs(filled: Path, tmp_path: Path) -> None:
     answer, messages = used(filled, _FULL + PROGRAM)
     assert answer["right"] and answer["loaded"] == 1 and messages == []  # kernels already on disk are used
     answer, messages = used(tmp_path, _FULL + PROGRAM)
@@ -150,7 +150,7 @@ def test_flipped_bits_throughout_the_file_are_seen(filled: Path, tmp_path: Path)
             assert not path.exists()
 
 
-def test_a_file_that_holds_another_version_is_not_believed(tmp_path: Path) -> None:
+def test_a_file_with_another_version_is_not_loaded(tmp_path: Path) -> None:
     files = cache._Files(str(tmp_path), "f", "stamp")
     files.save("one", "code of one")
     files.save("two", "code of two")

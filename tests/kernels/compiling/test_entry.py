@@ -86,7 +86,7 @@ def test_a_batch_compares_the_types_of_the_kernel_that_it_calls_by_address() -> 
 
 
 @pytest.mark.parametrize(("value", "checked"), [("1", True), ("0", False), ("", False), (None, False)])
-def test_a_variable_of_the_environment_switches_it_on(value: str | None, checked: bool) -> None:
+def test_an_environment_variable_switches_the_checks_of_types_on(value: str | None, checked: bool) -> None:
     environment = {name: word for name, word in os.environ.items() if name != "GRANCHAIN_CHECK_TYPES"}
     if value is not None:
         environment["GRANCHAIN_CHECK_TYPES"] = value
@@ -95,7 +95,7 @@ def test_a_variable_of_the_environment_switches_it_on(value: str | None, checked
     assert done.stdout.strip() == str(checked)
 
 
-def test_what_makes_a_type_is_in_the_key() -> None:
+def test_the_key_contains_everything_that_determines_a_type() -> None:
     plain, tuples = np.zeros((2, 3)), (1.0, None)
     different = [plain, plain.T, plain[:, :2], plain[0], plain.astype(np.float32), tuples, (1, None), (1.0, 1.0),
                  [*tuples]]

@@ -43,7 +43,7 @@ def test_a_kernel_that_allocates_does_not_compile(allocating: Callable[[Any], An
 
 
 @pytest.mark.parametrize("decorator", [internal, inline_numba])
-def test_nor_one_that_calls_a_function_which_does(decorator: Callable[[Any], Any]) -> None:
+def test_a_kernel_that_calls_an_allocating_function_does_not_compile(decorator: Callable[[Any], Any]) -> None:
     part = decorator(temporary)
 
     @kernel
@@ -54,7 +54,7 @@ def test_nor_one_that_calls_a_function_which_does(decorator: Callable[[Any], Any
         outer(np.ones(3))
 
 
-def test_the_same_without_an_array_of_its_own_compiles() -> None:
+def test_a_kernel_without_an_array_of_its_own_compiles() -> None:
     @kernel
     def in_place(values, out):  # type: ignore[no-untyped-def]
         for i in range(values.size):

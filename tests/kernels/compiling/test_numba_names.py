@@ -51,7 +51,7 @@ def test_modules_of_numba_beyond_its_documentation_are_in_the_table() -> None:
     assert set(imported) <= set(ROWS)
 
 
-def test_the_table_of_llvm_has_what_kernels_ask_of_it() -> None:
+def test_the_table_of_llvm_has_the_names_that_kernels_use() -> None:
     """Intrinsics are listed by name, with widths and instruction names in braces as in the source."""
     used = {(name, path.relative_to(_CORE).as_posix()) for path in (_CORE / "kernels").rglob("*.py")
             for name in re.findall(r'f?"(llvm\.[\w.{}]+)"', path.read_text("utf-8"))}

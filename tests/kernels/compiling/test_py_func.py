@@ -30,7 +30,7 @@ def test_the_example_runs_uncompiled_and_gives_the_same_motion(monkeypatch: pyte
 
 @pytest.mark.parametrize(("decorator", "compiles"), [
     (kernel, True), (brief_kernel, True), (inline_numba, True), (internal, False), (inline_llvm, False)])
-def test_what_an_uncompiled_function_calls_runs_as_the_table_says(decorator, compiles: bool) -> None:  # type: ignore[no-untyped-def]
+def test_callees_of_an_uncompiled_function_run_as_the_table_says(decorator, compiles: bool) -> None:  # type: ignore[no-untyped-def]
     def twice(value):  # type: ignore[no-untyped-def]
         return 2.0 * value
 

@@ -46,7 +46,7 @@ def test_comments_and_layout_keep_the_hash(old: str, new: str, tmp_path: Path) -
     ("2.0", "2.5"), ("2.0", "2"), ("1.5", "2.5"), ("* x", "- x"), ("fast=True", "fast=False"), ("FACTOR *", "FACTOR +"),
     ("import kernel", "import internal"), ("a text", "another"), ("@kernel(fast=True)\n", ""), ("power", "exponent"),
 ])
-def test_what_can_change_an_instruction_changes_the_hash(old: str, new: str, tmp_path: Path) -> None:
+def test_an_edit_that_can_change_an_instruction_changes_the_hash(old: str, new: str, tmp_path: Path) -> None:
     assert old in SOURCE
     assert hashed(tmp_path, SOURCE) != hashed(tmp_path, SOURCE.replace(old, new))
 

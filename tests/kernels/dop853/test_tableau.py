@@ -26,7 +26,7 @@ def test_each_stage_is_taken_at_the_time_its_row_sums_to():
     np.testing.assert_allclose(A.sum(axis=1), C, atol=ROUNDING)
 
 
-def test_method_is_explicit():
+def test_the_tableau_is_explicit():
     """No stage depends on itself or a later one."""
     assert A.shape == (ALL_STAGES, ALL_STAGES)
     assert not np.triu(A).any()
@@ -71,7 +71,7 @@ def stage_sums(tree: Tree) -> np.ndarray:
     return found
 
 
-def test_there_are_as_many_trees_as_there_should_be():
+def test_the_number_of_trees_of_each_order_is_the_known_one():
     """The numbers are those of Hairer, Nørsett & Wanner, table II.2.3."""
     assert [len(set(trees(order))) for order in range(1, 10)] == [1, 1, 2, 4, 9, 20, 48, 115, 286]
 
@@ -90,7 +90,7 @@ def test_step_is_not_of_order_9():
 
 
 @pytest.mark.parametrize(("estimate", "order"), [(E5, 5), (E3, 3)])
-def test_error_estimates_vanish_for_what_their_orders_integrate(estimate, order):
+def test_error_estimates_vanish_for_polynomials_of_their_orders(estimate, order):
     """Σ e_i Φ_i(t) = 0 for all trees with up to 5 nodes (order 5) or 3 (order 3), but not for all trees with one more.
     """
     sums = [[abs(estimate @ stage_sums(tree)[: len(estimate)]) for tree in trees(nodes)] for nodes in range(1, order + 2)]

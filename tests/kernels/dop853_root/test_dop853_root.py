@@ -39,7 +39,7 @@ def test_motion_and_forces_are_those_of_dop853(knobs):
     assert np.allclose(ours[:, 1:], theirs[:, 1:], rtol=1e-6)
 
 
-def test_it_takes_less_than_half_of_dop853s_evaluations():
+def test_dop853_root_needs_less_than_half_of_dop853s_evaluations():
     """The purpose of the method is to need fewer evaluations. Measured at 1e-8: a third, after the first wave."""
     ours, theirs = (recorded(name, 1e-8, f=340.0)[0] for name in ("dop853-root", "dop853"))
     before = ours.counts.rhs, theirs.counts.rhs
@@ -78,7 +78,7 @@ def test_a_brief_touch_inside_a_step_throws_the_bead(depth):
 
 
 @pytest.mark.parametrize("knobs", [{"tension": "cut"}, {"N": 40}], ids=str)
-def test_what_vectors_do_not_know_is_refused(knobs):
+def test_effects_without_vector_code_are_refused(knobs):
     with pytest.raises(BadInput, match=r"up to 30 beads .* without a tension cut or an energy account; use dop853"):
         recorded("dop853-root", 1e-6, **knobs)
 

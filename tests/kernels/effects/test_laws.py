@@ -55,7 +55,7 @@ def test_random_scenes_are_drawn_with_every_law(lists: ModuleType) -> None:
     assert {law for law, *_ in lists.STRUCTURES} == {*LAWS, "none"}
 
 
-def test_a_law_that_is_in_no_chosen_structure_is_added() -> None:
+def test_a_law_missing_in_the_chosen_structures_is_added() -> None:
     chosen = [("linear", "cut", True, False), ("tsuji", "allowed", False, False)]
     assert with_every_law(chosen) == [*chosen, ("kuwabara-kono", "allowed", False, False)]
 
@@ -107,7 +107,7 @@ def test_a_slot_without_code_is_named_in_python_and_by_the_compiler() -> None:
         compiled(Unfinished(1.0), 2.0)
 
 
-def test_what_is_never_absent_has_no_code_for_none() -> None:
+def test_a_slot_that_is_never_empty_has_no_code_for_none() -> None:
     @by_type
     def width_of(vector):  # type: ignore[no-untyped-def]
         """Return how many numbers a vector contains."""

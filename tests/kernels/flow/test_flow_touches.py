@@ -15,7 +15,7 @@ from granchain_core.scene.laws import LAWS
 
 
 @pytest.mark.parametrize("depth", [1e-3, 1e-4])
-def test_a_brief_touch_is_in_the_map_and_in_its_derivative(depth: float) -> None:
+def test_a_brief_touch_changes_the_map_and_its_derivative(depth: float) -> None:
     """A driver that just touches a resting bead throws it with a speed that varies as depth², so its derivative by u is
     −2/depth times the speed.
     """

@@ -55,7 +55,7 @@ def test_the_rate_at_a_closing_is_of_third_order(part: float) -> None:
     assert crossing(0.1, part)[0] == pytest.approx(part, abs=1e-4)
 
 
-def test_a_closing_is_within_its_step_whatever_the_step_has_seen() -> None:
+def test_a_closing_is_within_its_step_for_any_overlaps() -> None:
     """The rates may contradict the overlaps, for example if a contact closes, opens and closes again within a step.
     Without its own damping, the rate is a parabola, which departs from the straight line by a quarter of its bend.
     """

@@ -36,7 +36,7 @@ def test_other_arrays_are_refused(array: np.ndarray) -> None:
         first_row(aligned(1), array)
 
 
-def test_minus_is_that_of_numbers() -> None:
+def test_negated_rows_are_those_of_numbers() -> None:
     row, out = aligned(1), aligned(1)
     row[0] = 1.5, -2.0, 0.0, np.nan, np.inf, -np.inf, 1e-310, 3.0
     negative(row, out)

@@ -52,7 +52,7 @@ CHAINS: dict[str, dict[str, object]] = {
 ROUNDING = 1e-12
 
 
-def test_every_two_values_stand_together_in_a_chain() -> None:
+def test_the_chains_cover_every_pair_of_properties() -> None:
     shown = [scene("sec2").evolve(**changes) for changes in CHAINS.values()]
     rows = [(one.dissipation, next((width for width in CHAIN_WIDTHS if width >= one.N + 2), "long"), one.F0 > 0.0,
              one.kappa > 0.0, one.dimer != 1.0 or one.taper != 1.0) for one in shown]

@@ -80,14 +80,14 @@ def test_the_limit_of_a_linear_map_with_few_modes_is_found_at_once(modes: int) -
 
 
 @pytest.mark.quick
-def test_of_two_halves_the_slower_one_tells_the_rate() -> None:
+def test_the_rate_of_two_halves_is_the_slower_one() -> None:
     """Changes that shrink by 0.8 and later by 0.95 have the rate 0.95, since the slow part remains."""
     changes = np.cumprod([1.0, *[0.8] * 4, *[0.95] * 4])
     assert periodicity.contraction_in(changes, 9, 1) == (pytest.approx(0.95, rel=1e-12), True)
 
 
 @pytest.mark.quick
-def test_the_shortest_period_is_told() -> None:
+def test_the_shortest_period_is_returned() -> None:
     """Alternating states repeat after four periods as well, but their period is two."""
     states = np.zeros((9, 2, 1))
     states[1::2] = 1.0

@@ -60,7 +60,7 @@ def busy_until_told(pool: WorkerPool) -> threading.Event:
 
 
 @linux
-def test_only_what_takes_long_gives_way_and_its_thread_does_nothing_more() -> None:
+def test_only_long_work_lowers_its_priority_and_its_thread_takes_no_further_work() -> None:
     pool, usual = WorkerPool("test", 1), niceness()
     assert pool.submit(in_turns, 0.0).result(60.0) == usual
     first = pool.submit(threading.get_native_id).result(60.0)

@@ -55,7 +55,7 @@ def follower(one: Shared[int], key: str | None, work: Work, found: list[Any], st
     return thread
 
 
-def test_a_class_at_the_same_knobs_costs_one_computation() -> None:
+def test_equal_requests_cost_one_computation() -> None:
     one, work, found = shared(), Work(), [[] for _ in range(30)]
     threads = [follower(one, "key", work, seen) for seen in found]
     until(lambda: one.hits + one.misses == 30)
@@ -78,7 +78,7 @@ def test_what_is_kept_is_bounded_and_the_oldest_goes_first() -> None:
     assert work.begun == 4  # b was dropped for c, a was not
 
 
-def test_it_ends_with_the_last_visitor_and_not_before() -> None:
+def test_a_shared_computation_ends_with_its_last_visitor() -> None:
     one, work, first, second = shared(), Work(), Flag(), Flag()
     seen: list[list[Any]] = [[], []]
     threads = [follower(one, "key", work, seen[0], first), follower(one, "key", work, seen[1], second)]
@@ -96,7 +96,7 @@ def test_it_ends_with_the_last_visitor_and_not_before() -> None:
     assert work.begun == 2  # a cancelled computation does not count as a result
 
 
-def test_an_error_reaches_all_and_is_not_kept() -> None:
+def test_an_error_reaches_all_visitors_and_is_not_cached() -> None:
     one = shared()
 
     def fails(stop: TurnFlag) -> Iterator[int]:

@@ -31,7 +31,7 @@ def test_work_does_not_wait_for_a_thread_that_has_just_been_given_other_work() -
         assert first.result(60)
 
 
-def test_what_waits_and_what_is_under_way_is_counted() -> None:
+def test_waiting_and_running_work_is_counted() -> None:
     pool, go_on = WorkerPool("tested", 2), threading.Event()
     ended = [pool.submit(go_on.wait, 120) for _ in range(5)]
     assert (pool.busy_threads, pool.queued) == (2, 3)

@@ -85,7 +85,7 @@ def events_of(document: Document) -> list[Any]:
     ]
 
 
-def test_a_message_is_the_one_that_bokeh_writes() -> None:
+def test_a_message_equals_the_one_that_bokeh_writes() -> None:
     document = Document()
     events = events_of(document)
     theirs = Protocol().create("PATCH-DOC", events)
@@ -103,14 +103,14 @@ def test_a_message_is_the_one_that_bokeh_writes() -> None:
     assert plain(read(data)) == plain(expected)
 
 
-def test_what_is_not_plain_is_left_to_bokeh() -> None:
+def test_values_that_are_not_plain_are_encoded_by_bokeh() -> None:
     document = Document()
     words = Div()
     document.add_root(words)
     assert encode_patch([ModelChangedEvent(document, words, "tags", [Range1d()])]) is None
 
 
-def test_a_change_where_nothing_is_gathered_is_the_models_own() -> None:
+def test_outside_a_gathering_a_change_goes_to_the_model() -> None:
     document = Document()
     axis = Range1d(start=0, end=1)
     document.add_root(axis)
@@ -120,7 +120,7 @@ def test_a_change_where_nothing_is_gathered_is_the_models_own() -> None:
     assert axis.start == 3 and seen == [3]
 
 
-def test_of_two_changes_of_a_property_the_last_is_kept_and_an_equal_one_is_none() -> None:
+def test_the_last_change_of_a_property_is_kept_and_an_equal_value_is_no_change() -> None:
     document = Document()
     axis = Range1d(start=3, end=7)
     document.add_root(axis)
@@ -162,7 +162,7 @@ def test_nothing_follows_a_closing_frame(closing: bool) -> None:
 
 
 @pytest.mark.parametrize("row", changes.INTERNALS, ids=lambda row: row.owner)
-def test_a_release_without_what_is_needed_is_noticed(row: Internal, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_release_without_a_needed_name_is_noticed(row: Internal, monkeypatch: pytest.MonkeyPatch) -> None:
     assert changes.is_complete()
     for name in row.names:
         with monkeypatch.context() as patch:
@@ -171,7 +171,7 @@ def test_a_release_without_what_is_needed_is_noticed(row: Internal, monkeypatch:
 
 
 @in_a_thread
-def test_answers_come_where_something_needed_is_missing(served: Served, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_actions_are_answered_without_a_needed_part_of_bokeh(served: Served, monkeypatch: pytest.MonkeyPatch) -> None:
     """In that case, Bokeh sends the changes itself."""
     monkeypatch.setattr(changes, "_COMPLETE", False)
     monkeypatch.setattr(changes, "_send", lambda *_: pytest.fail("gathered"))
@@ -184,7 +184,7 @@ def test_answers_come_where_something_needed_is_missing(served: Served, monkeypa
 @pytest.mark.parametrize(("owner", "name"), [(ServerSession, "_subscribed_connections"), (WSHandler, "ws_connection"),
                                              (WSHandler, "write_lock")], ids=lambda value: getattr(value, "__name__", value))
 @in_a_thread
-def test_answers_come_without_a_private_name(owner: type, name: str, served: Served, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_actions_are_answered_without_a_private_name_of_bokeh(owner: type, name: str, served: Served, monkeypatch: pytest.MonkeyPatch) -> None:
     hide(monkeypatch, changes, owner, name)
     session = pull_session(url=served.address)
     for text in ("first", "second"):

@@ -53,7 +53,7 @@ def heard(sent: dict[str, Any]) -> tuple[bool, list[Any]]:
     return run_async(send()), part.heard
 
 
-def test_a_part_hears_what_bokeh_decodes() -> None:
+def test_a_part_receives_the_values_that_bokeh_decodes() -> None:
     taken, (message,) = heard(content(VALUE))
     expected = Deserializer().decode(json.loads(json.dumps(VALUE)))
     assert taken and math.isnan(message["inner"].pop("a")) and math.isnan(expected["inner"].pop("a"))
@@ -67,17 +67,17 @@ def test_a_part_hears_what_bokeh_decodes() -> None:
     content({"type": "map", "entries": [[1, 2]]}), content({"type": "map", "entries": [["a"]]}), content({"type": "map"}),
     content({"type": "map", "entries": "ab"}), {"events": content(VALUE)["events"] * 2}, {"events": []}, {},
 ])
-def test_anything_else_is_left_to_bokeh(sent: dict[str, Any]) -> None:
+def test_other_messages_are_left_to_bokeh(sent: dict[str, Any]) -> None:
     assert heard(sent) == (False, [])
 
 
-def test_a_part_that_is_gone_is_not_kept_and_hears_nothing() -> None:
+def test_a_removed_part_is_not_kept_and_receives_nothing() -> None:
     session = ServerSession("tested", Document())  # type: ignore[arg-type]
     register(session.document, "p1", Part().hear)
     assert not dispatch(session, content(VALUE))
 
 
-def test_an_action_waits_for_the_lock_and_what_comes_from_threads_runs_in_order(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_action_waits_for_the_lock_and_callbacks_of_threads_run_in_order(monkeypatch: pytest.MonkeyPatch) -> None:
     order: list[Any] = []
 
     async def act() -> None:
@@ -100,7 +100,7 @@ def test_an_action_waits_for_the_lock_and_what_comes_from_threads_runs_in_order(
     assert order == ["later", 0, 1, 2, 3, 4, "timed"]
 
 
-def test_what_comes_for_a_document_that_bokeh_has_destroyed_is_dropped(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_messages_for_a_destroyed_document_are_dropped(monkeypatch: pytest.MonkeyPatch) -> None:
     """E.g. a picture that is ready after Bokeh ends a session and before the page knows: 8 of 10,200 visits saw it."""
 
     async def act() -> None:

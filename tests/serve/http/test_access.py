@@ -57,7 +57,7 @@ def test_an_address_of_ipv6_is_served_under_its_own_name() -> None:
         one.stop()
 
 
-def test_what_is_given_reaches_the_server(monkeypatch: pytest.MonkeyPatch, tmp_path: Any) -> None:
+def test_options_reach_the_server(monkeypatch: pytest.MonkeyPatch, tmp_path: Any) -> None:
     asked: list[Any] = []
     monkeypatch.setattr(server, "serve", lambda *words, **named: asked.append((words, named)))
     (tmp_path / "secret").write_bytes(_SECRET + b"\n")
@@ -126,7 +126,7 @@ def test_the_secret_of_cookies_is_given_or_follows_from_that_of_the_sessions(mon
 @pytest.mark.parametrize(("words", "sentence"), [
     (["--secret-file", "/nowhere/secret"], "cannot be read"), (["--oauth-provider", "github"], "PANEL_OAUTH_KEY"),
     (["--max-sessions", "0"], "outside 1 to 10000"), (["--basic-auth", "/nowhere"], "cannot be read")])
-def test_what_cannot_be_used_is_refused_with_a_sentence(words: list[str], sentence: str,
+def test_unusable_options_are_refused_with_a_sentence(words: list[str], sentence: str,
                                                         capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["serve", *words]) == 2
     assert sentence in capsys.readouterr().err

@@ -68,7 +68,7 @@ def test_a_script_is_compressed_for_a_browser_that_takes_it(port: int) -> None:
     assert head[1]["Content-Length"] == headers["Content-Length"] and head[2] == b""
 
 
-def test_who_does_not_take_it_or_wants_a_part_gets_the_file_as_it_is(port: int) -> None:
+def test_clients_without_gzip_or_with_a_range_get_the_plain_file(port: int) -> None:
     status, headers, content = ask(port, "a.js")
     assert status == 200 and content == SCRIPT and "Content-Encoding" not in headers and headers["Vary"] == "Accept-Encoding"
     status, headers, content = ask(port, "a.js", Accept_Encoding="gzip", Range="bytes=3-9")
@@ -85,12 +85,12 @@ def test_gzip_with_the_weight_zero_is_not_accepted(wanted: str, accepted: bool, 
 
 
 @pytest.mark.parametrize("name", ["small.js", "a.png", "random.js"])
-def test_what_would_not_be_smaller_stays_as_it_is(name: str, port: int, tmp_path: Path) -> None:
+def test_files_that_would_not_shrink_are_not_compressed(name: str, port: int, tmp_path: Path) -> None:
     _, headers, content = ask(port, name, Accept_Encoding="gzip")
     assert content == (tmp_path / name).read_bytes() and "Content-Encoding" not in headers
 
 
-def test_a_browser_that_has_it_gets_no_second_copy_and_the_two_forms_are_two(port: int) -> None:
+def test_etags_avoid_a_second_copy_and_differ_for_plain_and_compressed(port: int) -> None:
     packed, plain = ask(port, "a.js", Accept_Encoding="gzip")[1]["Etag"], ask(port, "a.js")[1]["Etag"]
     assert packed != plain
     assert ask(port, "a.js", Accept_Encoding="gzip", If_None_Match=packed)[0] == 304
@@ -106,7 +106,7 @@ def test_a_file_is_compressed_once_until_it_changes(port: int, tmp_path: Path) -
     assert gzip.decompress(ask(port, "a.js", Accept_Encoding="gzip")[2]) == 2 * SCRIPT
 
 
-def test_a_file_that_is_not_there_is_none(port: int) -> None:
+def test_a_missing_file_is_not_found(port: int) -> None:
     assert ask(port, "b.js", Accept_Encoding="gzip")[0] == 404
 
 

@@ -57,7 +57,7 @@ def test_a_page_whose_models_are_collected_anew_each_time_is_the_same(monkeypatc
         one.stop()
 
 
-def test_what_a_visitor_does_reaches_the_parts_without_bokehs_decoding(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_actions_reach_the_parts_without_bokehs_decoding(monkeypatch: pytest.MonkeyPatch) -> None:
     """The guard finds the session by the id in its token."""
     taken: list[bool] = []
 

@@ -76,7 +76,7 @@ def test_the_limits_of_the_document_are_those_of_the_code() -> None:
     } == {limit: value for limit, (value, _) in LIMITS.items()}
 
 
-def test_what_pages_may_be_asked_is_what_the_document_says() -> None:
+def test_the_stated_limits_of_pages_are_those_of_the_code() -> None:
     assert {
         "beads of a chain": QUANTITIES["N"].high, "pins": len(PINS), "beads whose state a link contains": MOST_BEADS_IN_LINK,
         "points of a measurement": MOST_UPLOADED_POINTS, "points of a branch, each way": MOST_POINTS,

@@ -132,7 +132,7 @@ def test_metrics_are_for_known_private_addresses(remote_ip: str | None, allowed:
             MetricsHandler.get(asked)  # type: ignore[arg-type]
 
 
-def test_with_basic_auth_a_page_asks_who_it_is(tmp_path: Any) -> None:
+def test_with_basic_auth_a_page_needs_a_sign_in(tmp_path: Any) -> None:
     (tmp_path / "users.json").write_text(json.dumps({"ada": "lovelace"}))
     one = Listening(Access(secret=SECRET, sign_in=(("basic_auth", str(tmp_path / "users.json")), ("cookie_secret", "x" * 32))))
     try:
@@ -157,7 +157,7 @@ def test_the_metrics_have_the_format_of_prometheus(dashboard: Listening) -> None
     assert "process_resident_memory_bytes" in text
 
 
-def test_secrets_are_not_in_the_text_of_what_holds_them() -> None:
+def test_secrets_are_not_in_the_text_of_objects_that_hold_them() -> None:
     """A log or a traceback may contain that text."""
     access = Access(secret=SECRET, sign_in=(("oauth_secret", "of the provider"),))
     for one in (access, Rules(secret=SECRET)):

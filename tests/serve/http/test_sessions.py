@@ -61,7 +61,7 @@ def test_tokens_are_signed_also_where_no_secret_is_given() -> None:
 
 
 @pytest.mark.parametrize("token", ["", "nonsense", "a.b", "é", "A" * 5000])
-def test_no_token_no_connection(token: str, dashboard: Listening) -> None:
+def test_a_connection_needs_a_token(token: str, dashboard: Listening) -> None:
     assert dashboard.connect(token) in (400, 403)
 
 

@@ -97,7 +97,7 @@ def test_the_wait_of_a_refinement_is_not_counted() -> None:
     assert turns.wait == 0.0
 
 
-def test_one_stall_is_seen_although_the_mean_hides_it() -> None:
+def test_the_largest_stall_is_reported_beside_the_mean() -> None:
     metrics = Metrics()
     for lag in (*(0.0 for _ in range(39)), 5.0):
         metrics.lagged(lag)
@@ -126,7 +126,7 @@ def test_the_release_that_answers_is_named() -> None:
     assert shown(f'build_info{{version="{__version__}"}}') == 1.0
 
 
-def test_what_was_renamed_is_found_as_it_was_called() -> None:
+def test_renamed_metrics_keep_their_former_names_too() -> None:
     server.add_shared_metrics()
     names = {metric.full_name for metric in METRICS.table()}
     assert {row.name for row in former_names.METRICS} <= names and not names & {row.former for row in former_names.METRICS}
@@ -145,7 +145,7 @@ def test_pools_whose_threads_wait_for_others_do_not_count_as_computing() -> None
     assert set(POOLS) - set(COMPUTING) == {SESSION_WORK, PICTURES, CURVES, FILES, LOADING, COMPILATIONS}
 
 
-def test_long_work_is_computing_and_what_its_owner_has_beyond_its_limit_waits(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_long_work_counts_as_computing_and_work_beyond_a_limit_as_waiting(monkeypatch: pytest.MonkeyPatch) -> None:
     pool, go_on, owner = WorkerPool("long", 8, per_owner_limit=2), threading.Event(), object()
     for name, value in (("POOLS", (pool,)), ("COMPUTING", (pool,)), ("TURNS", Turns(2))):
         monkeypatch.setattr(server, name, value)

@@ -50,7 +50,7 @@ def test_remembered_defaults_describe_the_same_document() -> None:
     assert (described(CHANGES), described(None)) == before[::-1]  # remembered values belong to no theme
 
 
-def test_models_do_not_share_what_one_of_them_may_change() -> None:
+def test_models_do_not_share_mutable_defaults() -> None:
     install_defaults_cache()
     one, other = figure(), figure()
     one.line([0, 1], [0, 1])
