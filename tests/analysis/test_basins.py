@@ -47,7 +47,7 @@ def test_the_attractors_are_those_of_random_starts() -> None:
         assert one.max_output_force == pytest.approx(known[one.regime.name], rel=_FORCE_DIFFERENCE)
 
 
-def test_what_is_no_plane_is_refused() -> None:
+def test_invalid_planes_are_refused() -> None:
     chain = scene("sec2").evolve(N=2)
     for x, y, words in ((("u3", [0.0]), ("v1", [0.0]), "u1 to u2"), (("w1", [0.0]), ("v1", [0.0]), "Coordinate 'w1'"),
                         (("u1", [0.0]), ("u1", [0.0]), "both u1"), (("u1", []), ("v1", [0.0]), "1 to 250000 starts"),

@@ -33,7 +33,7 @@ def test_the_cloud_has_every_strobe_in_si() -> None:
     assert 0.0 < np.abs(states).max() < 1.0  # [m/s]; the drive moves at some millimetres per second
 
 
-def test_what_is_no_diagram_is_refused() -> None:
+def test_invalid_diagrams_are_refused() -> None:
     chain = scene("sec2").evolve(N=2)
     for words, message in ((("N", [1.0]), "knob of a bifurcation diagram 'N'"), (("f", []), "1 to 20000 values"),
                            (("f", [-1.0]), "outside"), (("f", [340.0], "sideways"), "start 'sideways'"),

@@ -119,7 +119,7 @@ def test_a_torus_that_is_no_closed_curve_has_no_such_dimension(undamped: Lyapuno
     assert not replace(found, errors=np.full(3, 0.0005), regime="chaotic").on_closed_curve
 
 
-def test_what_cannot_be_measured_is_refused() -> None:
+def test_chains_without_a_spectrum_are_refused() -> None:
     for chain, periods, words in ((UNDAMPED, 3, "outside 20 to"), (UNDAMPED.evolve(N=200), 40, "outside 1 to 100"),
                                   (scene("sec2").evolve(tension="cut"), 40, "tension = cut")):
         with pytest.raises(BadInput, match=words):

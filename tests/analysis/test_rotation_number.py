@@ -233,7 +233,7 @@ def test_near_a_fraction_the_record_may_be_too_short() -> None:
     (circle(rigid(10.0 / 23.0)), "record is too short"), (circle(rigid(GOLDEN, 100)), "fewer than 200 states"),
     (circle(rigid(0.5 * GOLDEN, 300)) + np.tile([[[9.0], [0.0]], [[0.0], [0.0]]], (150, 1, 1)), "each of 2 curves"),
 ])
-def test_what_has_no_rotation_number(states: np.ndarray, reason: str) -> None:
+def test_states_without_a_rotation_number_have_a_reason(states: np.ndarray, reason: str) -> None:
     found = winding_of(states)
     assert found.value is None and found.error is None and reason in found.reason
 
@@ -277,7 +277,7 @@ def test_the_lines_of_a_force_are_combinations(name: str, orders: int, least: fl
     assert (np.abs(lines % each - each / 2) < each / 2 - resolution).sum() > 3  # not only harmonics
 
 
-def test_its_error_holds_for_finer_steps() -> None:
+def test_the_error_of_a_rotation_number_holds_for_finer_steps() -> None:
     """With the default steps, their error is a hundred times that of the average; six times as many steps show it."""
     chain = scene("sec2").evolve(f=1230.0)
     found = rotation_number(chain)
@@ -297,7 +297,7 @@ def test_summary_frequency_and_nearest_fraction_are_those_of_the_number(curve: R
     assert curve.digits > 8.0 and curve.attributes()["rotation_number"] == curve.value
 
 
-def test_from_another_start_it_is_the_same(curve: RotationNumber) -> None:
+def test_another_start_gives_the_same_rotation_number(curve: RotationNumber) -> None:
     """The attractor is reached from other states as well."""
     pushed = State(np.linspace(1e-8, 0.0, 11), np.zeros(11))
     again = rotation_number(CURVE, start=pushed)
@@ -305,14 +305,14 @@ def test_from_another_start_it_is_the_same(curve: RotationNumber) -> None:
 
 
 @pytest.mark.parametrize(("f", "regime"), [(340.0, "periodic"), (1090.0, "chaotic")])
-def test_only_a_quasi_periodic_motion_has_one(f: float, regime: str) -> None:
+def test_only_a_quasi_periodic_motion_has_a_rotation_number(f: float, regime: str) -> None:
     found = rotation_number(scene("sec2").evolve(f=f))
     assert found.value is None and found.error is None and found.second_frequency is None
     assert found.nearest_fraction is None and found.digits is None and np.isnan(found.convergence).all()
     assert found.summary() == [f"rotation number not decided: the motion is {regime}, not quasi-periodic"]
 
 
-def test_it_tells_how_far_it_is_and_can_be_stopped() -> None:
+def test_the_computation_reports_progress_and_can_be_stopped() -> None:
     seen: list[float] = []
     rotation_number(CURVE, 1000, progress=seen.append)
     assert seen == sorted(seen) and seen[0] > 0.0 and seen[-1] <= 1.0

@@ -43,7 +43,7 @@ def test_the_line_at_half_the_sampling_frequency_has_its_own_height(repeats: boo
     assert abs(cosines(alternating, repeats)[-1]) == pytest.approx(1.0, rel=1e-12)
 
 
-def test_what_is_folded_back_is_estimated() -> None:
+def test_aliasing_is_estimated() -> None:
     coarse, fine = (spectrum(run(scene("sec2").evolve(N=3, f=1200.0), periods=200, record=2, samples=samples))
                     for samples in (32, 1024))
     low = len(coarse.frequency) // 2
@@ -94,7 +94,7 @@ def test_small_waves_of_a_pressed_chain_pass_as_the_linear_lattice_says(f: float
     assert np.exp(1j * through.phase[1]) == pytest.approx(expected / abs(expected), abs=2e-3)
 
 
-def test_what_has_no_spectrum_is_refused(period_3: Run) -> None:
+def test_motions_without_a_spectrum_are_refused(period_3: Run) -> None:
     odd = run(scene("sec2").evolve(N=2, f=2000.0), periods=60, record=1, samples=5)
     for motion, force, words in ((period_3, "wall", "force 'wall'"), (odd, "output", "even number of samples"),
                                  (replace(period_3, regime=replace(period_3.regime, period=13)), "output", "13 whole recorded")):

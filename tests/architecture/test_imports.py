@@ -265,7 +265,7 @@ DOCUMENTED_ATTRIBUTES = {
 }
 
 
-def test_the_table_names_what_is_used_of_bokeh_without_an_underscore() -> None:
+def test_public_names_used_of_bokeh_are_in_the_table() -> None:
     """Most of these are documented; changes.py lists the others in its table."""
     module = "app.serve.document.changes"
     tree = ast.parse(MODULES[module].read_text(encoding="utf-8"))
@@ -276,14 +276,14 @@ def test_the_table_names_what_is_used_of_bokeh_without_an_underscore() -> None:
     assert used - own - DOCUMENTED_ATTRIBUTES <= INTERNALS[module]
 
 
-def test_the_documentation_names_what_is_used_of_numba() -> None:
+def test_names_used_of_numba_are_in_the_documentation() -> None:
     """This includes names that classes of the core inherit from Numba's classes."""
     for module, names in (("cache", cache._NEEDED), ("link_only", link_only._NEEDED)):
         private = {name for name in names if name.startswith("_")}
         assert private <= PRIVATE_OF_NUMBA[f"granchain_core.kernels.compiling.{module}"]
 
 
-def test_parts_override_of_panel_only_what_is_documented() -> None:
+def test_parts_override_only_documented_methods_of_panel() -> None:
     """This applies to their own classes and to the mixins; exceptions are in the table of one module."""
     parts = [Component, *Component.__subclasses__(), *StreamedFigure.__subclasses__(),
              *ResultFigure.__subclasses__()]

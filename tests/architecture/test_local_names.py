@@ -44,5 +44,5 @@ def test_a_script_with_such_a_name_is_noticed(script: str) -> None:
 
 @pytest.mark.parametrize("script", ["this.tell();", "attractors(one)", "// what was found (one, or none)",
                                     "rows.found = 3"])
-def test_a_word_in_a_comment_or_a_member_is_no_such_name(script: str) -> None:
+def test_words_in_comments_and_members_are_no_variables(script: str) -> None:
     assert not _DECLARED.search(script)

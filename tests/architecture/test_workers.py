@@ -36,7 +36,7 @@ def test_the_work_of_a_thread_changes_nothing_of_its_page(path: Path) -> None:
     assert list(faults(parsed(path))) == []
 
 
-def test_what_would_be_a_fault_is_found() -> None:
+def test_a_change_of_the_page_by_a_thread_is_found() -> None:
     source = """
 def work(self, job: Job):
     self.sent, mine = 0.0, self.found

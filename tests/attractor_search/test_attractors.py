@@ -57,7 +57,7 @@ def test_every_start_leads_to_one_attractor_and_shares_add_up(many: list[Attract
         assert named(many, name).share_error == pytest.approx(error, abs=0.0015)
 
 
-def test_every_origin_leads_there_by_itself(many: list[Attractor]) -> None:
+def test_every_start_settles_alone_on_its_attractor(many: list[Attractor]) -> None:
     # `settle` does not use batches: it starts from the listed state
     for one in (named(many, "rest"), named(many, "down")):
         origin = next(o for o in one.origins if o.name.startswith("random"))
@@ -68,7 +68,7 @@ def test_every_origin_leads_there_by_itself(many: list[Attractor]) -> None:
         assert alone.run.max_output_force == pytest.approx(one.max_output_force, rel=sum(stated))
 
 
-def test_periodic_ones_are_converged_orbits_and_stable(many: list[Attractor]) -> None:
+def test_periodic_attractors_are_converged_stable_orbits(many: list[Attractor]) -> None:
     periodic = [one for one in many if one.regime.period]
     for one in periodic:
         assert one.orbit is not None and one.orbit.residual <= 1e-11 and one.stable
@@ -95,7 +95,7 @@ def test_shifted_copies_of_an_orbit_are_one_attractor(frequency: float, period: 
     assert [one.regime.period for one in found] == [period] and found[0].share == 1.0
 
 
-def test_what_only_seems_to_rest_is_not_an_attractor() -> None:
+def test_an_unstable_orbit_is_not_an_attractor() -> None:
     # At 1936 Hz, a sweep down arrives at a period-1 orbit with |μ| = 1.003, which the chain leaves in the long run.
     found = attractors(scene("sec2").evolve(f=1936.0), random_states=24)
     assert all(one.stable is not False for one in found)
@@ -104,7 +104,7 @@ def test_what_only_seems_to_rest_is_not_an_attractor() -> None:
 
 @pytest.mark.parametrize(("chain", "comes"), [
     (scene("sec2").evolve(N=2, f=2000.0), True), (scene("sec2").evolve(N=3, D=0.0, f=2000.0), False)])
-def test_what_was_called_irregular_and_comes_to_an_orbit_is_noticed(chain: Scene, comes: bool) -> None:
+def test_an_irregular_motion_that_locks_to_an_orbit_is_noticed(chain: Scene, comes: bool) -> None:
     """One chain settles within a few periods, and one without damping has no attractor."""
     regime = Regime("quasi-periodic", None, None, None, 400, (1e-4, 1e-4), lyapunov_periods=400)
     result = SteadyState(chain, np.ones(3), regime, None, rest(chain))

@@ -36,7 +36,7 @@ def test_the_compiled_equations_are_those_in_numpy(form: str) -> None:
         assert np.allclose(in_numba(t, y, 0.3), in_numpy(t, y, 0.3), rtol=0.0, atol=1e-13)
 
 
-def test_both_forms_are_one_motion() -> None:
+def test_both_forms_of_the_equations_are_one_motion() -> None:
     """The slope of u in the w form is the velocity, whose slope is the force of the (u, v) form between contact events.
     """
     beta, t, step, n = 0.3, 5.0, 1e-5, problem.BEADS

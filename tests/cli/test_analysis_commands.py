@@ -32,14 +32,14 @@ GROUPS = {"spectrum": "spectrum", "lyapunov": "lyapunov", "rotation": "rotation"
 
 
 @pytest.mark.parametrize("command", SOURCES)
-def test_a_picture_has_its_points(command: str, tmp_path: Path) -> None:
+def test_a_picture_has_the_points_of_the_result(command: str, tmp_path: Path) -> None:
     page = tmp_path / "a.html"
     assert main([command, *COMMANDS[command], "--picture", str(page)]) == 0
     assert f'"name": "{SOURCES[command]}"' in page.read_text(encoding="utf-8").replace('\\"', '"').replace('":"', '": "')
 
 
 @pytest.mark.parametrize("command", [*GROUPS])
-def test_the_file_has_the_result(command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_file_of_a_command_has_its_result(command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """The file has the command's main group, and the scene at the root; the output is the same as without a file."""
     words = [command, *COMMANDS.get(command, SHORT)]
     assert main([*words, "--out", str(tmp_path / "a.h5")]) == 0
@@ -57,7 +57,7 @@ def test_the_file_has_the_result(command: str, tmp_path: Path, capsys: pytest.Ca
     ("attractors", "100 % (34 to 100 %)             2.30266     yes       5  period 1"),
     ("pulse", "energy closes to"), ("pulse", "by sampling of forces "), ("pulse", ", speeds "), ("bands", "cut-off 7200.22 Hz"),
 ])
-def test_the_result_in_words(command: str, words: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_command_prints_its_result_in_words(command: str, words: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main([command, *COMMANDS[command]]) == 0
     assert words in capsys.readouterr().out
 
@@ -73,7 +73,7 @@ def test_the_result_in_words(command: str, words: str, capsys: pytest.CaptureFix
     (["basins", *SHORT, "--x", "u9=0:1:2", "--y", "v1=0:1:2"], "Coordinate 'u9' does not exist"),
     (["pulse", "impact", "--set", "N=2"], "at least three beads"), (["bands", "sec2"], "Without a preload"),
 ])
-def test_what_cannot_be_is_refused_with_a_sentence(words: list[str], sentence: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_invalid_arguments_are_refused_with_a_sentence(words: list[str], sentence: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(words) == 2
     assert sentence in capsys.readouterr().err
 

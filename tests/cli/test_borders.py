@@ -38,7 +38,7 @@ def test_an_out_that_is_no_writable_file_is_bad_input(out, tmp_path, monkeypatch
     assert os.listdir(tmp_path / "folder") == []
 
 
-def test_an_unwritable_out_is_said_before_the_work_and_not_after_it(tmp_path, monkeypatch, capsys):
+def test_an_unwritable_out_is_refused_before_the_work(tmp_path, monkeypatch, capsys):
     """Hours of computing must not be lost to a misspelt folder: nothing is run if the file cannot be written."""
     def computes(*_, **__):
         pytest.fail("computed before looking at --out")
@@ -132,7 +132,7 @@ def test_a_bad_kappa_does_not_take_a_good_k_with_it():
     assert len(refused) == 1
 
 
-def test_k_and_a_good_kappa_together_are_said():
+def test_k_and_kappa_together_are_reported():
     """kappa is used, and k is refused with a sentence."""
     found, _, refused = decode("v=1&scene=sec2&kappa=0.001&k=5000")
     assert found.kappa == pytest.approx(0.001, rel=1e-12)  # k = κK√A0 and back
@@ -147,7 +147,7 @@ def test_kappa_in_a_link_means_the_links_own_amplitude(query):
     assert (found.A0, found.kappa) == (1e-5, pytest.approx(0.002, rel=1e-12))
 
 
-def test_a_field_that_comes_twice_is_said():
+def test_a_repeated_field_is_reported():
     """The command line refuses a knob that is set twice, and a link must not choose silently."""
     _, _, refused = decode("v=1&scene=sec2&f=300&f=400")
     assert len(refused) == 1
@@ -176,7 +176,7 @@ def stored(tmp_path_factory):
     ("no scene", "no attribute scene"), ("scene no json", "scene is not JSON"), ("scene other", "no field"),
     ("no regime", "no attribute regime"), ("cost no json", "cost is .* not an object"), ("schema word", "granchain_schema"),
     ("time group", "/run/time is not a dataset"), ("displacement short", r"shape \(3,\), expected \(5, 2\)")])
-def test_a_harmed_file_is_bad_input(harm, about, stored, tmp_path):
+def test_a_damaged_file_is_bad_input(harm, about, stored, tmp_path):
     """Whatever is missing or wrong in the file, `load` says that it is not a run written by granchain."""
     path = tmp_path / "b.h5"
     path.write_bytes(stored.read_bytes())

@@ -40,14 +40,14 @@ def test_a_row_above_its_bar_is_status_3(figure: float, monkeypatch: pytest.Monk
     assert CASES[-1].name in told.err
 
 
-def test_without_json_a_student_reads_what_is_hard(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_without_json_the_difficulty_of_each_case_is_printed(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     pretend(0.9, monkeypatch)
     assert main(["check"]) == 0
     shown = capsys.readouterr().out
     assert all(case.hard in shown and case.naive in shown for case in CASES)
 
 
-def test_a_process_that_is_ended_from_outside_is_said(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_process_that_was_killed_is_reported(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     """The kernel does this when memory is short. The command ends with status 3 and a sentence, without a traceback."""
     monkeypatch.setattr(runner, "_run", _end_itself)
     assert main(["check", "--quick", "--json"]) == 3

@@ -17,7 +17,7 @@ from app.cli import main
     (["--set", "drive=rest", "--set", "striker=6", "--set", "end=last"], ["software", "model", "contact", "solitary wave"]),
     (["--set", "drive=rest", "--set", "dimer=0.5"], ["software", "model", "contact", "solitary wave", "dimers"]),
 ])
-def test_what_a_scene_uses_is_cited(settings: list[str], named: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_sources_of_a_scenes_effects_are_cited(settings: list[str], named: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["cite", "sec2", *settings, "--json"]) == 0
     assert [one["for"] for one in json.loads(capsys.readouterr().out)["citations"]] == named
     assert main(["cite", "sec2", *settings]) == 0

@@ -37,7 +37,7 @@ def test_run_prints_one_json_object_and_explains_on_stderr(capsys: pytest.Captur
 @pytest.mark.parametrize(("words", "said"), [
     (["curve", "sec2", "--from", "2000", "--to", "2010", "--points", "1"], "points that a batch computes"),
     (["map", "sec2", "--x", "f=2000:2010:2", "--y", "A0=5e-7:6e-7:2"], "cells that a batch computes")])
-def test_an_accuracy_that_a_batch_does_not_use_is_said(words: list[str], said: str, tmp_path: Path,
+def test_an_accuracy_that_a_batch_does_not_use_is_reported(words: list[str], said: str, tmp_path: Path,
                                                        capsys: pytest.CaptureFixture[str]) -> None:
     for changed in ([], ["accuracy=1e-8"]):
         out = tmp_path / f"a{len(changed)}.h5"
@@ -236,7 +236,7 @@ def test_a_curve_is_compared_with_a_measured_one(tmp_path: Path, capsys: pytest.
     assert "Elastic part of the output force. Model − measured at 2 of 2 frequencies: rms 0.5 N" in capsys.readouterr().out
 
 
-def test_an_undriven_chain_is_told_from_one_that_has_not_settled(capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_undriven_chain_is_distinguished_from_an_unsettled_one(capsys: pytest.CaptureFixture[str]) -> None:
     for words, driven in (["impact", "--set", "N=3"], False), (["sec2", "--set", "N=2", "--set", "f=2000"], True):
         assert main(["run", *words, *SHORT, "--json"]) == 0
         said = json.loads(capsys.readouterr().out)

@@ -19,7 +19,7 @@ def test_a_command_has_an_example(command: str, capsys: pytest.CaptureFixture[st
 
 
 @pytest.mark.parametrize("command", COMMANDS)
-def test_what_a_command_needs_is_in_its_form(command: str) -> None:
+def test_required_arguments_of_a_command_are_in_its_form(command: str) -> None:
     """The required words of every command are in the table of README.md."""
     for action in parser_for([command]).commands[command]._actions:
         if action.required and action.nargs != "*":

@@ -51,11 +51,11 @@ def at_a_terminal() -> str:
         os.close(mine)
 
 
-def test_a_person_at_a_terminal_is_told_once() -> None:
+def test_compiling_is_announced_once_at_a_terminal() -> None:
     assert at_a_terminal().count(WORDS) == 1
 
 
-def test_a_script_reads_nothing_of_compiling() -> None:
+def test_compiling_is_not_announced_to_a_script() -> None:
     done = subprocess.run([sys.executable, "-c", PROGRAM], cwd=ROOT, capture_output=True, text=True, timeout=120, check=True)
     assert (done.stdout.strip(), done.stderr) == ("3", "")
 
@@ -104,7 +104,7 @@ def test_a_second_process_compiles_only_where_numba_does_and_ends_with_the_block
         assert compilers() == [], "the block has ended"
 
 
-def test_what_cannot_be_compiled_beside_leaves_no_word() -> None:
+def test_a_second_process_that_cannot_compile_is_silent() -> None:
     """The tangent flow refuses a chain with a tension cut; the command reports this, and the second process is silent.
     """
     done = subprocess.run([sys.executable, "-c", f"""

@@ -124,7 +124,7 @@ def test_nothing_is_left_of_a_command_that_is_killed(name: str, started: Callabl
     assert not re.search(r'File "[^"]*/(granchain_core|app)/', command.err)
 
 
-def test_the_page_of_hard_cases_leaves_no_process_either(started: Callable[..., Command]) -> None:
+def test_the_process_of_hard_cases_ends_with_a_killed_server(started: Callable[..., Command]) -> None:
     program = ("from granchain_core.hard_cases import CASES\nfrom granchain_core.execution.stop import Stop\n"
                "from app.pages.hard_cases.work import CaseProcess\n"
                "for case in CASES:\n    print(case.name, flush=True)\n    list(CaseProcess().measure(case, Stop()))\n")
@@ -166,7 +166,7 @@ def test_a_signal_after_the_result_is_written_says_where_it_is(started: Callable
 
 
 @pytest.mark.parametrize("number", SENTENCE)
-def test_a_signal_after_the_command_is_done_changes_nothing(number: signal.Signals, started: Callable[..., Command]) -> None:
+def test_a_signal_after_the_end_of_a_command_changes_nothing(number: signal.Signals, started: Callable[..., Command]) -> None:
     """Python takes some time to exit, and its default handlers would end the process with another status."""
     program = ("import atexit, os, time\nfrom app.cli import ending\nending.begin()\n"
                "atexit.register(lambda: (print('leaving', flush=True), time.sleep(0.3)))\n"

@@ -72,7 +72,7 @@ def test_an_svg_is_one_picture_with_its_caption(tmp_path: Path) -> None:
     (["2", "--out", "a.csv", "--theme", "drak"], "the nearest is 'dark'"),
     (["2", "--out", "a.csv", "--data", "none.csv"], "Cannot read none.csv"),
 ])
-def test_what_is_wrong_is_said_before_anything_is_computed(words: list[str], said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+def test_errors_are_reported_before_anything_is_computed(words: list[str], said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
                                                            capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("granchain_core.paper.compute", lambda *_: pytest.fail("computed"))

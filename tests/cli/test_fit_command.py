@@ -65,7 +65,7 @@ def test_a_fit_of_force_trains_has_a_table_and_a_sentence(tmp_path: Path, capsys
     (["--data", "none.csv", "--free", "D=50:200"], "Cannot read none.csv"),
     (["--features", "paper", "--free", "D=50:200", "--picture", "a.png"], "writes an HTML file"),
 ])
-def test_what_is_refused_before_anything_is_computed(words: list[str], sentence: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_bad_arguments_are_refused_before_anything_is_computed(words: list[str], sentence: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["fit", *CHAIN, *words]) == 2
     assert sentence in capsys.readouterr().err
 

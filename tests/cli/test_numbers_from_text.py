@@ -29,7 +29,7 @@ WHOLE = ["１", "1_0", "٣", "²", "1.0", "1e1", "", "1" * 5000]
 
 @pytest.mark.parametrize(("text", "value"), [("340", 340.0), (" +3.4e2 ", 340.0), (".5", 0.5), ("5.", 5.0), ("-1E-3", -1e-3),
                                              ("0" * 300 + "7", 7.0)])
-def test_a_number_is_what_a_person_writes(text: str, value: float) -> None:
+def test_numbers_are_read_as_people_write_them(text: str, value: float) -> None:
     assert number_in(text) == value
 
 
@@ -65,7 +65,7 @@ def test_odd_digits_are_no_whole_number(text: str, capsys: pytest.CaptureFixture
 
 
 @pytest.mark.parametrize("name", ["self", "changes", "cls", "scene", "f ", "__class__", "F"])
-def test_a_name_that_is_no_knob_is_said(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_unknown_knob_is_named(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     """`self`, for example, is an argument of the method that changes knobs."""
     assert main(["run", "sec2", "--set", f"{name}=1"]) == 2
     said = capsys.readouterr().err
@@ -110,7 +110,7 @@ def test_no_other_value_of_a_scene_is_taken_unchecked(field: str, value: object)
 
 
 @pytest.mark.parametrize("query", ["self=1", "f=" + "1" * 5000, "f=%C2%B2", "f=1_000", "f=%EF%BC%91", "N=%D9%A3"])
-def test_the_page_opens_whatever_the_address_says(query: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_page_opens_with_any_address(query: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """The page is requested as by a browser; Panel's own parser answered some of these addresses with a server error.
     """
     seen: list[list[str]] = []

@@ -84,7 +84,7 @@ def test_the_figure_is_in_a_file_that_needs_nothing_else(command: str, drawn: Ca
                      json.dumps(document(page)))
 
 
-def test_what_cannot_be_written_is_said_before_anything_is_computed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_unwritable_picture_is_refused_before_anything_is_computed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for name, words in (("a.png", "writes an HTML file; name it a.html, not a.png"), (str(tmp_path / "none" / "a.html"), "Cannot write")):
         assert main(["orbit", *COMMANDS["orbit"], "--picture", name]) == 2
         assert words in capsys.readouterr().err

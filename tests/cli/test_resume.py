@@ -158,7 +158,7 @@ def test_blocks_of_earlier_versions_are_found(start: str, amplitude: Amplitude |
     assert CurveRequest(scene("sec2").evolve(N=3), FREQUENCIES, start, amplitude).digest == digest
 
 
-def test_what_changes_a_curve_is_in_its_digest() -> None:
+def test_the_digest_of_a_curve_contains_everything_that_changes_it() -> None:
     """Each argument of `resonance_curve` is a field of the request, or listed here because no point depends on it."""
     how = {"stop", "on_point", "workers", "known", "scheduler"}
     assert {field.name for field in fields(CurveRequest)} == set(signature(resonance_curve).parameters) - how
@@ -208,7 +208,7 @@ def numbers(kept: CheckpointFolder[int]) -> list[int]:
     return [number for content in kept.blocks() for number in json.loads(content)]
 
 
-def test_a_piece_is_written_soon_although_none_follows(tmp_path: Path) -> None:
+def test_the_last_piece_is_written_soon(tmp_path: Path) -> None:
     kept = pieces(tmp_path / "a")
     kept.add(1)
     assert kept._later is not None
@@ -216,7 +216,7 @@ def test_a_piece_is_written_soon_although_none_follows(tmp_path: Path) -> None:
     assert numbers(kept) == [1]
 
 
-def test_blocks_without_a_head_are_not_believed(tmp_path: Path) -> None:
+def test_blocks_without_a_head_are_not_read(tmp_path: Path) -> None:
     """They may be left over from another computation, if their removal was interrupted."""
     kept = pieces(tmp_path / "a")
     kept.add(1)

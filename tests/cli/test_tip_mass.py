@@ -25,6 +25,6 @@ def test_a_record_with_a_tip_is_replayed_only_with_its_mass(tmp_path: Path, caps
     assert given < 0.02 < 0.1 < without
 
 
-def test_it_is_refused_without_a_record(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_tip_mass_is_refused_without_a_record(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", *CHAIN, "--tip-mass", "0.05"]) != 0
     assert "--tip-mass is for --drive FILE" in capsys.readouterr().err

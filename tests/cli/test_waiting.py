@@ -54,7 +54,7 @@ def test_the_command_answers_before_its_server_and_leaves_it_the_port(monkeypatc
     assert not listens(port)
 
 
-def test_who_sends_nothing_keeps_nobody_waiting() -> None:
+def test_a_silent_client_does_not_block_the_start() -> None:
     port = free_port()
     waiting = Waiting("127.0.0.1", port)
     with socket.create_connection(("127.0.0.1", port)):
@@ -64,7 +64,7 @@ def test_who_sends_nothing_keeps_nobody_waiting() -> None:
     waiting.close()  # closing it again has no effect
 
 
-def test_other_machines_see_nothing_of_it_and_a_taken_port_is_the_servers_to_tell() -> None:
+def test_the_early_answer_is_local_and_leaves_a_taken_port_to_the_server() -> None:
     before = set(threading.enumerate())  # threads of other tests may end in the meantime
     port = free_port()
     Waiting("0.0.0.0", port).close()

@@ -40,7 +40,7 @@ class FailingPart:
         raise ZeroDivisionError
 
 
-def test_the_visitor_is_told_of_an_error_of_a_part(dashboard: Dashboard, caplog: pytest.LogCaptureFixture) -> None:
+def test_an_error_of_a_part_is_shown_to_the_visitor(dashboard: Dashboard, caplog: pytest.LogCaptureFixture) -> None:
     session, part = ServerSession("tested", dashboard._document), FailingPart()  # type: ignore[arg-type]
     register(dashboard._document, "p-failing", part.hear)
     values = {"type": "map", "entries": [["model", {"id": "p-failing"}], ["data", {"type": "map", "entries": []}]]}

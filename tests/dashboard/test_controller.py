@@ -26,7 +26,7 @@ from app.session.page import all_actions
     ({"do": "branches-double", "place": True}, "That special point is no longer on the page"),
     ({"do": "map-load", "number": True}, "That attractor is no longer on the page"),
     ({"do": "stability-section", "bead": True, "phase": 0}, "bead 'True' is not a whole number")])
-def test_what_is_no_number_gets_its_sentence(dashboard: Dashboard, message: dict[str, Any], sentence: str) -> None:
+def test_a_value_that_is_no_number_gets_a_sentence(dashboard: Dashboard, message: dict[str, Any], sentence: str) -> None:
     dashboard.received(message)
     assert sentence in dashboard.session.sentence
 
@@ -77,7 +77,7 @@ def test_a_step_to_another_scene_has_the_curves_of_its_address(dashboard: Dashbo
     assert dashboard.session.curves == "auto" and (bar["rest"], bar["up"], bar["features"]) == (True, False, False)
 
 
-def test_each_page_and_the_curve_hear_whether_somebody_looks(dashboard: Dashboard) -> None:
+def test_visibility_is_reported_to_each_page_and_the_curve(dashboard: Dashboard) -> None:
     told: list[tuple[str, bool]] = []
     for row, page in zip(PAGES, dashboard.pages, strict=True):
         page.visibility_changed = partial(lambda *one: told.append(one), row.name)  # type: ignore[method-assign]
@@ -90,7 +90,7 @@ def test_each_page_and_the_curve_hear_whether_somebody_looks(dashboard: Dashboar
 
 
 @pytest.mark.parametrize(("name", "value"), [("regimes", True), (None, True), (["map"], True), ("map", "yes"), ("map", None)])
-def test_what_is_no_page_or_no_answer_is_refused(dashboard: Dashboard, name: object, value: object) -> None:
+def test_unknown_pages_and_answers_are_refused(dashboard: Dashboard, name: object, value: object) -> None:
     dashboard.received({"do": "visible", "name": name, "value": value})
     assert dashboard.session.sentence == f"There is no page {str(name)!r} to look at."
 

@@ -28,7 +28,7 @@ def test_the_figures_of_the_page_and_of_its_pages_follow_a_theme(dashboard: Dash
     assert views.overlays["branches"].theme == theme
 
 
-def test_what_is_added_to_a_figure_of_the_page_has_its_theme_and_follows_the_next(dashboard: Dashboard) -> None:
+def test_models_added_to_a_figure_follow_its_theme(dashboard: Dashboard) -> None:
     """Names of pins and measured data are created when they are first needed."""
     views = dashboard.views
     views.apply_theme(THEMES["dark"])

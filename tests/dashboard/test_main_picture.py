@@ -86,7 +86,7 @@ def test_the_header_says_where_the_motion_on_the_screen_began(dashboard: Dashboa
         assert (state["picture_start"], state["start"]) == (picture.start, "rest")
 
 
-def test_the_pages_hear_of_a_picture_when_it_was_sent(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_pages_receive_a_picture_once_it_was_sent(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
     """A page's drawing takes milliseconds, by which every picture would otherwise be delayed."""
     told: list[str] = []
     monkeypatch.setattr(dashboard.views.chain, "send", lambda **message: told.append(message["type"]))
@@ -99,7 +99,7 @@ def test_the_pages_hear_of_a_picture_when_it_was_sent(dashboard: Dashboard, monk
     assert told == ["frames", "page"]
 
 
-def test_the_pages_do_not_hear_of_a_picture_of_knobs_that_have_moved_on(dashboard: Dashboard,
+def test_pages_receive_no_picture_of_former_knobs(dashboard: Dashboard,
                                                                         monkeypatch: pytest.MonkeyPatch) -> None:
     """They already know that it is out of date, and would take it for the new picture."""
     told: list[Any] = []

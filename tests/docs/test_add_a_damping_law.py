@@ -43,7 +43,7 @@ def test_the_equations_of_the_paper_hold_with_the_new_law(tree: Path) -> None:
     assert " failed" not in printed and re.search(r"\b[1-9]\d* passed", printed)
 
 
-def test_the_new_law_is_seen(tree: Path) -> None:
+def test_the_new_law_is_in_knob_equation_and_names_of_kernels(tree: Path) -> None:
     """It is a choice of the knob on the page, a term of the equation, and in the names of effects and kernels."""
     printed = follow(tree, "-c", """
 from app.cli.explain import explanation
@@ -71,5 +71,5 @@ print(explanation(one, None, 96))
     ("scene/laws.py", '    Law("three-quarters"', '    # Law("three-quarters"', "damping law ThreeQuarters has no line in laws.py"),
     ("scene/laws.py", 'δ^(3/4)", source=""', 'δ^(3/4)"', "Law.__init__() missing 1 required positional argument: 'source'"),
 ])
-def test_what_the_law_forgets_is_named(tree: Path, path: str, right: str, wrong: str, sentence: str) -> None:
+def test_a_forgotten_term_of_the_law_is_named(tree: Path, path: str, right: str, wrong: str, sentence: str) -> None:
     assert f"TypeError: {sentence}" in import_with(tree, path, right, wrong)

@@ -127,12 +127,12 @@ except BadInput as problem:
         file.write_text(text, encoding="utf-8")
 
 
-def test_a_mark_names_folders_of_vectors() -> None:
+def test_a_mark_accepts_only_folders_of_simd_kernels() -> None:
     with pytest.raises(TypeError, match="name those with terms of the slot, of rk4, batch, dop853_root"):
         in_simd_kernels("effects")
 
 
-def test_the_new_effect_is_seen_and_its_absence_leaves_nothing(tree: Path) -> None:
+def test_the_new_effect_is_listed_and_leaves_no_slot_when_absent(tree: Path) -> None:
     """The scene lists it, the equation shows it, and a scene without it has no slot."""
     printed = follow(tree, "-c", """
 from app.cli.explain import explanation
@@ -181,6 +181,6 @@ print([spec["more"] for spec in knob_state(session.scene)["specs"] if spec["name
      "effect 'drag': Slots (kernels/equations/motion.py) has no field 'drag'"),
     ("scene/quantities.py", 'Quantity("c", "c"', 'Quantity("C", "c"', "effect 'drag': its knob 'c' is not among QUANTITIES"),
 ])
-def test_what_the_effect_forgets_is_named(tree: Path, path: str, right: str, wrong: str, sentence: str) -> None:
+def test_a_forgotten_term_of_the_effect_is_named(tree: Path, path: str, right: str, wrong: str, sentence: str) -> None:
     """Nothing is computed: the first import names the missing part and its effect."""
     assert f"TypeError: {sentence}" in import_with(tree, path, right, wrong)

@@ -43,7 +43,7 @@ def sentence(text: str) -> str:
     ("README.md", "znver5", "On one core of a Zen 5 the fastest other program takes {} times as long as `dop853-root` at an "
                             "error of 1e-8, and {} times at 1e-10"),
     ("docs/benchmarks.md", "znver4", "in the tables of the second section, a day later, it is {} and {} times")])
-def test_a_sentence_says_what_the_tables_do(page: str, core: str, words: str) -> None:
+def test_sentences_about_benchmarks_agree_with_the_tables(page: str, core: str, words: str) -> None:
     (section,) = (text for title, text in _SECTIONS.items() if core in title)
     expected = words.format(*(ratio(section, error) for error in ("1e-08", "1e-10")))
     assert expected in sentence((ROOT / page).read_text(encoding="utf-8")), f"write: {expected}"

@@ -52,5 +52,5 @@ def test_a_command_prints_what_its_page_shows(command: str, lines: list[str], tm
         assert len(ours) == len(theirs) and all(map(alike, ours, theirs)), line
 
 
-def test_there_are_such_blocks() -> None:
+def test_pages_have_at_least_four_console_blocks() -> None:
     assert len(shown()) >= 4

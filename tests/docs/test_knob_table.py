@@ -34,7 +34,7 @@ def test_no_scene_has_changed_since_its_pictures_were_made() -> None:
     ("f", "0.1 to 1e6"), ("A0", "1e-12 to 0.0001"), ("N", "1 to 10000, whole"), ("drive", "`harmonic`, `rest`"),
     ("wall", "`bead`, `same-material`, `rigid`, or 1e-6 to 1e6"),
 ])
-def test_how_the_values_of_a_knob_are_said(knob: str, values: str) -> None:
+def test_the_values_of_a_knob_are_printed_in_words(knob: str, values: str) -> None:
     assert allowed(QUANTITIES[knob]) == values
 
 

@@ -56,7 +56,7 @@ def test_a_name_is_in_the_file_that_the_sentence_gives(page: Path) -> None:
     assert lost == []
 
 
-def test_a_name_that_is_not_there_is_found() -> None:
+def test_a_missing_name_is_noticed() -> None:
     """The regular expressions of these tests find such names."""
     assert _NAME.findall("_SLOWEST_DECAY of a_b, core/x_y.py, N, f0") == ["_SLOWEST_DECAY", "a_b"]
     assert _PLACED.findall("`_DECAY` in `kernels/x.py`, `y.MOST` (`y.py`)") == [("_DECAY", "kernels/x.py"), ("MOST", "y.py")]

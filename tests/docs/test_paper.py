@@ -41,7 +41,7 @@ def test_every_figure_has_a_row_and_a_picture_of_moderate_size() -> None:
 
 
 @pytest.mark.parametrize("place", range(len(ROWS)), ids=lambda place: statements()[place].key)
-def test_what_is_bold_is_what_is_computed(place: int) -> None:
+def test_bold_numbers_are_the_computed_ones(place: int) -> None:
     """In the text of the page, words are equal and numbers agree within one unit of their last digit."""
     row = statements()[place]
     as_printed = Statement(row.key, row.figures, ROWS[place][1], ROWS[place][2], row.differs, row.command)
@@ -61,7 +61,7 @@ def test_a_unit_of_the_last_digit() -> None:
     assert [unit_of(one) for one in ("173", "0.622", "9.758e9")] == [1.0, pytest.approx(1e-3), pytest.approx(1e6)]
 
 
-def test_a_row_that_does_not_exist_is_told() -> None:
+def test_an_unknown_row_is_named() -> None:
     with pytest.raises(BadInput, match="Unknown row 'peak'"):
         numbers_of("peak")
 

@@ -43,7 +43,7 @@ def test_every_number_with_a_name_beside_a_threshold_has_a_mark() -> None:
 
 
 @pytest.mark.parametrize(("value", "as_printed"), [(3.0, "3"), (0.97, "0.97"), (1e-5, "1e-5"), (10**8, "1e8"), (1 / 3, "1/3")])
-def test_how_a_threshold_is_printed(value: float, as_printed: str) -> None:
+def test_a_threshold_is_printed_with_few_digits(value: float, as_printed: str) -> None:
     assert printed(value) == as_printed
 
 
@@ -77,7 +77,7 @@ def test_a_number_before_a_mark_is_the_constants() -> None:
 
 
 @pytest.mark.parametrize(("accuracy", "noise"), [(1e-8, 1e-7), (1e-5, 1e-6)])
-def test_what_run_takes_for_no_change(accuracy: float, noise: float, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_run_passes_the_noise_of_its_accuracy_as_rounding(accuracy: float, noise: float, monkeypatch: pytest.MonkeyPatch) -> None:
     module, seen = importlib.import_module("granchain_core.runs.to_accuracy"), []
 
     def find_period(strobes: np.ndarray, rounding: float) -> Regime:

@@ -49,7 +49,7 @@ def found() -> Fit:
     return fit(CHAIN, CurveTarget(measured()), FREE)
 
 
-def test_a_curve_gives_back_what_made_it(found: Fit) -> None:
+def test_a_fit_to_a_curve_recovers_its_parameters(found: Fit) -> None:
     for one, value, profile in zip(FREE, TRUTH.values(), found.profiles, strict=True):
         assert profile.low < value < profile.high, one.name
         assert one.low < profile.low and profile.high < one.high and not (profile.open_low or profile.open_high)
@@ -72,7 +72,7 @@ def test_a_result_is_plain_data(found: Fit) -> None:
     assert found.landscape[1].min() == pytest.approx(found.misfit)
 
 
-def test_a_series_gives_back_what_made_it() -> None:
+def test_a_fit_to_a_series_recovers_its_parameters() -> None:
     chain = CHAIN.evolve(f=1800.0, D=115.0)
     exact = virtual_series(chain, 1, 48, 0.0, np.random.default_rng(1))
     assert exact.input_force is not None
@@ -83,12 +83,12 @@ def test_a_series_gives_back_what_made_it() -> None:
     assert found.profiles[0].high - found.profiles[0].low < 10.0
 
 
-def test_what_was_computed_is_not_called_measured() -> None:
+def test_virtual_data_are_not_called_measured() -> None:
     series = virtual_series(CHAIN, 1, 48, 0.0, np.random.default_rng(1))
     assert measured().virtual and series.virtual and measured().word == series.word == VIRTUAL
 
 
-def test_the_model_cannot_what_no_parameters_can() -> None:
+def test_the_verdict_is_cannot_if_no_parameters_fit() -> None:
     """No resonance curve has forces that alternate from one frequency to the next, so the verdict is cannot."""
     given = measured(error=0.03)
     wrong = replace(given, force=given.force * np.where(np.arange(9) % 2, 1.5, 0.7))
@@ -185,7 +185,7 @@ def test_contacts_become_stiffer_and_nothing_else() -> None:
     ([Free("kappa", 1e-3, 1e-2), Free("A0@60", 1e-6, 1e-5)], "kappa = .* has no single value"),
     ([FREE[0], FREE[0]], "different"), (per_frequency(FREE, FREQUENCIES), "9 data and priors do not determine 11"),
 ])
-def test_what_cannot_be_fitted_is_refused(free: list[Free], sentence: str) -> None:
+def test_invalid_fits_are_refused(free: list[Free], sentence: str) -> None:
     with pytest.raises(BadInput, match=sentence):
         fit(CHAIN, CurveTarget(measured()), free)
 
@@ -224,7 +224,7 @@ def test_a_series_without_forces_has_nothing_to_fit() -> None:
         SeriesTarget(Series(np.arange(20.0), np.zeros(20), None, None, ""))
 
 
-def test_a_fit_can_be_stopped_and_tells_how_far_it_is() -> None:
+def test_a_fit_reports_progress_and_can_be_stopped() -> None:
     stop, told = Stop(), []
 
     def tell(count: int) -> None:
@@ -237,7 +237,7 @@ def test_a_fit_can_be_stopped_and_tells_how_far_it_is() -> None:
     assert told[:5] == [1, 2, 3, 4, 5] and len(told) < 60
 
 
-def test_what_was_computed_is_not_computed_again() -> None:
+def test_a_set_of_parameters_is_evaluated_once() -> None:
     problem = Problem(CHAIN, CurveTarget(measured()), FREE, Stop(), lambda _: None)
     first = problem.evaluate(np.full(3, 0.5))
     assert problem.evaluate(np.full(3, 0.5)) is first and len(problem.misfits) == 1

@@ -43,7 +43,7 @@ def found(target: RecordsTarget) -> Fit:
     return fit(CHAIN, target, free, initial_points=32)
 
 
-def test_common_and_own_parameters_come_back(found: Fit) -> None:
+def test_common_and_own_parameters_are_recovered(found: Fit) -> None:
     assert [one.name for one in found.free] == ["A0@1800", "A0@2200", "D"] and found.verdict == "can"
     assert found.best == pytest.approx([*DRIVES.values(), TRUTH], rel=0.02)
     # each of three intervals contains the truth in 95 of 100 cases; three standard deviations are 1.53 times as far
@@ -52,7 +52,7 @@ def test_common_and_own_parameters_come_back(found: Fit) -> None:
         assert abs(true - middle) < 3.0 / 1.96 * half
 
 
-def test_two_records_know_more_than_one(found: Fit, target: RecordsTarget) -> None:
+def test_two_records_narrow_the_intervals(found: Fit, target: RecordsTarget) -> None:
     alone = fit(CHAIN.evolve(A0=DRIVES[1800.0]), target.records[0], [Free("A0", 3e-7, 9e-7), Free("D", 60.0, 200.0)],
                 initial_points=16)
     assert found.profiles[2].high - found.profiles[2].low < alone.profiles[1].high - alone.profiles[1].low
@@ -69,13 +69,13 @@ def test_a_record_is_computed_at_its_own_frequency_and_amplitude(target: Records
         assert (own.residuals**2).mean() == pytest.approx(1.0, abs=4.0 * np.sqrt(2.0 / len(own.residuals)))
 
 
-def test_a_datum_is_told_by_its_record_force_and_time(target: RecordsTarget) -> None:
+def test_a_datum_is_named_by_its_record_force_and_time(target: RecordsTarget) -> None:
     first = target.sizes[0]
     assert target.where(1) == f"in the input force at {target.records[0].time[1]:.6g} s of the record at 1800 Hz"
     assert target.where(2 * first - 1).startswith("in the output force at") and "2200 Hz" in target.where(2 * first - 1)
 
 
-def test_records_in_tables_and_pictures(found: Fit, target: RecordsTarget, tmp_path: Path) -> None:
+def test_records_are_in_tables_and_pictures(found: Fit, target: RecordsTarget, tmp_path: Path) -> None:
     table = {one.name: one for one in found.tables()}["data"]
     assert set(table.columns["frequency"].values) == set(DRIVES)
     assert len(table.columns["measured"].values) == len(found.evaluation.residuals) == sum(target.sizes)
@@ -91,7 +91,7 @@ def test_records_in_tables_and_pictures(found: Fit, target: RecordsTarget, tmp_p
     ((SeriesTarget(recorded(1800.0, 4.5e-7, 1), 0.1, 1800.0), SeriesTarget(recorded(1800.0, 4.5e-7, 1), None, 1900.0)),
      "Some of the records have an error"),
 ])
-def test_records_that_cannot_be_compared(records: tuple[SeriesTarget, ...], sentence: str) -> None:
+def test_records_that_cannot_be_compared_are_refused(records: tuple[SeriesTarget, ...], sentence: str) -> None:
     with pytest.raises(BadInput, match=sentence):
         RecordsTarget(records)
 

@@ -70,7 +70,7 @@ def test_the_limit_is_that_of_f_where_the_variance_is_estimated() -> None:
     assert limit(1.0) == pytest.approx(3.841, rel=1e-3) and limit(1.0, 10**7) == pytest.approx(limit(), rel=1e-5)
 
 
-def test_errors_that_repeats_tell_are_themselves_uncertain() -> None:
+def test_errors_estimated_from_repeats_are_uncertain_themselves() -> None:
     """With a standard deviation from repeats (r = 3 degrees of freedom), 1 of 100 true models gets the verdict
     “cannot”.
 

@@ -18,7 +18,7 @@ from tests.numerics.regime_labels import judged
 
 
 @pytest.mark.parametrize(("place", "width"), [(256.0, 0.75), (832.5, 0.25)])
-def test_labels_beside_a_period_doubling_are_what_becomes_of_the_motion(place: float, width: float) -> None:
+def test_labels_beside_a_period_doubling_are_those_of_the_final_motion(place: float, width: float) -> None:
     """Swept down in steps of 0.25 Hz, the chain lingers on the unstable orbit for hundreds of periods, which is not
     chaos.
     """
@@ -58,7 +58,7 @@ def test_newtons_method_ends_where_the_tangent_flows_does() -> None:
     assert np.abs((found.x - exact) / sizes(exact)).max() < 1e-6  # 7e-6 at the default step, /4⁴, over 1 − 0.36: 4e-8
 
 
-def test_an_orbit_of_a_part_of_the_period_is_told_as_that() -> None:
+def test_an_orbit_has_its_least_period() -> None:
     """For four periods of a period-1 motion, Newton's method finds that orbit, with the multipliers of one period."""
     chain = scene("sec2").evolve(f=340.0)
     x = FiniteDifferenceMap(chain, 4).inner(scale_chain(chain).from_si(settle(chain).state))

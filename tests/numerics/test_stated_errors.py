@@ -92,7 +92,7 @@ def test_the_error_stated_by_a_curve_bounds_the_true_one(base: str) -> None:
     assert np.median([p.stated for p in found]) < 1e-3, "a stated error that is always large is useless"
 
 
-def test_what_the_samples_of_a_drive_leave_out_is_stated() -> None:
+def test_the_error_of_sampling_a_drive_is_stated() -> None:
     """Velocities or displacements are given with 20 to 400 samples per period. Measured for 100 chains: 0.8 of the
     stated error.
     """

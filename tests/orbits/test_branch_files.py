@@ -110,7 +110,7 @@ def test_a_file_that_is_no_branch_is_refused(tmp_path: Path) -> None:
             load_branch(path)
 
 
-def test_a_branch_that_cannot_be_followed_says_so_with_residuals(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_branch_that_cannot_be_followed_fails_with_its_residuals(monkeypatch: pytest.MonkeyPatch) -> None:
     from granchain_core import ComputationError
     from granchain_core.orbits.branch.equations import BranchEquations
 
@@ -177,7 +177,7 @@ def test_the_command_goes_on_from_its_file(tmp_path: Path, capsys: pytest.Captur
     assert json.loads(capsys.readouterr().out) == whole
 
 
-def test_only_a_doubling_is_switched_at() -> None:
+def test_branches_are_switched_only_at_period_doublings() -> None:
     branch = granchain_core.branch(scene("sec2"), "f", 340.0, 348.0, 1)
     grazing = next(s for s in branch.special if s.kind == "grazing")
     assert grazing.contact == 1 and grazing.gained == "open interval"

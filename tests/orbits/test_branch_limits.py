@@ -58,7 +58,7 @@ def test_the_coordinate_of_the_preload_and_its_inverse() -> None:
     assert axis.value(-1e3) == 0.0
 
 
-def test_a_file_from_before_goes_on_in_its_own_coordinate(tmp_path: Path) -> None:
+def test_a_file_of_an_earlier_version_continues_in_its_own_coordinate(tmp_path: Path) -> None:
     """In a file without the attribute, tangents and P_p are for a coordinate that is linear in F0."""
     chain = scene("sec2").evolve(N=2, f=2000.0, F0=1.0)
     begun = begin_branch(chain, "F0", 1.0, 0.5, 1)

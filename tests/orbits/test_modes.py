@@ -35,7 +35,7 @@ def section(name: str, periods: int, **knobs: float) -> Section:
     ("sec2", {}), ("sec2", {"f": 1130.0}), ("rig", {}), ("fig11-free", {}), ("sec2", {"dissipation": "tsuji"}),
 ])
 @pytest.mark.parametrize("rank", [0, 3])
-def test_a_mode_comes_back_as_its_multiplier_says(name: str, knobs: dict[str, float], rank: int) -> None:
+def test_a_mode_is_multiplied_by_its_multiplier_over_a_period(name: str, knobs: dict[str, float], rank: int) -> None:
     orbit = orbit_of(name, **knobs)
     floquet_mode = mode(orbit, rank)
     assert abs(floquet_mode.multiplier) == pytest.approx(abs(orbit.multipliers[rank]), rel=1e-6)

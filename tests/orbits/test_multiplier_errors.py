@@ -40,7 +40,7 @@ def of_a_coarser_map(chain: Scene, exact: Orbit, tolerance: float) -> tuple[np.n
 
 
 @pytest.mark.parametrize("tolerance", [1e-10, 1e-11, 1e-12])
-def test_coarser_maps_are_as_near_as_they_say(known_orbit: Orbit, tolerance: float) -> None:
+def test_multipliers_of_coarser_maps_are_within_their_stated_errors(known_orbit: Orbit, tolerance: float) -> None:
     """Multipliers at 1e-13 serve as exact ones. The bound is also narrow enough to be useful."""
     coarser, errors = of_a_coarser_map(known_orbit.scene, known_orbit, tolerance)
     distances = np.abs(coarser[:, None] - known_orbit.multipliers[None, :])
@@ -57,13 +57,13 @@ def test_the_error_follows_a_known_change_of_the_derivative() -> None:
     np.testing.assert_allclose(errors_of(np.array([-0.3, 0.5, 0.1]), matrix, change), [4e-6, 2e-6, 0.0], atol=1e-15)
 
 
-def test_where_two_multipliers_meet_nothing_is_claimed() -> None:
+def test_no_error_is_stated_where_two_multipliers_meet() -> None:
     """In a Jordan block, a change ε of the matrix moves the multipliers by √ε, so first order is not valid."""
     errors = errors_of(np.array([0.5, 0.5]), np.array([[0.5, 1.0], [0.0, 0.5]]), np.full((2, 2), 1e-12))
     assert np.all(errors > 1e-6)
 
 
-def test_as_near_to_the_circle_as_its_error_is_not_decided(known_orbit: Orbit) -> None:
+def test_stability_is_undecided_within_the_error_of_the_leading_multiplier(known_orbit: Orbit) -> None:
     assert known_orbit.stability_certain
     leading = np.append(1.0 + 1e-9, known_orbit.multipliers[1:])
     undecided = replace(known_orbit, multipliers=leading)

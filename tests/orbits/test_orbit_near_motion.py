@@ -27,7 +27,7 @@ def test_the_distance_of_an_orbit_far_away_is_stated() -> None:
     assert granchain_core.orbit(scene("sec2")).distance_of_motion is None
 
 
-def test_without_a_period_it_is_one_and_the_command_says_so(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_default_period_is_one_and_the_command_says_so(capsys: pytest.CaptureFixture[str]) -> None:
     main(["orbit", "rig", "--set", "f=140", "--start", "near", "--json"])  # chaotic
     said = capsys.readouterr()
     printed = json.loads(said.out)

@@ -123,13 +123,13 @@ def test_an_orbit_whose_displacements_vanish_at_phase_0_is_found() -> None:
     assert orbit.liouville_error is not None and abs(orbit.liouville_error) < 1e-8
 
 
-def test_its_branch_is_found_too() -> None:
+def test_the_branch_of_vanishing_displacements_is_found() -> None:
     """Relative to displacements at phase 0, the residual of the seed used to stay at 1e-7, and there was no branch."""
     branch = granchain_core.branch(VANISHING, "f", VANISHING.f, VANISHING.f + 0.5, 1)
     assert branch.half_branches[0].ended == "reached" and check_branch(branch) == []
 
 
-def test_its_multiplier_is_right_where_the_chain_settles() -> None:
+def test_the_multiplier_of_vanishing_displacements_is_right() -> None:
     """A difference relative to these displacements was below the map's noise, and |μ| was wrong in its third digit."""
     exact = abs(granchain_core.orbit(VANISHING).multipliers[0])
     stroboscopic_map = StroboscopicMap(VANISHING, 1)

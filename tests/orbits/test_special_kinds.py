@@ -59,7 +59,7 @@ def test_a_multiplier_that_passes_one_without_a_turn_is_not_called_a_fold() -> N
     assert special.normal_form is None
 
 
-def test_a_fold_is_still_a_fold() -> None:
+def test_a_multiplier_that_passes_one_at_a_turn_is_a_fold() -> None:
     special, = points_between(lambda s: [0.92 + 0.2 * s, 0.5, 0.1, 0.1], turn=0.4)
     assert special.kind == "fold" and special.multiplier == pytest.approx(1.0, abs=0.01)
 
@@ -87,7 +87,7 @@ def test_a_grazing_says_on_which_side_of_the_knob_a_contact_closes_more_often(
     assert turned.gained_side is None  # the branch turns back between the two orbits
 
 
-def test_both_are_reported_where_they_pass_within_one_narrow_interval() -> None:
+def test_two_multipliers_that_pass_within_one_interval_are_two_points() -> None:
     special = points_between(lambda s: [1.05 - 0.1 * s, -1.0 - 0.2 * (s - 0.5), 0.1, 0.1])
     assert sorted(one.kind for one in special) == ["multiplier_one", "period_doubling"]
 

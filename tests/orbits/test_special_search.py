@@ -29,7 +29,7 @@ def fast() -> Branch:
 
 
 @pytest.mark.parametrize("broken", ["solution", "side"])
-def test_the_careful_search_takes_over_and_finds_the_same(fast: Branch, broken: str,
+def test_the_careful_search_finds_the_special_points_of_the_fast_one(fast: Branch, broken: str,
                                                           monkeypatch: pytest.MonkeyPatch) -> None:
     """This happens if a confirmation fails, or is not on the same side as its rough orbit."""
     careful = Between.careful

@@ -29,7 +29,7 @@ def page(page_of: Callable[[str], PageUnderTest], monkeypatch: pytest.MonkeyPatc
     return page_of("accuracy")
 
 
-def test_it_measures_when_it_is_first_looked_at_and_goes_on_hidden(page: PageUnderTest) -> None:
+def test_measuring_begins_when_the_page_is_first_opened_and_continues_hidden(page: PageUnderTest) -> None:
     page.move_knobs(f=2000.0)
     assert page.sent == [], "until it is opened, there is nothing to see"
     page.set_visible()

@@ -38,7 +38,7 @@ def plan_of(name: str, **changes: str) -> Plan:
 
 
 @pytest.mark.parametrize("name", QUESTIONS)
-def test_its_command_computes_the_same(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_printed_command_computes_the_same(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     plan, reports = plan_of(name), [0.0]
     found = plan.compute(Stop(), reports.append)
     assert reports == sorted(reports)
@@ -56,7 +56,7 @@ def test_its_command_computes_the_same(name: str, capsys: pytest.CaptureFixture[
 
 
 @pytest.mark.parametrize("name", QUESTIONS)
-def test_what_is_offered_can_be_computed(name: str) -> None:
+def test_offered_values_can_be_computed(name: str) -> None:
     for chain in (CHAIN, scene("rig"), scene("impact")):
         offered = {field.name: field.value for field in QUESTIONS[name].fields(chain)}
         if name != "strobes" or chain.f > 0.0:  # there is no range of f around 0
@@ -78,12 +78,12 @@ def test_what_is_offered_can_be_computed(name: str) -> None:
     ("basins", {"x": "u3"}, "u3"),
     ("basins", {"starts": "41"}, "starts along each = 41"),
 ])
-def test_what_is_wrong_is_refused_in_a_sentence(name: str, changes: dict[str, str], sentence: str) -> None:
+def test_invalid_values_are_refused_in_a_sentence(name: str, changes: dict[str, str], sentence: str) -> None:
     with pytest.raises(BadInput, match=sentence):
         plan_of(name, **changes)
 
 
-def test_what_a_browser_should_not_send_is_refused() -> None:
+def test_malformed_messages_are_refused() -> None:
     for other in ("self", None, 3, ["spectrum"]):
         with pytest.raises(BadInput, match="question"):
             question_of(other)
@@ -98,7 +98,7 @@ def test_what_a_browser_should_not_send_is_refused() -> None:
 
 
 @pytest.mark.parametrize("name", QUESTIONS)
-def test_a_link_keeps_what_was_chosen(name: str) -> None:
+def test_a_link_keeps_chosen_values(name: str) -> None:
     question = question_of(name)
     fields = chosen_fields(question, CHAIN, SMALL[name])
     assert {field.name: field.value for field in fields}.items() >= SMALL[name].items()

@@ -42,7 +42,7 @@ def test_effects_are_measured_one_after_the_other_while_somebody_looks(tab: Page
     assert tab.under_way == []
 
 
-def test_a_second_look_does_not_make_two_of_the_list(tab: PageUnderTest, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_reopening_the_tab_does_not_start_a_second_list(tab: PageUnderTest, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(tab.host, "awaiting_picture", True)
     for visible in (True, False, True, False, True):
         tab.set_visible(visible)
@@ -70,7 +70,7 @@ def test_nothing_is_measured_before_the_knobs_rest_and_the_picture_is_there(tab:
     assert tab.under_way == []
 
 
-def test_costs_hold_for_other_values_and_not_for_another_kernel(tab: PageUnderTest) -> None:
+def test_costs_are_kept_for_other_values_and_dropped_for_another_kernel(tab: PageUnderTest) -> None:
     tab.move_knobs(f=2100.0)  # from here on, it knows its kernel
     tab.set_visible()
     tab.run_callbacks()
@@ -83,7 +83,7 @@ def test_costs_hold_for_other_values_and_not_for_another_kernel(tab: PageUnderTe
     assert row(tab, MEASURED[0])["code"] is None and all(submitted.job.stop for submitted in begun)
 
 
-def test_a_kernel_that_is_not_there_is_compiled_first_and_one_that_cannot_be_is_named(
+def test_a_missing_kernel_is_compiled_first_and_a_failure_is_named(
         tab: PageUnderTest, monkeypatch: pytest.MonkeyPatch) -> None:
     compilation: Future[None] = Future()
     monkeypatch.setattr(COMPILER, "has", lambda scene, *pieces: "cost" not in pieces)

@@ -31,7 +31,7 @@ class Host(FakeHost):
         return []
 
 
-def test_each_kernel_is_tried_once(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_each_failing_kernel_is_compiled_once(monkeypatch: pytest.MonkeyPatch) -> None:
     tried: list[tuple[str, str]] = []
 
     def fails(scene: Any, piece: str) -> None:

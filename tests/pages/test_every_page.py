@@ -121,7 +121,7 @@ def test_nothing_begins_after_somebody_has_looked_away(tested: PageUnderTest) ->
     assert tested.submitted == []
 
 
-def test_a_page_is_looked_at_before_there_is_a_picture(tested: PageUnderTest) -> None:
+def test_a_page_opened_before_the_first_picture_does_not_fail(tested: PageUnderTest) -> None:
     tested.host.session.settled = None
     tested.set_visible()
     tested.run_callbacks()

@@ -64,7 +64,7 @@ def test_cases_run_one_after_the_other(page: PageUnderTest) -> None:
     assert page.state["summary"].startswith(f"2 of {len(CASES)} cases run") and page.page.activity[1] == "ready"
 
 
-def test_stopping_keeps_what_was_found_and_forgets_what_waits(page: PageUnderTest) -> None:
+def test_stopping_keeps_finished_cases_and_drops_waiting_ones(page: PageUnderTest) -> None:
     page.do("hard-cases-all")
     page.compute()
     page.do("hard-cases-stop")
@@ -89,7 +89,7 @@ def test_a_process_that_ends_fails_its_case_and_the_next_one_runs(page: PageUnde
     assert page.state["results"][FIRST.name]["failure"] == ""
 
 
-def test_its_process_ends_with_the_visit(page: PageUnderTest) -> None:
+def test_the_process_of_cases_ends_with_the_session(page: PageUnderTest) -> None:
     page.do("hard-cases-run", case=FIRST.name)
     page.host.leave()
     assert Process.closed == 1

@@ -64,7 +64,7 @@ def test_every_case_has_its_lines_and_none_is_too_long_for_one() -> None:
     assert all(0 < len(one[line]) <= 115 for one in shown for line in ("hard", "naive", "oracle"))
 
 
-def test_the_process_answers_is_stopped_and_an_end_is_noticed() -> None:
+def test_the_process_of_cases_can_be_stopped_and_its_death_is_noticed() -> None:
     long = case_of("near a bifurcation")
     assert long is not None
     process, stop = CaseProcess(), Stop()

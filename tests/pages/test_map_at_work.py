@@ -89,7 +89,7 @@ def test_f_and_A0_move_the_mark_and_any_other_knob_asks_for_another_map(tab: Pag
     assert tab.under_way == [] and tab.last("map-status")["status"] == "stopped"
 
 
-def test_knobs_of_a_map_that_nobody_looks_at_are_followed_when_somebody_does(tab: PageUnderTest) -> None:
+def test_a_hidden_map_follows_moved_knobs_once_it_is_opened(tab: PageUnderTest) -> None:
     tab.set_visible()
     tab.compute()
     tab.set_visible(False)
@@ -152,7 +152,7 @@ def test_a_search_for_attractors_ends_when_a_knob_moves(tab: PageUnderTest, monk
         assert all(message["attractors"] == [] for message in tab.messages("map-attractors"))
 
 
-def test_who_looks_again_during_a_search_is_not_told_that_there_is_none(tab: PageUnderTest) -> None:
+def test_reopening_the_tab_during_a_search_shows_that_it_runs(tab: PageUnderTest) -> None:
     tab.set_visible()
     tab.do("map-attractors")
     tab.set_visible(False)

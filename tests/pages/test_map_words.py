@@ -36,7 +36,7 @@ def test_cells_are_sent_as_rows_with_what_is_done_and_the_scale_of_all() -> None
     assert (len(head["x"]), len(head["y"])) == (COLUMNS, ROWS) and head["figure"]["doc"]
 
 
-def test_an_attractor_is_told_with_share_kind_and_evidence() -> None:
+def test_the_words_of_an_attractor_have_share_kind_and_evidence() -> None:
     found = [described_attractor(one) for one in attractors(scene("sec2").evolve(f=1595.0), random_states=24)]
     periodic, irregular = found[0], found[-1]
     assert periodic["words"].startswith("period 4, pulse ratio 1:4, |μ| ") and "error" in periodic["force"]

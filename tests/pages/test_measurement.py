@@ -104,7 +104,7 @@ def test_a_measurement_of_too_many_points_is_refused_in_every_format(name: str, 
             assert count == len(found.time if isinstance(found, Series) else found.frequency)
 
 
-def test_an_hdf5_file_is_called_as_the_visitor_called_it(dashboard: Dashboard, tmp_path: Path) -> None:
+def test_an_hdf5_file_keeps_the_visitors_name(dashboard: Dashboard, tmp_path: Path) -> None:
     """Messages about the file do not name a folder of the server."""
     with h5py.File(tmp_path / "a.h5", "w") as file:
         file["frequency"] = [40.0]
@@ -282,7 +282,7 @@ def test_a_virtual_experiment_is_recorded_of_the_present_scene_and_says_so(dashb
     dashboard.run_callbacks_until(lambda: "rms" in str(dashboard.views.tabs.state.get("misfit")))
 
 
-def test_a_virtual_experiment_holds_up_nobodys_file(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_virtual_experiment_does_not_delay_files(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
     """It settles a chain in a queue where each visitor has a share; two threads read and write everybody's files."""
     threads: dict[str, str] = {}
 

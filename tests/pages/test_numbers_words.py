@@ -12,12 +12,12 @@ from granchain_core.scene.effects import EFFECTS, Effect, effects_of
 LOST = "On average, the damping of the contacts takes all the energy"
 
 
-def test_where_the_energy_goes_is_said_of_a_driven_damped_chain_alone() -> None:
+def test_the_loss_of_energy_is_described_for_driven_damped_chains_only() -> None:
     assert LOST in summary(settle(scene("sec2")).run)
     assert LOST not in summary(settle(scene("impact")).run)
 
 
-def test_nothing_is_said_of_a_scene_with_an_effect_that_may_lose_energy_too(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_loss_of_energy_is_not_described_with_a_further_dissipating_effect(monkeypatch: pytest.MonkeyPatch) -> None:
     """An example is the drag of docs/add-an-effect.md. Foundation and preload store energy, and the force that is cut
     is the damped one.
     """

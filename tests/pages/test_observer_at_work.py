@@ -69,7 +69,7 @@ def test_each_period_is_asked_for_and_none_is_computed_unasked(page: Any) -> Non
     assert page.under_way == []
 
 
-def test_what_is_asked_for_meanwhile_is_done_in_one_further_period(page: Any) -> None:
+def test_requests_during_a_period_are_done_in_one_further_period(page: Any) -> None:
     page.do("observer-more")
     page.do("observer-nudge")
     page.do("observer-rest")

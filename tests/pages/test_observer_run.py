@@ -42,7 +42,7 @@ def test_an_orbit_of_two_periods_is_measured_over_two() -> None:
     assert run.measured == pytest.approx(run.predicted, rel=0.02)
 
 
-def test_a_rate_is_told_when_the_fast_modes_are_gone_and_the_force_is_the_largest_of_the_motion() -> None:
+def test_a_rate_is_shown_once_fast_modes_have_decayed() -> None:
     shown = scene("sec2").evolve(f=2500.0)  # a slow pair of multipliers, and an input force that jumps at closing
     picture = settle(shown)
     run = ObserverRun(shown, picture, Stop(), None)
@@ -65,7 +65,7 @@ def test_the_largest_force_is_that_of_all_periods_so_far() -> None:
     assert told[2:] == pytest.approx([picture.run.max_input_force] * 4, rel=picture.run.force_errors.input)
 
 
-def test_without_multipliers_it_says_why_and_runs() -> None:
+def test_without_multipliers_the_run_says_why_and_continues() -> None:
     cut = FOUNDED.evolve(f=340.0, dissipation="tsuji", tension="cut")
     run = ObserverRun(cut, None, Stop(), None)
     run.predict(SimpleNamespace(regime=SimpleNamespace(period=1), state=rest(cut)))  # type: ignore[arg-type]

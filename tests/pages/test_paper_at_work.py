@@ -29,7 +29,7 @@ def page(page_of: Callable[[str], PageUnderTest], monkeypatch: pytest.MonkeyPatc
     return tested
 
 
-def test_it_begins_with_a_figure_and_computes_each_once(page: Any) -> None:
+def test_the_page_begins_with_a_figure_and_computes_each_once(page: Any) -> None:
     first, other = "2", next(number for number in FIGURES if number != "2")
     page.set_visible()
     assert [submitted.pool for submitted in page.submitted] == ["long"] and page.state["chosen"] == first

@@ -47,7 +47,7 @@ def test_the_probe_keeps_its_bead_and_a_shorter_chain_has_its_last_one(probe: Pa
         probe.do("probe-bead", bead=3)
 
 
-def test_every_final_picture_is_summed_up_and_its_tables_are_for_who_looks(numbers: PageUnderTest) -> None:
+def test_every_final_picture_is_summarised_and_tables_wait_for_a_viewer(numbers: PageUnderTest) -> None:
     numbers.deliver_picture(replace(picture(), final=False))
     assert numbers.sent == []
     numbers.deliver_picture()

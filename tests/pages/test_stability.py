@@ -51,7 +51,7 @@ def with_leading(*leading: complex) -> Any:
     return replace(analysis().orbit, multipliers=np.concatenate([np.array(leading, dtype=complex), rest]))
 
 
-def test_a_stable_orbit_is_told_by_what_is_left_of_a_disturbance() -> None:
+def test_the_words_of_a_stable_orbit_have_the_rest_of_a_disturbance() -> None:
     assert verdict(analysis().orbit) == ("Stable: a disturbance shrinks to 0.36 of itself in one period of the orbit "
                                          "(1 drive period, 2.94 ms).")
     assert "(3 drive periods, 2.65 ms)" in verdict(analysis(f=1130.0).orbit)
@@ -64,19 +64,19 @@ def test_a_stable_orbit_is_told_by_what_is_left_of_a_disturbance() -> None:
     ((1.2j, -1.2j), "turns while it grows: a complex pair outside the circle, as beyond a Neimark–Sacker bifurcation."),
     ((-1.5, 1.2j, -1.2j), "3 multipliers are outside the circle."),
 ])
-def test_an_unstable_orbit_is_told_by_the_way_it_is_left(leading: tuple[complex, ...], words: str) -> None:
+def test_the_words_of_an_unstable_orbit_have_the_way_it_is_left(leading: tuple[complex, ...], words: str) -> None:
     said = verdict(with_leading(*leading))
     assert said.startswith("Unstable") and words in said
     assert ("multipliers are outside" in said) == (len(leading) == 3)
 
 
-def test_as_near_to_one_as_it_is_known_is_not_decided() -> None:
+def test_a_multiplier_within_its_error_of_one_is_undecided() -> None:
     orbit = with_leading(-1.00000001)
     orbit.__dict__["multiplier_errors"] = np.full(len(orbit.multipliers), 2e-8)
     assert verdict(orbit).startswith("Not decided: a |μ| is 1.000000 ± 2e-8, no farther from 1 than its error")
 
 
-def test_the_observer_is_told_where_it_was_asked_for() -> None:
+def test_the_observer_is_described_if_requested() -> None:
     orbit = replace(analysis().orbit, observer_multipliers=np.array([-4.2, 0.1], dtype=complex))
     assert verdict(orbit).endswith("Its observer is unstable, |μ| 4.20.")
 
@@ -85,7 +85,7 @@ def test_the_observer_is_told_where_it_was_asked_for() -> None:
     (0.361, "0.36"), (0.0995, "0.10"), (0.0123, "0.012"), (3.2e-5, "3e-5"), (0.9939, "0.9939"), (1.00002, "1.000020"),
     (1.57, "1.57"),
 ])
-def test_moduli_are_told_from_one_and_from_zero(value: float, words: str) -> None:
+def test_moduli_are_printed_different_from_one_and_zero(value: float, words: str) -> None:
     assert modulus_words(value) == words
 
 
@@ -96,7 +96,7 @@ def test_an_exponent_has_the_figures_that_its_error_allows(exponent: float, erro
     assert exponent_words(exponent, error) == words
 
 
-def test_a_chosen_multiplier_is_told_and_one_that_is_not_there_is_the_last() -> None:
+def test_a_chosen_multiplier_is_described_and_a_missing_one_is_the_last() -> None:
     orbit = with_leading(-1.5)
     assert multiplier_sentence(orbit, 0) == "ringed: μ = −1.5000, |μ| 1.50"
     assert multiplier_sentence(orbit, 99) == multiplier_sentence(orbit, 21)
@@ -158,7 +158,7 @@ def test_multipliers_that_contradict_the_motion_are_not_shown(monkeypatch: pytes
         analyse(analysis().target, False, 0, Stop())
 
 
-def test_another_orbit_than_the_settled_one_is_not_shown_for_it() -> None:
+def test_multipliers_of_another_orbit_are_not_shown_for_the_settled_one() -> None:
     shown = picture()
     far = replace(shown.state, displacement=1.01 * shown.state.displacement)
     with pytest.raises(ComputationError, match="ended 1e-02 away"):
@@ -295,7 +295,7 @@ def test_a_live_run_has_no_multipliers() -> None:
     ("stability-mode", {"value": True}),
     ("stability-section", {"bead": 0, "phase": 0}), ("stability-section", {"bead": 1, "phase": 48}), ("stability-section", {}),
 ])
-def test_wrong_requests_get_their_sentence(page: Page, action: str, message: dict[str, Any]) -> None:
+def test_invalid_requests_get_a_sentence(page: Page, action: str, message: dict[str, Any]) -> None:
     with pytest.raises(BadInput, match="is not a whole number from"):
         opened(page).actions[action](message)
 

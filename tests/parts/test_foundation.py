@@ -23,30 +23,30 @@ def printed(*settings: str, capsys: pytest.CaptureFixture[str]) -> str:
     return err
 
 
-def test_an_amplitude_set_alone_is_said_with_both_kappas(capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_amplitude_set_alone_is_reported_with_both_kappas(capsys: pytest.CaptureFixture[str]) -> None:
     told = printed("A0=6e-6", capsys=capsys)
     # κ = k/(K√A0): 0.001·√(7/6)
     assert told == "κ was 0.001 before A₀ changed at constant k. It is 0.00108012 now; --set kappa=0.001 keeps it.\n"
 
 
 @pytest.mark.parametrize("settings", [("A0=6e-6", "kappa=0.001"), ("k=30000", "A0=6e-6"), ("A0=7e-6",), ("D=30",)])
-def test_nothing_is_said_where_kappa_did_not_follow_unasked(settings: tuple[str, ...],
+def test_a_change_of_kappa_that_was_requested_is_not_reported(settings: tuple[str, ...],
                                                             capsys: pytest.CaptureFixture[str]) -> None:
     assert "κ" not in printed(*settings, capsys=capsys)
 
 
-def test_without_a_foundation_there_is_nothing_to_say() -> None:
+def test_without_a_foundation_no_change_of_kappa_is_reported() -> None:
     sec2 = scene("sec2")
     assert kappa_changed_by_amplitude(sec2, sec2.evolve(A0=1e-6), {"A0"}) == ""
     assert kappa_changes_along(sec2, "A0", "f") == beside_kappa(sec2.evolve(A0=1e-6)) == ""
 
 
-def test_a_branch_or_map_in_the_amplitude_is_said() -> None:
+def test_a_branch_or_map_over_the_amplitude_is_reported() -> None:
     assert "constant k = 32435.6 N/m" in kappa_changes_along(RIG, "f", "A0")
     assert kappa_changes_along(RIG, "f", "D") == kappa_changes_along(RIG, "kappa", "A0") == ""
 
 
-def test_the_page_says_beside_kappa_what_it_was() -> None:
+def test_the_page_shows_the_former_kappa() -> None:
     assert beside_kappa(RIG.evolve(A0=6e-6)) == "κ was 0.001 before A₀ changed at constant k"
     assert beside_kappa(RIG) == beside_kappa(RIG.evolve(A0=6e-6, kappa=0.001)) == ""
 

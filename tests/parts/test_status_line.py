@@ -22,17 +22,17 @@ def picture() -> Settled:
     (ForceErrors(2e-7, 3e-7, 4e-7), ""), (ForceErrors(1.1e-6, 3e-7, 4e-7), " (input force 1e-6)"),
     (ForceErrors(2e-4, 3e-7, 4e-7), " (input force 2e-4)"),
     (ForceErrors(None, 3e-5, None), " (output force 3e-5)"), (ForceErrors(), "")])
-def test_a_force_less_sure_than_the_displacements_is_told_beside_them(picture: Settled, errors: ForceErrors, said: str) -> None:
+def test_the_error_of_a_force_is_shown_if_larger_than_that_of_displacements(picture: Settled, errors: ForceErrors, said: str) -> None:
     run = replace(picture.run, force_errors=errors, displacement_error=1e-7)
     assert accuracy_words(run) == f"asked 1e-6 · reached 1e-7{said}"
 
 
-def test_a_force_that_misses_what_was_asked_is_told_however_near_it_is_to_the_displacements(picture: Settled) -> None:
+def test_the_error_of_a_force_above_the_accuracy_is_always_shown(picture: Settled) -> None:
     run = replace(picture.run, force_errors=ForceErrors(1e-7, 3e-6, 1e-7), displacement_error=8e-7)
     assert accuracy_words(run) == "asked 1e-6 · reached 8e-7 (output force 3e-6)"
 
 
-def test_where_no_error_is_stated_none_is_told_for_the_forces(picture: Settled) -> None:
+def test_without_a_stated_error_no_error_of_forces_is_shown(picture: Settled) -> None:
     run = replace(picture.run, force_errors=ForceErrors(1e-2, 1e-2, 1e-2), displacement_error=None)
     assert accuracy_words(run) == "asked 1e-6 · not estimated"
 
@@ -51,7 +51,7 @@ def test_an_anti_resonance_says_that_its_ratio_is_no_place_among_the_peaks(pictu
         picture.regime, (1, 1), Place("peak", 340.0, 1))
 
 
-def test_where_the_motion_started(picture: Settled) -> None:
+def test_the_line_says_where_the_motion_started(picture: Settled) -> None:
     assert settled_entries(picture, None, "1 N")["start"] == "from rest"
     carried = replace(picture, run=replace(picture.run, start=GIVEN_STATE))
     assert settled_entries(carried, None, "1 N")["start"] == "from previous state"

@@ -45,7 +45,7 @@ def test_the_largest_value_drawn_is_the_largest_force_stated() -> None:
     assert np.ptp(phases, axis=1).max() < 1e-9
 
 
-def test_a_pull_and_a_lasting_pressure_are_told_beside_the_largest_force() -> None:
+def test_a_pull_and_a_lasting_pressure_are_shown_beside_the_largest_force() -> None:
     """At 340 Hz, the driver's contact pulls when it opens; at 2500 Hz, the wall is always under pressure."""
     for f, told in ((340.0, (True, False)), (2500.0, (True, True))):
         run = settle(scene("sec2").evolve(f=f)).run

@@ -59,7 +59,7 @@ def test_the_difference_before_counts_with_every_method_where_tension_is_cut(met
     assert found.stated[0] == pytest.approx(max(IRREGULAR * 1e-3 / ratio, found.rounding))
 
 
-def test_no_less_is_stated_than_is_typical_of_the_steps() -> None:
+def test_the_stated_error_is_at_least_the_typical_one_of_the_steps() -> None:
     setting = MethodSetting("rk4-split", REFINES[1])
     assert shown([0.0]).stated[0] == typical_error(setting) > 0.0
 
@@ -81,7 +81,7 @@ def test_a_gentle_motion_is_not_charged_with_rounding() -> None:
     assert shown([typical_error(MethodSetting("rk4-split", r)) for r in REFINES[:-1]]).rounding < 1e-12
 
 
-def test_an_error_of_a_tenth_is_none_worth_the_name_unless_it_was_asked_for() -> None:
+def test_an_error_of_a_tenth_is_stated_only_if_requested() -> None:
     found = shown([0.1])
     assert found.final(done=False)[0] == 2.0
     assert found.final(done=True)[0] == pytest.approx(0.15)

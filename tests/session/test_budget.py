@@ -21,7 +21,7 @@ def test_a_long_chain_at_a_usual_frequency_is_computed_and_its_curve_is_not() ->
 
 
 @pytest.mark.parametrize("knobs", [{"N": 10_000, "f": 0.1, "A0": 1e-4}, {"N": 10_000, "f": 1.0}, {"N": 3000, "f": 0.5}])
-def test_what_takes_long_is_refused_with_what_fits(knobs: dict[str, float]) -> None:
+def test_a_long_computation_is_refused_with_one_that_fits(knobs: dict[str, float]) -> None:
     with pytest.raises(OverBudget, match=rf"the limit is {FIRST_PICTURE:g} s: .* would fit\.$") as refused:
         check_first_picture(scene("sec2").evolve(**knobs))
     assert refused.value.estimate > FIRST_PICTURE

@@ -42,7 +42,7 @@ def run_again(program: str, tmp_path: Path) -> str:
     return done.stdout
 
 
-def test_the_script_finds_what_the_page_showed_to_the_last_digit(screen: ExportedPicture, tmp_path: Path) -> None:
+def test_the_script_computes_the_numbers_of_the_page_to_the_last_digit(screen: ExportedPicture, tmp_path: Path) -> None:
     printed = run_again(script(screen) + "\nprint(repr(run.max_output_force))\n", tmp_path)
     assert printed.count("as on the page") == 3 and "but the page" not in printed
     assert repr(screen.run.max_output_force) in printed  # not only to the digits shown
@@ -51,7 +51,7 @@ def test_the_script_finds_what_the_page_showed_to_the_last_digit(screen: Exporte
     assert settle(SHOWN).run.regime.period != screen.run.regime.period
 
 
-def test_a_script_says_where_it_found_something_else(screen: ExportedPicture, tmp_path: Path) -> None:
+def test_a_script_names_the_numbers_that_differ(screen: ExportedPicture, tmp_path: Path) -> None:
     other = script(screen).replace("f=880.0)", "f=881.0)", 1)
     assert "but the page had" in run_again(other, tmp_path)
 
@@ -96,6 +96,6 @@ def test_the_trains_have_every_sample_and_every_jump(screen: ExportedPicture) ->
     assert len(comments) == len(ends) >= 1
 
 
-def test_everything_that_is_offered_can_be_written(screen: ExportedPicture) -> None:
+def test_every_offered_file_can_be_written(screen: ExportedPicture) -> None:
     assert all(write(screen) for _, write in TEXTS.values())
     assert {*EXPORTS} == {"hdf5", *TEXTS}  # the list on the page

@@ -9,7 +9,7 @@ from host import FakeHost
 from app.session.host import PageHost, WorkHost
 
 
-def test_what_the_fake_host_has_is_called_as_a_host_is() -> None:
+def test_the_fake_host_has_the_signatures_of_the_host() -> None:
     shared = [name for name in vars(FakeHost) if name in dir(PageHost) and not name.startswith("_")]
     assert {name for name in dir(WorkHost) if not name.startswith("_")} <= set(shared)
     for name in shared:
@@ -20,7 +20,7 @@ def test_what_the_fake_host_has_is_called_as_a_host_is() -> None:
             assert isinstance(real, property), name
 
 
-def test_what_drives_the_fake_host_is_no_part_of_a_host() -> None:
+def test_methods_that_drive_the_fake_host_are_no_methods_of_a_host() -> None:
     """A page that called these methods would only work in tests."""
     assert {name for name in dir(FakeHost) if not name.startswith("_")} - set(dir(PageHost)) == {
         "leave", "call_waiting", "run_callbacks_until"}

@@ -36,12 +36,12 @@ def test_a_chain_that_is_too_long_begins_at_rest() -> None:
     (initial_state_text(replace(START, displacement=np.full(11, np.nan))), "impossible for a chain"),
     (initial_state_text(replace(START, velocity=np.full(11, 1e6))), "impossible for a chain"),
     (initial_state_text(replace(START, phase=1.0)), "impossible for a chain")])
-def test_what_is_no_state_is_refused(text: str, told: str) -> None:
+def test_an_invalid_state_is_refused(text: str, told: str) -> None:
     with pytest.raises(BadInput, match=told):
         read_initial_state(text, SHOWN)
 
 
-def test_an_address_brings_everything_back() -> None:
+def test_pins_of_an_address_are_restored_completely() -> None:
     left = Session(SHOWN, start="previous", scale="fit", speed=0.25, energy_account=True, story="coexisting.2",
                    initial_state=START, pins=(Pin(scene("sec2")), Pin(scene("rig").evolve(D=12.0), START)))
     back = Session()
@@ -55,7 +55,7 @@ def test_an_address_brings_everything_back() -> None:
     assert back.link == Session().link
 
 
-def test_a_damaged_pin_is_left_out_and_told() -> None:
+def test_a_damaged_pin_is_left_out_and_reported() -> None:
     session = Session()
     _, refused = apply_address(session, "v=1&pin=scene%3Dsec2%26f%3Dlots&pin2=scene%3Drig&from=AAAA&story=none.1")
     assert [pin.scene.name for pin in session.pins] == ["rig"]

@@ -23,13 +23,13 @@ WORDS = {f"{path.parent.name} {name}": words for path in sorted(PAGES.glob("*/pa
 
 
 @pytest.mark.parametrize("words", [StatusWords(), *WORDS.values()], ids=["a new page", *WORDS])
-def test_who_waits_for_a_compiler_is_told_for_how_long(words: StatusWords) -> None:
+def test_a_visitor_who_waits_for_a_compiler_reads_for_how_long(words: StatusWords) -> None:
     told = words.of("compiling")
     assert told["running"] and told["progress"].startswith("compiling the ")
     assert told["progress"].endswith(" s, only the first time on this computer …")
 
 
-def test_what_is_over_has_nothing_to_say_unless_it_was_stopped() -> None:
+def test_finished_work_has_no_words_unless_it_was_stopped() -> None:
     for status in ("none", "done", "failed"):
         assert BRANCHES.of(status) == {"status": status, "progress": "", "running": False, "failure": ""}
     assert BRANCHES.of("stopped") == {"status": "stopped", "progress": "stopped; the orbits found so far are kept", "running": False,
@@ -37,7 +37,7 @@ def test_what_is_over_has_nothing_to_say_unless_it_was_stopped() -> None:
     assert HARD_CASES.of("stopped")["progress"] == "stopped"
 
 
-def test_what_is_under_way_is_running_on_every_page() -> None:
+def test_work_under_way_has_the_same_status_on_every_page() -> None:
     for status in set(UNDER_WAY) - {"compiling"}:
         assert HARD_CASES.of(status)["running"]
     assert SEARCH_WORDS.of("waiting")["progress"] == HARD_CASES.of("waiting")["progress"] == "waiting for its turn …"

@@ -74,14 +74,14 @@ def test_a_link_with_kappa_means_the_k_it_meant() -> None:
     assert shown.k == pytest.approx(60059.142449055784, rel=1e-12)
 
 
-def test_every_bad_field_gets_its_sentence_and_the_good_ones_count() -> None:
+def test_a_bad_field_gets_a_sentence_and_the_others_count() -> None:
     back, fields, refused = decode("v=1&scene=rig&f=nan&A0=1e3&foo=1&mode=x&D=12&look=dark")
     assert back == scene("rig").evolve(D=12.0)
     assert fields == {"look": "dark"}
     assert len(refused) == 4 and all(sentence.endswith(".") for sentence in refused)
 
 
-def test_an_unknown_scene_or_version_is_said_and_the_first_scene_shown() -> None:
+def test_an_unknown_scene_or_version_is_reported_and_the_first_scene_shown() -> None:
     back, _, refused = decode("v=9&scene=rigg")
     assert back == scene(scene_names()[0]) and len(refused) == 2
 

@@ -40,7 +40,7 @@ def test_every_story_of_the_repository_can_be_read() -> None:
 
 
 @pytest.mark.parametrize(("story", "number"), STEPS, ids=[f"{story.name}-{number}" for story, number in STEPS])
-def test_a_step_tells_what_the_program_computes(story: Story, number: int) -> None:
+def test_the_numbers_of_a_step_are_those_that_are_computed(story: Story, number: int) -> None:
     step = story.steps[number - 1]
     assert differences(step, motion_of(step)) == []
 
@@ -90,7 +90,7 @@ def test_numbers_stand_in_the_text(tmp_path: Path) -> None:
     ("[[steps]]", "[[step]]", "Unknown field of a story 'step'"),
     ("title", "=", "it is not a TOML file"),
 ])
-def test_a_wrong_file_says_where(tmp_path: Path, change: str, to: str, told: str) -> None:
+def test_an_error_of_a_story_names_step_and_field(tmp_path: Path, change: str, to: str, told: str) -> None:
     path = tmp_path / "bad.toml"
     path.write_text(GOOD.replace(change, to, 1))
     with pytest.raises(BadInput) as refused:

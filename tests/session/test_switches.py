@@ -28,7 +28,7 @@ def test_a_switch_changes_what_is_compiled_and_comes_back(name: str, shown: str)
     assert structure(session.scene) == before
 
 
-def test_what_the_visitor_had_comes_back() -> None:
+def test_a_switch_turned_back_restores_the_visitors_values() -> None:
     session = Session(scene=scene("rig").evolve(k=12345.0, dissipation="tsuji", D=40.0, F0=3.0))
     for name in ("dashpot", "foundation", "preload"):
         session.switch(name, False)
@@ -61,7 +61,7 @@ def test_without_damping_there_is_no_tension_to_cut() -> None:
 
 
 @pytest.mark.parametrize("name", ["wall", "", ACCOUNT_SWITCH, "D"])
-def test_what_is_no_effect_of_a_knob_is_refused(name: str) -> None:
+def test_effects_without_a_knob_cannot_be_switched(name: str) -> None:
     with pytest.raises(BadInput, match=f"no switchable effect '{name}'"):
         changes(name, True, scene("sec2"), {})
 

@@ -55,7 +55,7 @@ def failing(error: Exception) -> Callable[[Job], None]:
     return work
 
 
-def test_what_the_work_says_comes_before_its_end(host: SayingHost, task: Task) -> None:
+def test_messages_of_work_arrive_before_its_end(host: SayingHost, task: Task) -> None:
     task.start(lambda job: job.report("measuring"))
     assert task.running
     host.run_callbacks_until(lambda: not task.running)
@@ -84,7 +84,7 @@ def test_a_task_ends_when_the_visitor_leaves(host: SayingHost, task: Task) -> No
     (ComputationError("Bead 3 is not finite.", "not-finite"), "Bead 3 is not finite.", False),
     (BadInput("f must be positive."), "f must be positive.", False),
     (ZeroDivisionError("1/0"), FAULT, True)])
-def test_a_failure_is_said_and_a_fault_is_told_to_the_host(error: Exception, sentence: str, told: bool, host: SayingHost,
+def test_a_failure_is_shown_and_a_fault_is_reported_to_the_host(error: Exception, sentence: str, told: bool, host: SayingHost,
                                                           task: Task) -> None:
     task.start(failing(error))
     host.run_callbacks_until(lambda: not task.running and not host.callbacks)
@@ -144,7 +144,7 @@ def test_nothing_of_cancelled_work_arrives(host: SayingHost, task: Task) -> None
     assert host.said == [("done", "")]
 
 
-def test_cancelled_is_no_failure(host: SayingHost, task: Task) -> None:
+def test_cancelled_work_is_no_failure(host: SayingHost, task: Task) -> None:
     def work(job: Job) -> None:
         while not job.stop:
             time.sleep(0.002)
@@ -169,7 +169,7 @@ def test_work_that_is_cancelled_before_its_turn_is_not_begun(host: SayingHost) -
 
 
 @pytest.mark.parametrize("limit", [None, 1])
-def test_what_is_started_again_and_again_is_kept_once(limit: int | None, host: SayingHost) -> None:
+def test_a_task_started_repeatedly_is_kept_once(limit: int | None, host: SayingHost) -> None:
     """If a visitor uploads file after file while all threads are busy, only the last one waits."""
     class File:
         """An uploaded file."""
@@ -204,7 +204,7 @@ def test_work_gives_way_to_a_moving_knob(monkeypatch: pytest.MonkeyPatch) -> Non
     assert next(looks) == 5 and host.said == [("done", "")]
 
 
-def test_who_gives_way_for_long_looks_ever_more_rarely(host: SayingHost, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_long_pauses_are_checked_ever_more_rarely(host: SayingHost, monkeypatch: pytest.MonkeyPatch) -> None:
     pauses: list[float] = []
     monkeypatch.setattr("app.session.task.time.sleep", pauses.append)
     Job(host, host.say).give_way(lambda: len(pauses) < 7)
@@ -222,7 +222,7 @@ def test_progress_is_reported_in_steps_and_gives_way_before_the_end(monkeypatch:
     assert reported == [0.3, 0.5, 0.8, 1.0] and next(looks) == 10
 
 
-def test_compiling_is_said_and_given_up_with_the_job(host: SayingHost, task: Task, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_compiling_is_reported_and_ends_with_the_job(host: SayingHost, task: Task, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("app.session.task.COMPILER.has", lambda *_: False)
     monkeypatch.setattr("app.session.task.COMPILER.await_piece", lambda *_: False)
     monkeypatch.setattr("app.session.task.COMPILER.load", lambda *_: pytest.fail("loaded"))

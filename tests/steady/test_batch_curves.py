@@ -23,7 +23,7 @@ def results(frequencies: list[float]) -> dict[float, SteadyState]:
     return {result.scene.f: result for result in batch_module.batch_results(scenes, Stop())}
 
 
-def test_what_is_extrapolated_is_what_the_chain_was_going_to() -> None:
+def test_an_extrapolated_orbit_is_the_one_that_the_chain_settles_on() -> None:
     """From rest, batches, which extrapolate slow approaches, agree with the fixed-step method, which runs until
     settled.
     """
@@ -42,7 +42,7 @@ def test_what_is_extrapolated_is_what_the_chain_was_going_to() -> None:
     assert periodic >= 9
 
 
-def test_a_computed_multiplier_is_kept_and_is_what_the_errors_rest_on(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_computed_multiplier_is_kept_and_determines_the_errors(monkeypatch: pytest.MonkeyPatch) -> None:
     """Near 392 Hz, section 2's chain has |μ| ≈ 0.9 per orbit, and most of its orbits are found by extrapolation.
 
     Which of them are, and the decay observed before, depend on the processor's approximate roots and on the width of
@@ -61,7 +61,7 @@ def test_a_computed_multiplier_is_kept_and_is_what_the_errors_rest_on(monkeypatc
         assert result.maxima[1] == pytest.approx(exact.run.max_output_force, rel=result.errors[1])
 
 
-def test_what_batches_call_quasi_periodic_was_measured_twice(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_batch_calls_quasi_periodic_only_after_two_measurements(monkeypatch: pytest.MonkeyPatch) -> None:
     """At 1640 Hz from rest, 200 periods with a zero exponent are not enough, as for a chain alone."""
     real, measured = batch_module.put_with_neighbour, []
     monkeypatch.setattr(batch_module, "put_with_neighbour", lambda *words: measured.append(True) or real(*words))
@@ -143,7 +143,7 @@ def test_a_peak_right_after_a_closing_is_not_missed(f: float, knobs: dict[str, f
     assert abs(point.max_output_force / exact.max_output_force - 1.0) <= point.force_errors.output
 
 
-def test_what_a_fine_run_leaves_is_not_called_periodic() -> None:
+def test_an_orbit_that_a_fine_run_leaves_is_not_called_periodic() -> None:
     """The orbit that coarse steps find has a largest |μ| of 4.6, and the fine run left it by a relative distance of
     0.07.
 

@@ -105,7 +105,7 @@ def test_an_empty_lane_that_is_not_finite_is_never_returned() -> None:
 
 @pytest.mark.parametrize("lost", ["chain", "neighbour"])
 @pytest.mark.parametrize("wrong", MEMBERS_OF_PAIRS)
-def test_a_pair_that_is_not_finite_leaves_the_others_theirs(wrong: int, lost: str) -> None:
+def test_a_pair_that_is_not_finite_does_not_change_the_others(wrong: int, lost: str) -> None:
     chain = scene("sec2").evolve(f=1130.0)
     scaled, batch = scale_chain(chain), Batch(chain, Stop())
     rest = np.zeros(2 * scaled.bodies)
@@ -156,7 +156,7 @@ def test_the_lanes_of_a_pair_are_free_for_any_scene_afterwards() -> None:
 
 @pytest.mark.parametrize("sentinel", [np.nan, 12345.0])
 @pytest.mark.parametrize("preload", [0.0, 0.5])
-def test_nothing_that_was_in_the_arrays_before_a_scene_is_read(preload: float, sentinel: float,
+def test_a_scene_reads_no_earlier_content_of_the_arrays(preload: float, sentinel: float,
                                                              monkeypatch: pytest.MonkeyPatch) -> None:
     """If all arrays are filled before the first scene, coarse and fine runs, disturbances and pairs are the same bit by
     bit.

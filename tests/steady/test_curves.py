@@ -81,7 +81,7 @@ def test_up_and_down_sweeps_differ_where_there_is_hysteresis() -> None:
     assert np.abs(a - b).max() > 0.05  # [N]; forces are known to 1e-5, so this is another branch
 
 
-def test_a_chain_that_fails_alone_has_run_what_its_batch_ran(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_failure_alone_counts_the_periods_of_its_batch(monkeypatch: pytest.MonkeyPatch) -> None:
     """620 periods in a batch followed by a failure are reported as 620 periods, not 0."""
     from granchain_core.steady.settling import single_chain as module
 
@@ -127,7 +127,7 @@ def test_a_curve_of_the_stiffest_foundation_is_computed_or_says_why_not(start: s
 
 
 @pytest.mark.parametrize("start", ["rest", "up", "down"])
-def test_a_cancelled_curve_keeps_what_it_has(start: str) -> None:
+def test_a_cancelled_curve_keeps_its_finished_points(start: str) -> None:
     """If it is stopped after the third point, it keeps these points and soon ends."""
     frequencies: list[float] = []
     stop = Stop()

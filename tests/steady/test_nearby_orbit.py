@@ -18,7 +18,7 @@ def nearly_repeating(change: float) -> np.ndarray:
 
 
 @pytest.mark.parametrize(("change", "almost"), [(0.0, True), (5e-4, True), (9e-4, True), (1.2e-3, False), (0.1, False)])
-def test_almost_periodic_is_what_changes_by_less_than_a_thousandth(change: float, almost: bool) -> None:
+def test_changes_below_a_thousandth_are_almost_periodic(change: float, almost: bool) -> None:
     assert is_almost_periodic(nearly_repeating(change)) is almost
 
 

@@ -45,7 +45,7 @@ def test_an_error_of_the_map_moves_its_fixed_point_by_more(monkeypatch: pytest.M
     assert stated[1] == pytest.approx(9.0 * stated[0], rel=1e-12)
 
 
-def test_the_forces_of_a_curve_move_as_far(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_forces_of_a_curve_have_the_same_error(monkeypatch: pytest.MonkeyPatch) -> None:
     """The factor 1/(1 − |μ|) is the same for a point of a curve that was settled alone."""
     settling = run_until_settled(scene("sec2"), None, None)
     monkeypatch.setattr(single_chain, "run_until_settled", called_as(single_chain.run_until_settled, settling))

@@ -10,7 +10,7 @@ import pytest
 from tools import profile_curve
 
 
-def test_the_batch_and_the_time_without_profiling_are_said(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_profile_states_the_batch_and_the_time_without_profiling(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.setattr(sys, "argv", ["profile_curve", "--from", "300", "--to", "340", "--points", "2", "--rows", "40"])
     profile_curve.main()
     said = capsys.readouterr().out

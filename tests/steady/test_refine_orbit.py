@@ -13,7 +13,7 @@ from granchain_core.steady.settling.advance import run_until_settled
 pytestmark = pytest.mark.quick
 
 
-def test_relaxing_ends_where_the_distance_is_small_and_not_the_change(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_relaxation_ends_at_a_small_distance_not_at_a_small_change(monkeypatch: pytest.MonkeyPatch) -> None:
     """With a decay of 0.99, a change c leaves a distance of 99 c, which is returned and compared with the accuracy."""
     settling, changes = run_until_settled(scene("sec2"), None, None), []
     real = refine_orbit.changes

@@ -74,7 +74,7 @@ def test_an_uncertain_exponent_is_measured_further() -> None:
 @pytest.mark.parametrize(("exponents", "name"), [
     (0.3 + 0.01 * np.tile([1.0, -1.0], 5), "chaotic"), (1e-4 * np.tile([1.0, -1.0], 5), "quasi-periodic"),
     (0.004 + 1e-4 * np.tile([1.0, -1.0], 5), "quasi-periodic")])
-def test_the_decision_can_be_repeated_from_what_is_kept(exponents: np.ndarray, name: str) -> None:
+def test_the_decision_can_be_repeated_from_the_kept_evidence(exponents: np.ndarray, name: str) -> None:
     """The regime contains mean, error and periods of the measurement; 0.004 over 400 periods is below 6/400."""
     regime = regime_criteria.regime_from_exponents(exponents, 400, turning(1.0), 420)
     assert regime.name == name and regime.lyapunov is not None and regime.lyapunov_periods == 400

@@ -41,7 +41,7 @@ def test_a_valley_is_a_fifth_below_both_peaks(depth: float, is_one: bool) -> Non
     assert (2 in places) == is_one
 
 
-def test_nothing_is_claimed_while_there_is_no_curve_or_off_it() -> None:
+def test_no_place_is_named_without_a_curve_or_off_it() -> None:
     """Examples are an unfinished curve, another branch at the same frequency, a frequency off the curve, and its ends.
     """
     assert place_words((1, 1), None) == "1:1 motion (the curve is being computed)"
@@ -51,7 +51,7 @@ def test_nothing_is_claimed_while_there_is_no_curve_or_off_it() -> None:
     assert place_words(None, place(1130.0)) == ""
 
 
-def test_beyond_the_last_peak_where_little_arrives_is_the_stop_band() -> None:
+def test_small_forces_beyond_the_last_peak_are_the_stop_band() -> None:
     assert place_words((1, 1), place(2500.0, transmission=0.1)) == "1:1 motion, stop band"
     assert place(2500.0, transmission=0.4).kind != "stop band"
     assert place(900.0, transmission=0.1) == Place("flank", 1130.0, 3)

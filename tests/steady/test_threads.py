@@ -51,7 +51,7 @@ def test_an_exception_of_a_thread_is_raised_by_the_caller(kind: type[BaseExcepti
 
 
 @pytest.mark.parametrize("asked", ["stop", "ended"])
-def test_what_was_asked_to_end_ends_without_an_exception(asked: str) -> None:
+def test_a_requested_end_raises_no_exception(asked: str) -> None:
     """The work notices the flag before the caller does, and ends with `Cancelled`."""
     ended, stop = Stop(), Stop()
 

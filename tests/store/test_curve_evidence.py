@@ -17,7 +17,7 @@ from granchain_core.store import load_curve
 CURVE = resonance_curve(scene("sec2").evolve(N=3), [900.0, 1000.0, 2000.0])
 
 
-def test_the_evidence_comes_back(tmp_path: Path) -> None:
+def test_the_evidence_of_a_curve_is_read_back(tmp_path: Path) -> None:
     found = load_curve(save(CURVE, tmp_path / "c.h5"))
     assert {point.regime.name for point in found.points} >= {"periodic"}
     for before, after in zip(CURVE.points, found.points, strict=True):

@@ -19,14 +19,14 @@ from tools.damage.kinds import KINDS, Kind
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_no_harmed_file_is_a_wrong_number_a_traceback_or_a_hang(kind: str) -> None:
+def test_no_damaged_file_gives_a_wrong_number_a_traceback_or_a_hang(kind: str) -> None:
     found = list(verdicts(kind, True, 2 * len(HARMS), seed=77))
     print(table(found, "harm"))
     assert [v for v in found if v.outcome in (WRONG, TRACEBACK, HANG)] == []
     assert Counter(v.outcome for v in found)[REFUSED] > len(found) / 3
 
 
-def test_no_harmed_file_of_an_earlier_version_is_a_traceback_or_a_hang() -> None:
+def test_no_damaged_file_of_an_earlier_version_gives_a_traceback_or_a_hang() -> None:
     """A wrong number is possible, because without a seal nothing reveals it."""
     found = list(verdicts("run", False, len(HARMS), seed=78))
     assert [v for v in found if v.outcome in (TRACEBACK, HANG)] == []
@@ -53,7 +53,7 @@ def test_an_error_that_is_no_sentence_is_noticed(raised: Exception, outcome: str
 
 @pytest.mark.parametrize(("value", "harm", "outcome"), [
     (7, "one bit flipped", SAME), (8, "one bit flipped", WRONG), (8, "external link", WRONG), (8, "attribute", OTHER)])
-def test_another_number_is_noticed(value: int, harm: str, outcome: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_wrong_number_of_a_damaged_file_is_noticed(value: int, harm: str, outcome: str, monkeypatch: pytest.MonkeyPatch) -> None:
     reader_that(lambda path: value, monkeypatch)
     assert read("run", Path("a"), harm, "7")[0] == outcome
 

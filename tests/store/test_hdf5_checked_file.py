@@ -140,7 +140,7 @@ def test_numbers_come_from_the_file_itself_alone(kind: str, name: str, files: di
     assert any(words in refused(KINDS[kind].read, old) for words in SAID[name])
 
 
-def test_data_in_pieces_are_not_read_even_if_all_is_there(changed: Callable[..., Path]) -> None:
+def test_chunked_data_are_not_read(changed: Callable[..., Path]) -> None:
     """Chunked data may need a filter, which HDF5 would load."""
     def pieces(file: h5py.File) -> None:
         values = file["run/time"][()]
@@ -199,7 +199,7 @@ def test_every_kind_has_its_dimensions_here() -> None:
 
 
 @pytest.mark.parametrize(("kind", "name"), [(kind, name) for kind, names in DIMENSIONS.items() for name in names])
-def test_another_unit_is_refused_and_none_is_taken_for_ours(kind: str, name: str, files: dict[str, tuple[Path, Path]],
+def test_another_unit_is_refused_and_a_missing_unit_means_si(kind: str, name: str, files: dict[str, tuple[Path, Path]],
                                                             changed: Callable[..., Path]) -> None:
     unit = DIMENSIONS[kind][name]
     other = changed(kind, lambda file: file[name].attrs.modify("units", f"k{unit}"))
@@ -241,7 +241,7 @@ def test_the_commands_refuse_a_damaged_file_with_status_2(command: list[str], fi
     assert len(said.splitlines()) == 1 and "its checksum does not match" in said
 
 
-def test_what_is_no_file_is_refused_without_waiting(tmp_path: Path) -> None:
+def test_pipes_and_folders_are_refused_without_waiting(tmp_path: Path) -> None:
     """A pipe would keep a reader waiting forever."""
     os.mkfifo(tmp_path / "pipe")
     for name in ("pipe", ".", "missing.h5"):
@@ -264,7 +264,7 @@ def child_that(does: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     ("time.sleep(60)", "took more than 1 s"), ("os.abort()", "ended with status -6"), ("sys.exit(3)", "ended with status 3"),
     ("while True: pass", "took more than 1 s"), ("print('no JSON')", "is not a run written by granchain"),
     ("sys.stdin.readline(); print('[]')", "is not a run written by granchain")])
-def test_a_child_that_hangs_or_ends_is_said(does: str, words: str, files: dict[str, tuple[Path, Path]], tmp_path: Path,
+def test_a_child_that_hangs_or_ends_is_reported(does: str, words: str, files: dict[str, tuple[Path, Path]], tmp_path: Path,
                                             monkeypatch: pytest.MonkeyPatch) -> None:
     child_that(does, tmp_path, monkeypatch)
     monkeypatch.setattr(child, "_SECONDS", 1)

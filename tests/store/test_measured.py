@@ -20,7 +20,7 @@ SERIES = read_data(virtual_series_csv(CHAIN, 2, Sensors(noise=0.01)).encode(), s
 
 
 @pytest.mark.parametrize("measured", [CURVE, SERIES], ids=["curve", "series"])
-def test_it_opens_with_units_and_the_result_loads_as_before(measured: Measured | Series, tmp_path: Path) -> None:
+def test_measured_data_in_a_file_open_with_units_and_its_result_loads(measured: Measured | Series, tmp_path: Path) -> None:
     motion, curve = run(CHAIN, periods=0, record=1, samples=8), resonance_curve(CHAIN, [1800.0, 2000.0])
     for result, again in ((motion, load), (curve, load_curve)):
         path = save(result, tmp_path / "found.h5", measured)

@@ -72,14 +72,14 @@ def result(kind: str) -> Labelled:
     return RESULTS[kind]()  # type: ignore[no-any-return]
 
 
-def test_every_public_class_with_numbers_is_among_them() -> None:
+def test_every_public_class_with_numbers_has_tables() -> None:
     classes = {name for name in granchain_core.__all__ if present(name) == name and isinstance(getattr(granchain_core, name), type) and
                issubclass(getattr(granchain_core, name), Labelled)}
     assert classes == {kind.split()[0] for kind in RESULTS}
 
 
 @pytest.mark.parametrize("kind", RESULTS)
-def test_what_print_shows_is_the_summary_and_no_array(kind: str) -> None:
+def test_print_shows_the_summary_and_no_array(kind: str) -> None:
     shown = repr(result(kind)).splitlines()
     assert shown == [result(kind).heading(), *(f"  {line}" for line in result(kind).summary())]
 
@@ -195,7 +195,7 @@ def test_a_cell_shows_a_few_lines_and_no_numbers_by_the_thousand(kind: str) -> N
     assert len(shown["text/html"]) < 20_000 and "<details>" in shown["text/html"]
 
 
-def test_a_wrong_table_or_axis_is_told_with_what_there_is() -> None:
+def test_an_unknown_table_or_axis_is_named_with_the_known_ones() -> None:
     with pytest.raises(BadInput, match="Unknown table 'specials'; the nearest is 'special'"):
         result("Branch").to_xarray("specials")
     with pytest.raises(BadInput, match="Unknown axis 'beads'; the nearest is 'bead'"):
