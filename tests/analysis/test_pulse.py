@@ -194,7 +194,7 @@ def test_a_ripple_before_the_pulse_of_a_pressed_chain_is_not_the_pulse() -> None
     assert pressed.speed_beads_s[1:-1] == pytest.approx(free.speed_beads_s[1:-1], rel=0.01)
 
 
-def test_coarse_samples_are_told_by_the_error() -> None:
+def test_the_sampling_error_shows_coarse_samples() -> None:
     """The stated sampling errors bound the differences from a fine record."""
     fine = pulse(recorded("impact"))
     for samples in (200, 400, 1000):

@@ -15,7 +15,7 @@ CORE_FOLDERS, ALL_FOLDERS = by_folder(CORE), by_folder(ALL)
 
 
 @pytest.mark.parametrize("folder", CORE_FOLDERS)
-def test_the_core_knows_no_dashboard_and_no_command_line(folder: str) -> None:
+def test_the_core_imports_no_dashboard_and_no_command_line(folder: str) -> None:
     others = {"panel", "bokeh", "param", "app", "tornado", "argparse", "click", "typer"}
     assert [(path.name, one.module) for path in CORE_FOLDERS[folder] for one in imports_in(path)
             if one.module.split(".")[0] in others] == []

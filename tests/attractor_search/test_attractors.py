@@ -188,6 +188,6 @@ def test_too_many_states_are_refused() -> None:
         attractors(scene("sec2"), random_states=10**9)
 
 
-def test_the_listing_says_what_share_and_which_regime(many: list[Attractor]) -> None:
+def test_the_listing_has_share_and_regime(many: list[Attractor]) -> None:
     lines = list(listing(many))
     assert len(lines) == len(many) and lines[0].startswith("period 3") and "%) of random states" in lines[0]

@@ -13,7 +13,7 @@ POINTER_TESTS: dict[str, tuple[str, ...]] = {
         "test_points_appear_and_the_cheapest_setting_is_named",
     ),
     "test_branches_page": (
-        "test_hover_tells_and_a_click_loads_orbits_stable_and_unstable",
+        "test_hovering_shows_an_orbit_and_a_click_loads_it",
     ),
     "test_connection": (
         "test_a_page_whose_server_was_silent_goes_on",

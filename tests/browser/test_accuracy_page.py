@@ -44,7 +44,7 @@ def opened(page: Page) -> Locator:
     return sheet
 
 
-def test_the_status_line_says_what_is_asked_reached_and_how_long_it_took(visit: Visit) -> None:
+def test_the_status_line_has_requested_and_reached_accuracy_and_the_time(visit: Visit) -> None:
     """This is true of the current accuracy and of another one."""
     page = visit()
     line = page.get_by_role("button", name="asked")

@@ -77,7 +77,7 @@ def test_a_branch_grows_is_stopped_and_goes_on(visit: Visit) -> None:
     until(page, lambda: source(page, "branches", "orbits", large=False).get("x") == source(page, "branches", "orbits")["x"])
 
 
-def test_a_link_to_the_page_begins_by_itself_over_the_resonance_curve(visit: Visit) -> None:
+def test_a_link_to_the_page_starts_a_branch_over_the_resonance_curve(visit: Visit) -> None:
     page = visit(f"{SHORT}&page=branches")
     sheet = page.locator('[data-overlay="branches"]')
     page.wait_for_function(f"{ORBITS}?.x.length > 3", timeout=COMPILED)
@@ -106,7 +106,7 @@ def test_an_irregular_motion_is_reported_to_lie_on_no_branch(at: Visit) -> None:
     until(page, lambda: len(source(page, "branches", "curve").get("x", [])) > 50)
 
 
-def test_hover_tells_and_a_click_loads_orbits_stable_and_unstable(visit: Visit) -> None:
+def test_hovering_shows_an_orbit_and_a_click_loads_it(visit: Visit) -> None:
     page = visit("?v=1&scene=sec2&f=250")
     expect(page.get_by_role("button", name="asked")).to_contain_text("reached")
     sheet = opened(page)

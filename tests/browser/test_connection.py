@@ -154,7 +154,7 @@ def test_the_last_pictures_stand_grey_until_there_are_new_ones(restarted: Restar
     expect(restarted.page.locator("#last-pictures")).to_have_count(0)
 
 
-def test_knobs_start_and_speed_come_back(restarted: Restarted) -> None:
+def test_knobs_start_and_speed_are_restored(restarted: Restarted) -> None:
     page = restarted.page
     assert (value(page), value(page, "D")) == ("700", "90")
     expect(page.locator("select.start")).to_have_value("previous")
@@ -220,7 +220,7 @@ def test_knobs_moved_while_the_server_is_silent_are_restored(chromium: Browser, 
         page.wait_for_function(BELONGS, arg=float(value(page)))
 
 
-def test_a_page_that_has_lost_its_place_before_it_connects_comes_back(chromium: Browser, living: Server,
+def test_a_page_dropped_before_it_connects_reloads(chromium: Browser, living: Server,
                                                                       request: pytest.FixtureRequest) -> None:
     """Its token is used up here, so its websocket is refused like that of a page that made room for a newer one."""
     context = chromium.new_context(viewport={"width": 1280, "height": 800})

@@ -51,7 +51,7 @@ OVER = """() => [...document.querySelectorAll("#stage :is(.title, .peak, #key, #
   .filter((one) => getComputedStyle(one).visibility === "visible").length"""
 
 
-def test_before_the_first_picture_every_part_says_what_is_coming(chromium: Browser, prepared: str) -> None:
+def test_before_the_first_picture_every_part_announces_its_content(chromium: Browser, prepared: str) -> None:
     """No texts overlap: the titles appear together with the pictures."""
     page = chromium.new_page(reduced_motion="reduce")
     page.add_init_script(HOLDS_ITS_MESSAGES)

@@ -25,7 +25,7 @@ def test_arrow_keys_turn_a_knob_finely_and_with_shift_coarsely(at: Visit) -> Non
     assert float(knob(page, "f")) > 345
 
 
-def test_a_typed_value_is_taken_as_it_is_and_a_double_click_puts_the_knob_back(at: Visit) -> None:
+def test_a_typed_value_is_exact_and_a_double_click_resets_the_knob(at: Visit) -> None:
     page = at()
     type_into(page, "f", "615")
     assert knob(page, "f") == "615"
@@ -66,7 +66,7 @@ def test_kappa_is_shown_for_every_k_and_amplitude(at: Visit) -> None:
     expect(page.locator("#knobs .aside")).to_contain_text("none")
 
 
-def test_a_knob_that_turns_nothing_says_so(at: Visit) -> None:
+def test_a_knob_without_effect_says_so(at: Visit) -> None:
     """Without dissipation, there is no D in the equation."""
     page = at("?v=1&scene=impact")
     damping = page.locator('[data-knob="D"]')

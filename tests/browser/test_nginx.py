@@ -186,7 +186,7 @@ def test_a_visitor_always_reaches_the_same_process_and_not_all_the_same_one(port
     assert [reached(source) for source in sources] == first
 
 
-def test_browsers_are_sent_to_tls_and_told_to_stay(ports: tuple[int, int, int]) -> None:
+def test_browsers_are_redirected_to_tls_with_hsts(ports: tuple[int, int, int]) -> None:
     plain = answers(ports[2], "/?v=1&scene=sec2")
     assert plain.status == 301 and plain.headers["Location"] == "https://granchain.example.org/?v=1&scene=sec2"
     for path, status in (("/", 200), ("/liveness", 200), ("/metrics", 404), ("/nothing", 404)):

@@ -46,7 +46,7 @@ window.requestAnimationFrame = (act) => { window.asked += 1; return ask.call(win
 """
 
 
-def test_for_visitors_who_want_less_motion_the_chain_waits(visit: Visit) -> None:
+def test_with_reduced_motion_the_chain_is_paused(visit: Visit) -> None:
     page = visit(reduced_motion="reduce", script=FRAMES_ASKED)
     settled(page)
     page.wait_for_function(STANDS_STILL)

@@ -66,7 +66,7 @@ def test_a_map_has_its_bifurcation_curves(tmp_path: Path, capsys: pytest.Capture
     assert "tension = cut" in capsys.readouterr().err
 
 
-def test_curve_prints_what_it_writes_into_its_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_curve_prints_the_content_of_its_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "curve.h5"
     words = ["curve", "sec2", "--from", "300", "--to", "400", "--points", "3", "--json", "--out", str(file)]
     assert main(words) == 0
@@ -285,7 +285,7 @@ def test_the_json_of_a_curve_has_the_numbers_behind_a_regime(capsys: pytest.Capt
     assert abs(said["lyapunov"][0]) < 0.01 and said["lyapunov_periods"] >= 220
 
 
-def test_the_json_of_a_run_says_what_was_run(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_json_of_a_run_has_version_digest_and_lengths(capsys: pytest.CaptureFixture[str]) -> None:
     """With the version and the scene's hash, a line of JSON can be cited without the command that produced it."""
     chain = scene("sec2").evolve(N=2, f=2000.0)
     words = ["--set", "N=2", "--set", "f=2000", "--periods", "3", "--record", "2", "--samples", "8"]

@@ -125,7 +125,7 @@ def test_with_one_core_nothing_compiles_beside(monkeypatch: pytest.MonkeyPatch) 
         assert compilers() == []
 
 
-def test_warm_lists_what_is_compiled(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_warm_lists_the_compiled_pieces(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.setattr(warm, "CACHE_FOLDER", tmp_path)
     warm._marker(tmp_path, warm.structure(scene("sec2")), FIXED_STEP_KERNELS).touch()
     (tmp_path / "a.nbc").write_bytes(b"12")

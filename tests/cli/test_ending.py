@@ -137,7 +137,7 @@ def test_the_process_of_hard_cases_ends_with_a_killed_server(started: Callable[.
     assert command.left() == []
 
 
-def test_a_second_signal_ends_at_once_what_does_not_listen(started: Callable[..., Command],
+def test_a_second_signal_ends_a_command_that_ignores_the_first(started: Callable[..., Command],
                                                                tmp_path: Path) -> None:
     """The sentence on stderr says where the finished part is kept."""
     (tmp_path / "out.h5.blocks").mkdir()

@@ -89,7 +89,7 @@ def test_without_a_browser_one_sentence_says_so(tmp_path: Path, monkeypatch: pyt
     assert "drawn by Chromium or Chrome, and neither is on the PATH" in told and told.count("\n") == 1
 
 
-def test_measured_points_are_in_the_table_and_how_they_were_read_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_measured_points_are_in_the_table_with_their_interpretation(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     data, out = tmp_path / "shaker.csv", tmp_path / "a.csv"
     data.write_text("frequency_Hz,displacement_um\n60,7.5\n90,7\n")
     assert main(["figure", "5", "--data", str(data), "--out", str(out)]) == 0

@@ -20,7 +20,7 @@ def curve() -> list[CurvePoint]:
 
 
 @pytest.mark.long
-def test_the_peaks_of_section_2_and_what_lies_between(curve: list[CurvePoint]) -> None:
+def test_the_peaks_and_valleys_of_section_2_have_the_papers_names(curve: list[CurvePoint]) -> None:
     """The paper has 1:1 to 1:5. The 1:5 peak is narrower than this grid's step, so only the others are expected."""
     shown: list[list[dict]] = []
     host = FakeHost()

@@ -53,7 +53,7 @@ def test_an_error_of_a_part_is_shown_to_the_visitor(dashboard: Dashboard, caplog
     told_fault(dashboard, caplog)
 
 
-def test_a_visitor_who_leaves_ends_everything_although_one_end_fails(dashboard: Dashboard, caplog: pytest.LogCaptureFixture) -> None:
+def test_the_end_of_a_session_ends_everything_although_one_step_fails(dashboard: Dashboard, caplog: pytest.LogCaptureFixture) -> None:
     ended: list[int] = []
     errors = METRICS.counted["errors"]
     for number in range(3):

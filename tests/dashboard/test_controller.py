@@ -55,7 +55,7 @@ def test_a_measurement_is_read_in_the_background(dashboard: Dashboard, text: str
     assert all(name.startswith("files") for name in threads) and bool(threads) == (len(text) <= LARGEST_UPLOAD)
 
 
-def test_the_effects_panel_is_told_the_slot_of_each_effect_and_the_slots_of_none(dashboard: Dashboard,
+def test_the_effects_panel_receives_the_slot_of_each_effect(dashboard: Dashboard,
                                                                                 monkeypatch: pytest.MonkeyPatch) -> None:
     """Its table shows the slot's type next to each switch; with a separate list, it would miss a new effect."""
     monkeypatch.setattr(COMPILER, "has", lambda *_: False)
@@ -108,7 +108,7 @@ def test_a_reconnected_page_has_its_pause_back_and_the_rest_from_its_link(dashbo
     ("", ""), (f"&N={MOST_BEADS_IN_LINK}&start=previous", ""),
     (f"&N={MOST_BEADS_IN_LINK + 1}&start=previous", ", but the motion starts from rest"),
     (f"&N={MOST_BEADS_IN_LINK + 1}&drive=rest&strike=1", ""), ("&mode=live", ", but the live run has started again")])
-def test_a_reconnected_page_says_what_its_link_does_not_bring_back(dashboard: Dashboard, query: str,
+def test_a_reconnected_page_names_state_that_its_link_lacks(dashboard: Dashboard, query: str,
                                                                    different: str) -> None:
     """A settled motion starts from the same state as before, unless its chain is too long for a link."""
     dashboard.received({"do": "go", "query": f"v=1&scene=sec2{query}"})

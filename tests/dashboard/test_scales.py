@@ -56,7 +56,7 @@ def test_a_digest_is_of_the_physics_and_of_the_range_of_f() -> None:
     assert digest_of(replace(chain, name="mine", title="Mine", look_at="", paper="")) == digest_of(chain)
 
 
-def test_the_scale_of_a_scene_is_what_its_motion_needs() -> None:
+def test_the_scale_of_a_scene_fits_its_motion() -> None:
     """It is computed again at every frequency; the file keeps three digits."""
     told = tomllib.loads(FILE.read_text(encoding="utf-8"))["sec2"]
     told.pop(DIGEST)

@@ -47,7 +47,7 @@ _LISTS = ("tests/cli/test_command_lists.py::test_a_command_has_an_example[beads]
           "tests/cli/test_json_keys.py::test_every_command_has_a_table_or_no_json")
 
 
-def test_the_tests_that_know_every_command_know_the_new_one(tree: Path) -> None:
+def test_the_tests_over_all_commands_include_the_new_one(tree: Path) -> None:
     printed = follow(tree, "-m", "pytest", "-p", "no:cacheprovider", *_LISTS,
                      "tests/cli/test_json_keys.py::test_the_keys_are_those_of_the_page[beads]")
     assert printed.startswith("....") and "F" not in printed

@@ -123,7 +123,7 @@ def test_the_new_page_fits_into_the_dashboard(tree: Path) -> None:
     assert " passed" in printed and "deselected" in printed
 
 
-def test_the_new_page_keeps_to_what_every_page_does(tree: Path) -> None:
+def test_the_new_page_passes_the_tests_of_every_page(tree: Path) -> None:
     """These tests need no browser; they take the page from the table of pages, without a change."""
     printed = follow(tree, "-m", "pytest", "-p", "no:cacheprovider", str(Path("tests", "pages", "test_every_page.py")),
                      "-k", "transmission", own_kernels=False)
@@ -131,7 +131,7 @@ def test_the_new_page_keeps_to_what_every_page_does(tree: Path) -> None:
 
 
 @pytest.mark.long
-def test_a_browser_shows_what_the_new_page_says_and_draws(tree: Path) -> None:
+def test_a_browser_shows_words_and_figure_of_the_new_page(tree: Path) -> None:
     """The test written by the page passes; no kernel is edited, so it uses those of the repository."""
     printed = follow(tree, "-m", "pytest", "-p", "no:cacheprovider",
                      str(Path("tests", "browser", "test_transmission_page.py")), own_kernels=False)

@@ -63,7 +63,7 @@ def test_the_new_effect_passes_the_tests_the_page_writes(tree: Path) -> None:
 
 @pytest.mark.long
 @pytest.mark.parametrize("made", ["tree", "quadratic"])
-def test_the_tests_that_know_every_scene_and_knob_know_the_new_ones(made: str, request: pytest.FixtureRequest) -> None:
+def test_the_tests_over_all_scenes_and_knobs_include_the_new_ones(made: str, request: pytest.FixtureRequest) -> None:
     """The tests of README, model page, share links, scales and gallery pass once the tool has been run."""
     tree = request.getfixturevalue(made)
     for part in ("tests/docs", "tests/session", "tests/dashboard", "tests/host.py", "tests/headless_dashboard.py", "tests/waiting.py", "docs", "tools", "CHANGELOG.md", "CONTRIBUTING.md"):
@@ -78,7 +78,7 @@ def test_the_tests_that_know_every_scene_and_knob_know_the_new_ones(made: str, r
     assert " passed" in printed and "failed" not in printed
 
 
-def test_slopes_of_forces_know_the_new_effect(tree: Path) -> None:
+def test_slopes_of_forces_include_the_new_effect(tree: Path) -> None:
     """v̇ of every bead, which enters Ḟ, agrees with the difference of velocities slightly later and earlier."""
     printed = follow(tree, "-c", """
 import numpy as np
@@ -104,7 +104,7 @@ print(np.abs(found - exact).max() / np.abs(exact).max())
     assert float(printed) < 1e-6  # h² of the difference, and 1e-16/h
 
 
-def test_vectors_that_do_not_know_the_new_effect_refuse_it(tree: Path) -> None:
+def test_vector_kernels_without_the_new_effect_refuse_it(tree: Path) -> None:
     """It is unmarked, or marked for kernels other than those of dop853-root: a motion without the drag would be wrong.
     """
     file = tree / "granchain_core" / "kernels" / "effects" / "drag.py"

@@ -211,7 +211,7 @@ def test_files_carry_status_start_and_warnings(tmp_path) -> None:  # type: ignor
         assert json.loads(file.attrs["warnings"]) == warnings(result)
 
 
-def test_the_command_line_refuses_what_does_not_fit(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_command_line_refuses_runs_beyond_the_budget(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", "sec2", "--set", "f=1", "--budget", "0.001", "--json"]) == 2
     told = capsys.readouterr()
     outcome = json.loads(told.out)
@@ -219,7 +219,7 @@ def test_the_command_line_refuses_what_does_not_fit(capsys: pytest.CaptureFixtur
     assert outcome["message"] in told.err and "the budget is 0.001 s" in told.err
 
 
-def test_the_command_line_says_what_failed_where_and_what_it_had_cost(capsys: pytest.CaptureFixture[str],
+def test_the_command_line_reports_place_and_cost_of_a_failure(capsys: pytest.CaptureFixture[str],
                                                                       monkeypatch: pytest.MonkeyPatch) -> None:
     """If numbers fail, here immediately by an infinite stiffness times zero overlap, there is one object with the
     outcome.

@@ -38,7 +38,7 @@ def test_the_force_jumps_where_the_driver_starts_against_a_bead() -> None:
     assert found.maxima[0] == pytest.approx(jump, rel=1e-12)
 
 
-def test_a_touch_shorter_than_a_step_is_seen_where_and_as_hard_as_it_is() -> None:
+def test_time_and_force_of_a_touch_shorter_than_a_step_are_right() -> None:
     """The driver's turning point is a millionth of A0 beyond a resting bead, whose wall is far: they meet at sin θ = 1
     − 1e-6, with the speed 2πf A0 cos θ.
     """
@@ -95,7 +95,7 @@ def slice_of(kind: str, count: int) -> list[Verdict]:
 
 @pytest.mark.long
 @pytest.mark.parametrize(("kind", "count"), [("run", 12), ("curve", 3), ("map", 3)])
-def test_largest_forces_are_within_what_is_stated_of_them(kind: str, count: int) -> None:
+def test_largest_forces_are_within_their_stated_errors(kind: str, count: int) -> None:
     """At most one of these forces is not, and none is wrong by more than 1e-3 plus ten times the stated error. The
     rates for thousands of scenes are in docs/accuracy.md (`python -m tests.numerics.forces`).
     """

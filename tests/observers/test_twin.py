@@ -75,7 +75,7 @@ def test_each_verdict_has_its_condition() -> None:
     assert replace(found, orbit=None).verdict == "drifts"  # the multiplier is not known
 
 
-def test_with_foundation_an_observer_that_knows_nothing_finds_its_chain() -> None:
+def test_with_foundation_an_observer_that_starts_at_rest_synchronises() -> None:
     found = twin(FOUNDED, rest(FOUNDED), 100)
     assert found.verdict == "synchronises"
     assert found.distance[0] > 0.1 and found.distance[-1] < 1e-8

@@ -73,7 +73,7 @@ def test_special_points_are_enclosed_narrowly_and_their_multipliers_are_critical
             assert (s.multiplier.real > 0) == (s.kind == "fold")
 
 
-def test_stability_is_what_the_disturbed_chain_does(folded: Branch) -> None:
+def test_a_perturbed_chain_behaves_as_its_stability_says(folded: Branch) -> None:
     """On both sides of each change of stability, it returns to the orbit if this is stable, and leaves it if not."""
     chosen = {}
     for place, s in enumerate(t for t in folded.special if t.kind != "grazing"):

@@ -14,7 +14,7 @@ pytestmark = pytest.mark.quick
 
 
 @pytest.mark.parametrize("place", [0, 3])
-def test_displacements_and_w_have_to_come_back(place: int) -> None:
+def test_the_residual_covers_displacements_and_w(place: int) -> None:
     """Each is relative to its own largest value: with a change of 1e-3 in one w, a state is not on an orbit, even if
     the displacements return.
     """

@@ -106,7 +106,7 @@ def test_a_period_out_of_range_is_refused() -> None:
         granchain_core.orbit(scene("sec2"), period=99)
 
 
-def test_the_state_of_an_orbit_comes_back_after_its_period() -> None:
+def test_the_state_of_an_orbit_returns_after_its_period() -> None:
     orbit = granchain_core.orbit(scene("sec2").evolve(f=1130.0))
     stroboscopic_map = StroboscopicMap(orbit.scene, 3)
     x = stroboscopic_map.inner(stroboscopic_map.engine.scaled.from_si(orbit.state))

@@ -66,7 +66,7 @@ def test_where_fixed_steps_would_be_slow_the_flow_takes_their_place(whole: Branc
 
 
 @pytest.mark.parametrize("wrong", [1e-6, 1e-4])
-def test_a_wrong_quick_map_makes_no_wrong_orbit(whole: Branch, wrong: float, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_orbits_are_right_although_the_quick_map_is_wrong(whole: Branch, wrong: float, monkeypatch: pytest.MonkeyPatch) -> None:
     """Its defect is measured with the exact map, and only the exact residual decides whether an orbit is accepted."""
     end = BranchEquations.quick_end
     monkeypatch.setattr(BranchEquations, "quick_end",

@@ -49,7 +49,7 @@ def test_a_missing_saltation_shows_in_the_columns_and_not_in_the_determinant() -
     assert np.abs(difference - wrong).max() > 0.05 * np.abs(right.derivative).max()
 
 
-def test_the_derivative_by_saltation_knows_its_limits() -> None:
+def test_the_derivative_by_saltation_refuses_tsujis_law() -> None:
     stroboscopic_map = StroboscopicMap(scene("sec2").evolve(dissipation="tsuji"), 1)
     with pytest.raises(BadInput, match="no term for the change of the damping with the overlap"):
         stroboscopic_map.derivative_by_saltation(np.zeros(22))

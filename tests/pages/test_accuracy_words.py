@@ -37,7 +37,7 @@ def test_failed_rows_keep_their_sentence_and_are_json() -> None:
         ("rk4", "It was not done."), ("dop853", "Its numbers are not finite.")]
 
 
-def test_the_reference_is_told_with_its_agreement() -> None:
+def test_the_words_of_the_reference_have_its_agreement() -> None:
     found = WorkPrecision(scene("sec2"), "one", "two")
     assert described_reference(found)["agreement_words"] == "The second reference is computed last."
     found.agreement = 7.1e-12

@@ -31,7 +31,7 @@ def row(tab: PageUnderTest, name: str) -> dict[str, Any]:
     return next(effect for effect in tab.state["panel"]["effects"] if effect["name"] == name)
 
 
-def test_effects_are_measured_one_after_the_other_while_somebody_looks(tab: PageUnderTest) -> None:
+def test_effects_are_measured_one_after_the_other_while_the_tab_is_open(tab: PageUnderTest) -> None:
     tab.set_visible()
     assert [submitted.pool for submitted in tab.submitted] == ["measurements"] and row(tab, MEASURED[0])["state"] == "measuring …"
     for _ in MEASURED:

@@ -106,13 +106,13 @@ def test_the_host_of_these_tests_is_called_as_the_dashboard_is() -> None:
         assert isinstance(real, property) or list(signature(ours).parameters) == list(signature(real).parameters), name
 
 
-def test_nothing_begins_while_nobody_looks(tested: PageUnderTest) -> None:
+def test_no_work_begins_while_the_page_is_closed(tested: PageUnderTest) -> None:
     hooks(tested.page)
     tested.run_callbacks()
     assert tested.submitted == []
 
 
-def test_nothing_begins_after_somebody_has_looked_away(tested: PageUnderTest) -> None:
+def test_no_work_begins_after_the_page_was_closed(tested: PageUnderTest) -> None:
     tested.set_visible()
     tested.set_visible(False)
     tested.submitted.clear()
@@ -133,7 +133,7 @@ def test_a_page_opened_before_the_first_picture_does_not_fail(tested: PageUnderT
 @pytest.mark.parametrize("message", [{}, {name: {"none": "of them"} for name in (
     "value", "name", "number", "case", "figure", "bead", "phase", "place", "arm", "period", "question", "values", "step")}],
     ids=["bare", "nonsense"])
-def test_a_message_without_sense_is_answered_refused_in_a_sentence_or_ignored(tested: PageUnderTest,
+def test_a_malformed_message_is_answered_refused_or_ignored(tested: PageUnderTest,
                                                                               message: dict[str, Any]) -> None:
     """A page that does not answer leaves the session as it was."""
     tested.set_visible()

@@ -44,7 +44,7 @@ def interrupted(monkeypatch: pytest.MonkeyPatch, tab: PageUnderTest, cells: int)
         tab.compute()
 
 
-def test_the_map_is_computed_once_while_somebody_looks(tab: PageUnderTest) -> None:
+def test_the_map_is_computed_once_while_the_tab_is_open(tab: PageUnderTest) -> None:
     tab.set_visible()
     assert [submitted.pool for submitted in tab.submitted] == ["long"] and tab.last("map-status")["status"] == "waiting"
     tab.compute()

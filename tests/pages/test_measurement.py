@@ -184,7 +184,7 @@ def test_bars_are_errors_or_the_extremes_of_repeats() -> None:
     assert [measured_columns(repeated, 0.5)[name] for name in ("low", "high")] == [[6.0], [8.0]]
 
 
-def test_the_sample_file_is_read_and_says_what_it_is(dashboard: Dashboard) -> None:
+def test_the_sample_file_is_read_and_marked_as_not_measured(dashboard: Dashboard) -> None:
     found = read_data((SAMPLES / "curve.csv").read_bytes())
     assert isinstance(found, Measured) and found.note.startswith("Not measured: computed by granchain")
     assert found.repeats is not None and found.repeats.max() == 3

@@ -23,7 +23,7 @@ def numbers(page_of: Callable[[str], PageUnderTest]) -> PageUnderTest:
     return page_of("numbers")
 
 
-def test_the_probe_draws_every_picture_while_somebody_looks(probe: PageUnderTest) -> None:
+def test_the_probe_draws_every_picture_while_the_page_is_open(probe: PageUnderTest) -> None:
     probe.deliver_picture()
     assert probe.sent == []
     probe.set_visible()

@@ -206,7 +206,7 @@ def opened(page: Page) -> StabilityPage:
     return view
 
 
-def test_nothing_is_computed_while_nobody_looks(page: Page, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_nothing_is_computed_while_the_page_is_closed(page: Page, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "analyse", lambda *_: pytest.fail("computed"))
     view = StabilityPage(page, page.view)
     view.picture_ready(picture())

@@ -27,7 +27,7 @@ def lines(header: str, rows: int = 12) -> str:
     return header + "\n" + "".join(",".join(str(i + 1) for _ in range(width)) + "\n" for i in range(rows))
 
 
-def test_the_first_line_says_what_a_file_is_and_in_which_units(tmp_path: Path) -> None:
+def test_the_first_line_gives_quantities_and_units_of_a_file(tmp_path: Path) -> None:
     series = read_experiment(written(tmp_path, lines("time (ms),velocity (mm/s),input_force_mN")))
     assert isinstance(series, Series) and series.output_force is None
     assert series.time[1] == pytest.approx(1e-3) and series.velocity is not None and series.velocity[0] == pytest.approx(1e-3)

@@ -122,7 +122,7 @@ def test_a_wrong_grid_is_one_clear_sentence(x: tuple, y: tuple, words: str) -> N
 # Files
 
 
-def test_a_map_comes_back_and_xarray_labels_it(found: ParameterMap, tmp_path: Path) -> None:
+def test_a_map_is_read_back_and_labelled_in_xarray(found: ParameterMap, tmp_path: Path) -> None:
     file = save_parameter_map(found, tmp_path / "map.h5")
     again = load_parameter_map(file)
     assert again.cells.tobytes() == found.cells.tobytes() and again.grid.digest == found.grid.digest

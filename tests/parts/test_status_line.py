@@ -37,7 +37,7 @@ def test_without_a_stated_error_no_error_of_forces_is_shown(picture: Settled) ->
     assert accuracy_words(run) == "asked 1e-6 · not estimated"
 
 
-def test_the_multiplier_says_what_becomes_of_the_slowest_part_of_a_disturbance() -> None:
+def test_the_hint_of_a_multiplier_describes_the_slowest_decay() -> None:
     """It says nothing about a whole disturbance: the map's derivative is not normal, and the rest may grow at first."""
     assert multiplier_words(0.36, 1) == ("|μ| 0.36: the slowest-decaying part of a small disturbance shrinks to 36 % in every "
                                          "drive period; below 1 the orbit is stable.")

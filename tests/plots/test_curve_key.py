@@ -35,7 +35,7 @@ def labels(plot: object, name: str) -> list[str]:
 
 @pytest.mark.parametrize("theme", THEMES)
 @pytest.mark.parametrize("starts", [("rest",), ("up", "down"), ("down", "up", "rest"), ("up", "up")])
-def test_a_picture_says_what_each_line_and_mark_is_once(starts: tuple[str, ...], theme: str) -> None:
+def test_a_picture_explains_each_line_and_mark_once(starts: tuple[str, ...], theme: str) -> None:
     plot = curve([swept(start) for start in starts], THEMES[theme])
     assert labels(plot, "lines") == [f"{style.words}: {style.line_words}" for start, style in SWEEPS.items() if start in starts]
     assert labels(plot, "regimes") == ["period 1", "period 2", "period 5+"]

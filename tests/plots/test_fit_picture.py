@@ -48,7 +48,7 @@ def test_a_series_shows_both_forces() -> None:
     assert [item.label.value for item in shown["data"].legend[0].items] == ["input force", "output force"]
 
 
-def test_features_stand_upright_beside_what_the_model_has() -> None:
+def test_features_are_drawn_beside_those_of_the_model() -> None:
     found = fit(CHAIN, FeatureTarget([Feature(1500.0, "1:1 resonance", 1, "")], np.linspace(800.0, 2400.0, 9), 50.0), DAMPING,
                 initial_points=2, intervals=False)
     shown = plots(drawn(found, THEMES["projector"]))

@@ -115,7 +115,7 @@ def with_fine_knots(law: str) -> Driven:
 
 @pytest.mark.parametrize("accuracy", [1e-6, 1e-8, 1e-10])
 @pytest.mark.parametrize("law", FORMULAS)
-def test_errors_of_the_largest_input_force_hold_what_knots_leave_out_of_a_formula(law: str, accuracy: float) -> None:
+def test_the_error_of_the_largest_input_force_includes_that_of_the_knots(law: str, accuracy: float) -> None:
     """Stated errors cover the difference from 16 times as many knots, where the velocity error is 1/256 as large."""
     found, fine = drive(CHAIN.evolve(dissipation=law, accuracy=accuracy), FORMULAS[law]()), with_fine_knots(law)
     wrong = abs(found.max_input_force / fine.max_input_force - 1.0)
@@ -274,7 +274,7 @@ def test_invalid_drives_are_refused_with_a_sentence(words: list[str], sentence: 
     assert sentence in capsys.readouterr().err
 
 
-def test_finer_knots_and_a_shift_leave_the_motion_as_it_is() -> None:
+def test_finer_knots_and_a_shift_do_not_change_the_motion() -> None:
     """The given knots are among the new ones, so the coarser signals used for error estimates still fit."""
     time = np.linspace(0.0, 0.004, 41)
     given = sampled("velocity", time)

@@ -109,7 +109,7 @@ def test_frequencies_may_come_from_a_generator() -> None:
     assert [point.frequency for point in curve.points] == [1900.0, 2000.0]
 
 
-def test_the_file_of_another_result_is_said_to_be_one(tmp_path: Path) -> None:
+def test_the_file_of_another_result_is_named_as_such(tmp_path: Path) -> None:
     path = save_curve(resonance_curve(CHAIN, [2000.0]), tmp_path / "curve.h5")
     with pytest.raises(BadInput, match=r"reads runs, and .* holds another result: its tables are curve; "
                                        r"granchain_core\.store\.load_curve reads"):

@@ -32,7 +32,7 @@ def test_every_line_is_an_exact_version_with_hashes(lock: str) -> None:
 
 
 @pytest.mark.parametrize("lock", LOCKS)
-def test_what_pyproject_asks_for_is_locked_within_its_bounds(lock: str) -> None:
+def test_dependencies_of_pyproject_are_locked_within_their_bounds(lock: str) -> None:
     locked = dict(re.match(r"([a-z0-9._-]+)==(\S+)", line).groups() for line in lines_of(lock))  # type: ignore[union-attr]
     for wanted in LOCKS[lock]:
         name, least, most = re.match(r"([a-z0-9._-]+)>=([\d.]+)(?:,<([\d.]+))?", wanted).groups()  # type: ignore[union-attr]

@@ -114,7 +114,7 @@ class Clock:
         return self.now
 
 
-def test_compiling_is_no_part_of_what_a_computation_takes() -> None:
+def test_the_time_of_a_computation_excludes_compiling() -> None:
     """Kernels that call other kernels start the compiler within the compiler. That time counts once."""
     clock = Clock()
     compiler = CompilerClock(clock)
@@ -132,7 +132,7 @@ def test_compiling_is_no_part_of_what_a_computation_takes() -> None:
     assert spent.seconds == 2.5
 
 
-def test_numba_tells_when_it_compiles() -> None:
+def test_compiling_is_detected_by_events_of_numba() -> None:
     before = COMPILER_CLOCK.seconds
     numba.njit(lambda x: np.sort(x)[0])(np.ones(3))
     assert COMPILER_CLOCK.seconds > before

@@ -35,7 +35,7 @@ def test_equal_beads_move_the_same_driven_from_either_end() -> None:
 
 
 @pytest.mark.parametrize("end", ["first", "last"])
-def test_what_is_thrown_counts_from_the_driver_and_what_is_heavy_from_the_first_bead(end: str) -> None:
+def test_start_velocities_count_from_the_driver_and_masses_from_the_first_bead(end: str) -> None:
     chain = replace(scene("impact-train").evolve(N=6, site=2, impurity=0.5, strike=0.02, end=end),
                     start_velocity=((3, -0.01),))
     assert chain.velocities_at_start().tolist() == [0.02, 0.0, -0.01, 0.0, 0.0, 0.0]

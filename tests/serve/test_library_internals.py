@@ -32,7 +32,7 @@ def test_missing_names_of_libraries_are_listed() -> None:
 
 
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: row.owner)
-def test_the_log_says_at_the_start_what_is_missing_and_what_happens_without_it(
+def test_the_log_lists_missing_names_and_their_consequences_at_the_start(
         row: Internal, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture) -> None:
     monkeypatch.setattr(library_internals, "tables", lambda: {"": (row,)})
     with caplog.at_level(logging.WARNING, "granchain"):

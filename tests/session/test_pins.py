@@ -20,7 +20,7 @@ RNG = np.random.default_rng(14)
 START = State(1e-6 * RNG.standard_normal(11), 1e-2 * RNG.standard_normal(11))
 
 
-def test_a_start_comes_back_to_the_last_bit() -> None:
+def test_a_pinned_start_is_restored_to_the_last_bit() -> None:
     back = read_initial_state(initial_state_text(START), SHOWN)
     assert np.array_equal(back.displacement, START.displacement) and np.array_equal(back.velocity, START.velocity)
     assert back.phase == 0.0 and initial_state_text(None) == ""

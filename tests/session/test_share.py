@@ -26,7 +26,7 @@ MEANINGS = json.loads(FILE.read_text(encoding="utf-8"))
 @given(name=st.sampled_from(scene_names()), f=st.floats(0.1, 1e6), amplitude=st.floats(1e-12, 1e-4),
        damping=st.floats(0.0, 1e6), stiffness=st.floats(0.0, 1e10), beads=st.integers(1, 10_000),
        law=st.sampled_from(["linear", "tsuji", "kuwabara-kono", "none"]), mode=st.sampled_from(VIEW_VALUES["mode"]))
-def test_a_link_brings_back_exactly_what_was_shared(name: str, f: float, amplitude: float, damping: float,
+def test_a_link_restores_exactly_the_shared_state(name: str, f: float, amplitude: float, damping: float,
                                                     stiffness: float, beads: int, law: str, mode: str) -> None:
     shown = scene(name).evolve(f=f, A0=amplitude, D=damping, k=stiffness, N=beads, dissipation=law)
     back, fields, refused = decode(encode(shown, {"mode": mode}))
@@ -34,7 +34,7 @@ def test_a_link_brings_back_exactly_what_was_shared(name: str, f: float, amplitu
     assert fields.get("mode", VIEW_VALUES["mode"][0]) == mode
 
 
-def test_a_link_that_was_sent_once_means_today_what_it_meant() -> None:
+def test_links_of_earlier_versions_keep_their_meaning() -> None:
     """The link is literal on purpose: if a preset, a default or a name changes, so do links already in use."""
     shown, fields, refused = decode(
         "v=1&scene=rig&f=72.5&A0=6e-06&D=12.5&k=1500.0&N=9&F0=0.25&wall=rigid&dissipation=tsuji&tension=cut"
@@ -51,7 +51,7 @@ def test_a_link_that_was_sent_once_means_today_what_it_meant() -> None:
 
 
 @pytest.mark.parametrize("name", MEANINGS)
-def test_a_link_to_a_scene_as_it_is_means_what_it_meant(name: str) -> None:
+def test_a_link_to_a_preset_keeps_its_meaning(name: str) -> None:
     """The file has had a row since the scene was added; κ follows from k and is known up to rounding.
 
     A knob of `sec2` that was added later has its default in every link.
@@ -64,11 +64,11 @@ def test_a_link_to_a_scene_as_it_is_means_what_it_meant(name: str) -> None:
                for key, value in said.items())
 
 
-def test_every_scene_has_said_what_its_link_means() -> None:
+def test_every_preset_has_a_link_with_a_recorded_meaning() -> None:
     assert set(MEANINGS) == set(scene_names())  # otherwise run: python -m tools.update
 
 
-def test_a_link_with_kappa_means_the_k_it_meant() -> None:
+def test_a_link_with_kappa_keeps_its_k() -> None:
     shown, _, refused = decode("v=1&scene=rig&A0=6e-06&kappa=0.002")
     assert refused == [] and shown.A0 == 6e-6
     assert shown.k == pytest.approx(60059.142449055784, rel=1e-12)
@@ -87,7 +87,7 @@ def test_an_unknown_scene_or_version_is_reported_and_the_first_scene_shown() -> 
 
 
 @given(chosen=st.fixed_dictionaries({name: st.sampled_from(values) for name, values in VIEW_VALUES.items()}))
-def test_every_view_setting_comes_back_into_its_attribute(chosen: dict[str, str]) -> None:
+def test_every_view_setting_is_restored_from_a_link(chosen: dict[str, str]) -> None:
     """Settings of the link replace those of the session; `look`, which the browser adds, is read but not written."""
     left, back = Session(), Session(mode="live", scale="fit", speed=5.0, energy_account=True, theme="dark", curves="none")
     left.apply_view(chosen)
@@ -176,7 +176,7 @@ def test_a_speed_is_one_of_the_list(wrong: object) -> None:
     assert session.speed == SPEEDS[-1]
 
 
-def test_every_choice_of_curves_comes_back_and_no_other() -> None:
+def test_every_choice_of_curves_is_restored_from_a_link() -> None:
     for chosen in ([], ["rest"], ["down", "up"], ["features", "down", "up", "rest"]):
         _, fields, refused = decode(encode(scene("sec2"), {"curves": joined(chosen)}))
         assert refused == [] and {*fields["curves"].split(".")} == ({*chosen} or {"none"})

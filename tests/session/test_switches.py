@@ -17,7 +17,7 @@ from granchain_core.precompile.warm import compile_piece, structure
 @pytest.mark.parametrize(("shown", "name"), [  # without damping, there is no tension to cut; see below
     (shown, name) for shown in scene_names() for name, effect in SWITCHES.items()
     if name != ACCOUNT_SWITCH and effect.possible(scene(shown))])
-def test_a_switch_changes_what_is_compiled_and_comes_back(name: str, shown: str) -> None:
+def test_a_switch_changes_the_compiled_structure_and_can_be_undone(name: str, shown: str) -> None:
     session = Session(scene=scene(shown))
     before = structure(session.scene)
     was = present(name, session.scene, account=False)
@@ -39,7 +39,7 @@ def test_a_switch_turned_back_restores_the_visitors_values() -> None:
     assert (session.scene.dissipation, session.scene.D) == ("tsuji", 40.0)
 
 
-def test_another_scene_forgets_what_was_remembered() -> None:
+def test_another_scene_drops_remembered_values() -> None:
     session = Session(scene=scene("sec2").evolve(F0=7.0))
     session.switch("preload", False)
     session.choose("sec2")

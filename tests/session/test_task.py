@@ -231,7 +231,7 @@ def test_compiling_is_reported_and_ends_with_the_job(host: SayingHost, task: Tas
     assert host.failures == []
 
 
-def test_a_queue_works_on_so_many_at_once_and_keeps_what_they_return() -> None:
+def test_a_queue_limits_its_concurrent_work_and_keeps_the_results() -> None:
     pool, entered, leave = WorkerPool("test", 2), threading.Semaphore(0), threading.Event()
 
     def work(number: int) -> int:

@@ -24,7 +24,7 @@ def test_the_evidence_of_a_curve_is_read_back(tmp_path: Path) -> None:
         assert after.regime == before.regime and after.regime.periods_run > 0
 
 
-def test_the_evidence_of_every_regime_comes_back(tmp_path: Path) -> None:
+def test_the_evidence_of_every_regime_is_read_back(tmp_path: Path) -> None:
     """The evidence decides between quasi-periodic and unsettled, and tells how the orbit of a slow motion was found."""
     regimes = (
         Regime("quasi-periodic", None, None, None, 900, (1e-4, 2e-3), return_distance=0.01, return_limit=0.15,
@@ -54,7 +54,7 @@ def test_a_file_without_evidence_opens(tmp_path: Path, missing: tuple[str, ...])
     assert read == pytest.approx(given, rel=1e-15)
 
 
-def test_how_an_orbit_was_found_comes_back_and_is_not_known_from_an_older_file(tmp_path: Path) -> None:
+def test_the_way_an_orbit_was_found_is_read_back_and_unknown_in_older_files(tmp_path: Path) -> None:
     regimes = (Regime("periodic", 1, 0.5, 1e-7, 90), Regime("periodic", 2, 0.97, 1e-7, 400, followed=True, followed_by="extrapolation"),
                Regime("chaotic", None, None, None, 900, (0.2, 1e-3), lyapunov_periods=200))
     points = [replace(point, regime=regime) for point, regime in zip(CURVE.points, regimes, strict=True)]

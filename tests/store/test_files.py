@@ -26,7 +26,7 @@ def result():  # type: ignore[no-untyped-def]
     return run(scene("sec2").evolve(kappa=0.001), periods=2, record=2, samples=8)
 
 
-def test_a_run_comes_back_bit_by_bit(tmp_path: Path, result) -> None:  # type: ignore[no-untyped-def]
+def test_a_run_is_read_back_bit_by_bit(tmp_path: Path, result) -> None:  # type: ignore[no-untyped-def]
     again = load(save(result, tmp_path / "a.h5"))
     for name in ("time", "displacement", "velocity", "force", "drive_displacement", "kinetic_energy", "output_force",
                  "output_force_elastic"):
@@ -36,7 +36,7 @@ def test_a_run_comes_back_bit_by_bit(tmp_path: Path, result) -> None:  # type: i
         assert getattr(again, name) == getattr(result, name), name
 
 
-def test_the_evidence_for_a_regime_comes_back_and_may_be_missing(tmp_path: Path, result) -> None:  # type: ignore[no-untyped-def]
+def test_the_evidence_for_a_regime_is_read_back_and_may_be_missing(tmp_path: Path, result) -> None:  # type: ignore[no-untyped-def]
     """Files written before the return distance and the ratios were saved open too."""
     rich = replace(result.regime, name="quasi-periodic", period=None, lyapunov=(1e-4, 2e-3), lyapunov_periods=1000,
                    return_distance=0.01, return_limit=0.15, window_ratios=(0.99, 1.01))
@@ -111,7 +111,7 @@ def test_overlap_follows_from_what_is_stored(result) -> None:  # type: ignore[no
     assert elastic == pytest.approx(result.output_force_elastic, rel=1e-12)
 
 
-def test_a_steady_state_from_a_given_state_comes_back_with_its_start(tmp_path: Path) -> None:
+def test_a_steady_state_from_a_given_state_is_read_back_with_its_start(tmp_path: Path) -> None:
     """Older files say "previous state" for such a start and load with the same start as new ones."""
     chain = scene("sec2").evolve(N=2, f=2000.0)
     first = settle(chain, samples=8)

@@ -68,7 +68,7 @@ def refused(read: Callable[[Path], Any], path: Path) -> str:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_no_flipped_bit_comes_back_as_a_number(kind: str, files: dict[str, tuple[Path, Path]], tmp_path: Path) -> None:
+def test_no_flipped_bit_is_read_as_a_number(kind: str, files: dict[str, tuple[Path, Path]], tmp_path: Path) -> None:
     """Flips every seventh bit of the seal's line and of the first 100 bytes, and 200 random bits."""
     content = files[kind][0].read_bytes()
     end, rng = 8 * len(content), np.random.default_rng(1)
@@ -110,7 +110,7 @@ def test_the_seal_is_the_digest_that_everybody_computes(files: dict[str, tuple[P
     assert told.split()[0].decode() == digest
 
 
-def test_other_programs_open_a_sealed_file_without_being_told_its_format(files: dict[str, tuple[Path, Path]]) -> None:
+def test_other_programs_recognise_the_format_of_a_sealed_file(files: dict[str, tuple[Path, Path]]) -> None:
     """A user block would have moved the signature by which xarray recognises HDF5."""
     path, old = files["run"]
     with xarray.open_dataset(path, group="run") as data, h5py.File(path) as file, h5py.File(old) as before:

@@ -219,7 +219,7 @@ def test_nothing_imports_the_libraries_before_they_are_asked_for() -> None:
 # --- many scenes ------------------------------------------------------------------------------------------
 
 
-def test_many_scenes_come_back_in_their_order_with_progress_and_what_failed() -> None:
+def test_many_scenes_are_returned_in_order_with_progress_and_failures() -> None:
     told: list[float] = []
     slow = CHAIN.evolve(f=0.5, accuracy=1e-9)
     found = run_many([CHAIN, slow, CHAIN.evolve(D=50.0)], progress=told.append, periods=40, record=1, samples=8, budget=2.0)

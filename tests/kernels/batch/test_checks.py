@@ -34,7 +34,7 @@ def seen(record: np.ndarray, before: float | None = None, **numbers: float) -> B
     return batch
 
 
-def test_an_orbit_found_by_extrapolation_is_disturbed_before_it_is_believed() -> None:
+def test_an_extrapolated_orbit_is_perturbed_before_it_is_accepted() -> None:
     """Repeated states count as periodic if the chain settled there; after an extrapolation, they are disturbed first.
     """
     batch = seen(np.ones(60))
@@ -50,7 +50,7 @@ def test_an_orbit_found_by_extrapolation_is_disturbed_before_it_is_believed() ->
     (0.8, True), (1.2, False),
     ((checks._PART_LEFT - 0.01) ** (1 / checks._TEST_ORBITS), True),
     ((checks._PART_LEFT + 0.01) ** (1 / checks._TEST_ORBITS), False)])
-def test_an_orbit_is_believed_where_its_disturbance_decays(rate: float, stable: bool) -> None:
+def test_an_orbit_is_accepted_if_its_perturbation_decays(rate: float, stable: bool) -> None:
     """If a disturbance of 1e-4 has shrunk after sixteen periods, the chain is put back; if it has grown, it was on no
     stable orbit.
 

@@ -70,7 +70,7 @@ def seen(scenes: list[Scene], numbers: Sequence[int]) -> Found:
 
 
 @pytest.mark.parametrize("structure", ["founded", "pressed", "unlike"])
-def test_more_scenes_than_lanes_give_what_each_gives_alone(structure: str) -> None:
+def test_more_scenes_than_lanes_have_the_results_of_each_alone(structure: str) -> None:
     """Strobes, largest forces and jumps agree to the last bit."""
     scenes = [scene_of(number, structure) for number in range(COUNT)]
     together = seen(scenes, range(COUNT))

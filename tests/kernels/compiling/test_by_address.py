@@ -42,7 +42,7 @@ def positive(numbers, kernel):
     return count
 
 
-def test_the_kernel_sees_its_arguments_and_its_answer_comes_back() -> None:
+def test_a_kernel_called_by_address_gets_its_arguments_and_returns_its_result() -> None:
     numbers = Numbers(np.array([-1.0, 2.0, -3.0]), np.array([2.0, 0.5, 1.0]))
     assert positive(numbers, address_of(raise_value, numbers, 0)) == 2
     assert (numbers.values == [1.0, 2.5, -2.0]).all()

@@ -36,7 +36,7 @@ def filled(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.parametrize("private", ["caching.UserProvidedCacheLocator", "caching.Cache._index_key", "runtime.rtsys",
                                      "serialize.dumps"])
-def test_with_another_numba_kernels_are_compiled_for_the_process_and_one_line_says_so(private: str, tmp_path: Path) -> None:
+def test_with_another_numba_kernels_are_not_cached_and_one_line_says_so(private: str, tmp_path: Path) -> None:
     lacking = "import sys, types, numba\nfrom numba.core import caching, runtime, serialize\n"
     if private == "serialize.dumps":  # Numba itself calls it, so only later imports must miss it
         lacking += ("sys.modules[serialize.__name__] = another = types.ModuleType('another')\n"
@@ -109,7 +109,7 @@ def flipped(content: bytes) -> bytes:
 
 
 @pytest.mark.parametrize("damage", [lambda _: b"", halved, flipped, lambda _: b"x"], ids=["empty", "halved", "flipped", "short"])
-def test_a_damaged_kernel_is_dropped_said_in_one_line_and_compiled_again(damage, filled: Path, tmp_path: Path) -> None:
+def test_a_damaged_kernel_is_reported_in_one_line_and_compiled_again(damage, filled: Path, tmp_path: Path) -> None:
     kept = shutil.copytree(filled, tmp_path / "cache")
     (file,) = kept.rglob("*.nbc")
     whole = file.read_bytes()

@@ -133,7 +133,7 @@ def test_rest_without_overlap_is_an_equilibrium_and_preload_keeps_it_one():
 
 
 @pytest.mark.parametrize("law", LAWS)
-def test_a_velocity_goes_into_w_and_comes_back(law):
+def test_a_velocity_is_converted_to_w_and_back(law):
     """`evaluate_at_phase` converts v into w = v − (G_left − G_right)/m, and the first half of the slope is v again."""
     chosen = scene("sec2").evolve(N=5, dissipation=law)
     u, v = random_state(chosen, 1)

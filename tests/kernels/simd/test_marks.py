@@ -17,7 +17,7 @@ class Slot(NamedTuple):
     value: float
 
 
-def test_kernels_that_the_mark_leaves_out_do_not_know_the_slot(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_kernels_outside_the_mark_have_no_code_for_the_slot(monkeypatch: pytest.MonkeyPatch) -> None:
     for folder, known in registry._IN_SIMD_KERNELS.items():
         monkeypatch.setitem(registry._IN_SIMD_KERNELS, folder, set(known))
     slots = scale_chain(scene("sec2")).slots._replace(foundation=Slot(1.0))
@@ -26,7 +26,7 @@ def test_kernels_that_the_mark_leaves_out_do_not_know_the_slot(monkeypatch: pyte
 
 
 @pytest.mark.parametrize("slots", [{"kappa": 0.01, "F0": 1.0}, {"dissipation": "none"}], ids=str)
-def test_absent_effects_are_known(slots: dict[str, object]) -> None:
+def test_a_present_effect_with_vector_terms_is_accepted(slots: dict[str, object]) -> None:
     present = scale_chain(scene("sec2").evolve(**slots)).slots  # type: ignore[arg-type]
     assert registry.unknown_slots(present, "dop853_root") == []
 

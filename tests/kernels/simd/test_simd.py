@@ -79,7 +79,7 @@ def test_steps_along_the_chain_are_the_scalar_steps(changes: dict[str, object]) 
     assert (fast.counts.array == slow.counts.array).all()
 
 
-def test_a_curve_in_batches_is_what_each_frequency_gives_by_itself() -> None:
+def test_a_curve_in_batches_equals_its_frequencies_alone() -> None:
     frequencies = np.array([340.0, 470.0, 615.0, 900.0, 1130.0, 1576.0])
     for point in iter_curve(scene("sec2"), frequencies):
         alone = CurvePoint.of(settle_to_forces(scene("sec2").evolve(f=point.frequency), None, Stop()))

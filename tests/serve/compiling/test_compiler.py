@@ -14,7 +14,7 @@ from app.serve.compiling.compiler import Compiler, Requests
 from granchain_core import scene
 
 
-def test_a_compiler_that_fails_is_reported_with_what_it_said(monkeypatch: pytest.MonkeyPatch,
+def test_a_failing_compiler_is_reported_with_its_output(monkeypatch: pytest.MonkeyPatch,
                                                             caplog: pytest.LogCaptureFixture,
                                                             capfd: pytest.CaptureFixture[str]) -> None:
     compiled: list[str] = []

@@ -68,7 +68,7 @@ def test_equal_requests_cost_one_computation() -> None:
     assert work.begun == 1 and later == [3]
 
 
-def test_what_is_kept_is_bounded_and_the_oldest_goes_first() -> None:
+def test_the_cache_is_bounded_and_drops_its_oldest_entry() -> None:
     one, work = shared(memory=25), Work()
     for key in ("a", "b", "a", "c", "a", "b"):
         work.go.release(3)

@@ -226,7 +226,7 @@ def test_of_more_computations_than_turns_the_one_that_has_used_most_yields_after
     assert not turns.should_yield(long)
 
 
-def test_a_computation_that_never_pauses_keeps_nobody_waiting() -> None:
+def test_a_computation_that_never_pauses_does_not_block_others() -> None:
     """This is true for any number of them."""
     turns = Turns(2)
     for _ in range(20):

@@ -155,7 +155,7 @@ def test_a_long_header_closes_the_connection_before_the_content_comes(frames: tu
     assert one.taken == [] and one.closed == 1008
 
 
-def test_a_connection_that_is_said_to_be_closed_twice_is_closed_once() -> None:
+def test_a_connection_reported_closed_twice_is_counted_once() -> None:
     one = type("Both", (guarded_socket.GuardedSocket, Socket), {"__init__": Socket.__init__, "_counted": True, "_has_connection": True})()
     one.on_close()
     one.on_close()

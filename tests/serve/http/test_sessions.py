@@ -69,7 +69,7 @@ def test_another_origin_gets_no_connection(dashboard: Listening) -> None:
     assert dashboard.connect(dashboard.token(), Origin="https://evil.example.org") == 403
 
 
-def test_there_are_at_most_so_many_sessions(caplog: pytest.LogCaptureFixture) -> None:
+def test_the_number_of_sessions_is_limited(caplog: pytest.LogCaptureFixture) -> None:
     one, before = Listening(Access(secret=SECRET, max_sessions=2)), METRICS.opened
     try:
         there = [one.open(one.token()) for _ in range(2)]

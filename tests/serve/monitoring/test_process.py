@@ -26,7 +26,7 @@ def shown(name: str) -> float:
 
 
 @linux
-def test_threads_that_python_does_not_know_are_counted() -> None:
+def test_threads_started_outside_python_are_counted() -> None:
     """For example, those of numerical libraries: any program's Prometheus client counts them."""
     before, held = shown("process_threads") - shown("granchain_threads"), _thread.allocate_lock()
     held.acquire()

@@ -76,7 +76,7 @@ def document_of(model: object) -> Document:
     return document
 
 
-def test_a_document_knows_every_model_to_which_its_roots_refer() -> None:
+def test_a_document_contains_every_model_to_which_its_roots_refer() -> None:
     def kinds() -> list[str]:
         plot = figure()
         plot.line([0, 1], [0, 1], legend_label="force")
@@ -90,7 +90,7 @@ def test_a_document_knows_every_model_to_which_its_roots_refer() -> None:
     assert kinds() == before == kinds()
 
 
-def test_all_values_are_still_there_to_be_asked_for() -> None:
+def test_all_values_can_still_be_read() -> None:
     def all_values() -> list[str]:
         return sorted(Select(options=["rest"]).properties_with_values(include_defaults=True))
 
