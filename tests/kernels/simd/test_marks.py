@@ -26,7 +26,7 @@ def test_kernels_outside_the_mark_have_no_code_for_the_slot(monkeypatch: pytest.
 
 
 @pytest.mark.parametrize("slots", [{"kappa": 0.01, "F0": 1.0}, {"dissipation": "none"}], ids=str)
-def test_a_present_effect_with_vector_terms_is_accepted(slots: dict[str, object]) -> None:
+def test_known_effects_are_accepted_present_or_absent(slots: dict[str, object]) -> None:
     present = scale_chain(scene("sec2").evolve(**slots)).slots  # type: ignore[arg-type]
     assert registry.unknown_slots(present, "dop853_root") == []
 
