@@ -23,6 +23,8 @@ REFINED = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32)
 TOLERANCES = 10.0 ** np.arange(-4, -12.5, -1)
 #: A fit over a few decades may be this much below the order in the limit.
 ORDER_SLACK = 0.2
+#: The row of a method with fixed steps states what is measured to within this much: neither more nor less.
+ORDER_BAND = 0.3
 _FREQUENCIES = (340.0, 470.0, 615.0, 900.0, 1130.0, 1576.0)
 #: Kinds of right-hand sides: no contact opens; contacts without damping; with each damping law; with a tension cut.
 SMOOTHNESS: dict[str, dict[str, Any]] = {
@@ -103,14 +105,22 @@ def test_contact_events_take_orders_from_a_fixed_step(method: str, most: float) 
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_the_table_of_methods_claims_no_more_than_is_measured(method: str) -> None:
-    """Its orders are at most those measured without events, across contact events, and with a tension cut."""
+def test_the_table_of_methods_states_what_is_measured(method: str) -> None:
+    """Its orders are those measured without events, across contact events (the lowest), and with a tension cut.
+
+    With error control they are at most those: a line fitted over tolerances may be steeper than any order (11 for
+    dop853-root across events).
+    """
     with_events = [smoothness for name, smoothness in THEORY if name == method and smoothness not in ("closed", "cut")]
     assert with_events, f"add rows of {method} to THEORY"
-    assert METHODS[method].observed_smooth <= order(method, "closed") + ORDER_SLACK
-    assert METHODS[method].observed_order <= min(order(method, smoothness) for smoothness in with_events) + ORDER_SLACK
+    row = METHODS[method]
+    pairs = [(row.observed_smooth, order(method, "closed")),
+             (row.observed_order, min(order(method, smoothness) for smoothness in with_events))]
     if (method, "cut") in THEORY:
-        assert METHODS[method].observed_with_cut <= order(method, "cut") + ORDER_SLACK
+        pairs.append((row.observed_with_cut, order(method, "cut")))
+    for stated, measured in pairs:
+        assert stated <= measured + ORDER_SLACK
+        assert row.error_control or stated >= measured - ORDER_BAND
 
 
 @pytest.mark.parametrize("method", METHODS)
