@@ -67,7 +67,7 @@ def test_a_spring_passes_the_tests_the_page_writes_and_a_slope_that_is_not_inser
     inserted = "return add_cubic_spring_slope(slots.cubic_spring, slope, u, du, inverse_mass * dt_ds)"
     assert text.count(inserted) == 1
     file.write_text(text.replace(inserted, "return slope"), encoding="utf-8")
-    with pytest.raises(AssertionError, match="FAILED .*test_every_slope_of_an_effect_is_inserted"):
+    with pytest.raises(AssertionError, match=r"FAILED .*test_every_slope_of_an_effect_is_inserted"):
         follow(tree, "-m", "pytest", "-p", "no:cacheprovider", "-rf", "tests/kernels/equations/test_body_forces.py", "-k", "inserted")
 
 
