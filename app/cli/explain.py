@@ -27,7 +27,7 @@ def explanation(scene: Scene, method: str | None, samples: int) -> str:
         f"structure: {structure(scene)}",
         *(["steps: scalar code, because a run keeps the energy account; pictures and curves use vectors"]
           if chain_width(scaled) and not chosen.error_control else []),
-        f"method: {chosen.title}, {why}; first {resolution}, then finer until the stated error is at most that accuracy",
+        f"method: {chosen.title}, {why}; first {resolution}, finer until the stated error is at most that accuracy",
         f"restrictions: {chosen.restrictions}; reference: {chosen.reference}",
         f"machine: {machine()}",
     ))

@@ -167,7 +167,7 @@ def orbit_of(scene: Scene, period: int, x: np.ndarray, stop: Stop) -> NearbyOrbi
 
 
 def seen_modulus(scene: Scene, period: int, x: np.ndarray, stop: Stop, refine: float) -> float:
-    """Compute the largest |μ| at a settled state by one-sided differences: fast, and less accurate than central ones."""
+    """Compute the largest |μ| at a settled state by one-sided differences: fast, less accurate than central ones."""
     matrix = FiniteDifferenceMap(scene, period, stop, refine).derivative(x, central=False)
     return float(np.abs(np.linalg.eigvals(matrix)).max())
 
