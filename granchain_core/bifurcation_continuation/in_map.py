@@ -1,7 +1,7 @@
 """Bifurcation curves in a parameter map: found between neighbouring cells and continued through its rows.
 
 The regimes of two neighbouring cells determine which bifurcation is sought between them (`_kinds`; the table is in
-docs/parameter-map.md under "Limits"). The orbit of the periodic cell is continued towards its neighbour; the search
+docs/parameter-map.md, under "Limits"). The orbit of the periodic cell is continued towards its neighbour; the search
 for the point starts where a multiplier is nearest to its critical value.
 """
 

@@ -29,11 +29,10 @@ from ..steady.residuals import orbit_change
 TOLERANCE = 1e-13
 #: [no threshold] Error of the derivative at that tolerance near grazings, relative to its largest entry; docs/orbits.md
 #: ("Error of the tangents") has the measurements, near grazings and elsewhere.
-TANGENT_ERROR = 1e-7
-#: [no threshold] Error of a multiplier near the unit circle: ten times `TANGENT_ERROR`, because the largest entry of
-#: the derivative is 2 to 13 and the eigenvectors are well separated. For single orbits it is computed
-#: (multiplier_errors.py).
-MULTIPLIER_ERROR = 10.0 * TANGENT_ERROR
+TANGENT_ERROR = 1e-6
+#: [no threshold] Error of a leading multiplier near the unit circle where none is computed (multiplier_errors.py); the
+#: same section has its measurements.
+MULTIPLIER_ERROR = 1e-6
 #: [step size] flow: first step to try, in scaled time, in a period that is long enough.
 _INITIAL_STEP = 0.1
 #: [step size] flow: fewest steps in a drive period from which the first one follows.

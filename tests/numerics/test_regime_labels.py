@@ -41,9 +41,7 @@ def beside(f: float, period: int, offset: float, **knobs: float) -> NearbyOrbit:
 
 @pytest.mark.parametrize(("f", "period"), [(340.0, 1), (1130.0, 3), (1980.0, 1), (1330.0, 1)])
 def test_differences_give_the_multipliers_of_the_tangent_flow(f: float, period: int) -> None:
-    """Both give the same |μ|. With four times the default steps, the map is accurate to about 1e-7, and its differences
-    to about 1e-5.
-    """
+    """Both give the same |μ|, to about what docs/orbits.md ("Error of the map with fixed steps") states."""
     exact = float(np.abs(orbit(scene("sec2").evolve(f=f), period).multipliers[0]))
     assert beside(f, period, 1e-4).modulus == pytest.approx(exact, abs=2e-5)
 

@@ -2,7 +2,8 @@
 
 While a chain settles, claims near |μ| = 1 are tested with this map: its kernels are already compiled, and it allows cut
 tension, with dop853 instead of fixed steps. `StroboscopicMap` (orbits/stroboscopic_map.py), whose derivative is the
-tangent flow, is for orbits that the user requests. Both agree on |μ| to 1e-5 (tests/numerics/test_regime_labels.py).
+tangent flow, is for orbits that the user requests. How far both agree is measured in docs/orbits.md ("Error of the map
+with fixed steps").
 """
 
 from __future__ import annotations
@@ -18,8 +19,7 @@ from ...scene import Scene
 from ..residuals import ACCEPTED_FIXED_STEP_RESIDUAL, FIXED_STEP_RESIDUAL_GOAL, least_displacement, orbit_change
 from ..returns import sizes
 
-#: [no threshold] Number of steps that replace one default step: multipliers then differ from those of the tangent flow
-#: by about 1e-6.
+#: [no threshold] Number of steps that replace one default step.
 _REFINEMENT = 4.0
 #: [no threshold] Half the distance between the two states of a central difference, relative to the largest displacement
 #: or w. The error is its square times the map's third derivative, plus the method's noise divided by it. The noise is
@@ -73,7 +73,7 @@ class FiniteDifferenceMap:
         return orbit_change(change, x, self.engine.scaled.beta)
 
     def derivative(self, x: np.ndarray, central: bool = True) -> np.ndarray:
-        """The derivative (2N, 2N) by differences; one-sided ones take half the time and are accurate to about 1e-4."""
+        """The derivative (2N, 2N) by differences; one-sided ones take half the time and are less accurate."""
         matrix, difference = np.zeros((len(x), len(x))), _DIFFERENCE if central else _ONE_SIDED_DIFFERENCE
         width = difference * sizes(x, least_displacement(x, self.engine.scaled.beta))
         middle = None if central else self(x)

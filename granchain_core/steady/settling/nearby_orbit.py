@@ -26,7 +26,8 @@ from .finite_difference_map import FiniteDifferenceMap, FixedPoint, fixed_point
 #: [period n] A chain alone: an unconfirmed claim needs multipliers up to this many beads. Up to this number, the
 #: derivative of the map is computed.
 MOST_BEADS_WITH_MULTIPLIERS = 100
-#: [period n] An orbit counts as stable if |μ| is below 1 by more than this. No |μ| is known more accurately.
+#: [period n] An orbit counts as stable if |μ| is below 1 by more than this. The errors of |μ| may be larger near
+#: grazings: docs/orbits.md, "Error of the map with fixed steps".
 MODULUS_ERROR = 1e-5
 #: [followed] Largest relative change over n periods at which an orbit of period n is sought, and largest distance from
 #: the orbit that is then found.
@@ -166,7 +167,7 @@ def orbit_of(scene: Scene, period: int, x: np.ndarray, stop: Stop) -> NearbyOrbi
 
 
 def seen_modulus(scene: Scene, period: int, x: np.ndarray, stop: Stop, refine: float) -> float:
-    """Compute the largest |μ| at a settled state by one-sided differences: fast, and accurate to about 1e-4."""
+    """Compute the largest |μ| at a settled state by one-sided differences: fast, less accurate than central ones."""
     matrix = FiniteDifferenceMap(scene, period, stop, refine).derivative(x, central=False)
     return float(np.abs(np.linalg.eigvals(matrix)).max())
 
