@@ -67,10 +67,10 @@ def do(arguments: argparse.Namespace) -> None:
           f"residual {orbit.residual:.1e} after {count} Newton iteration{'' if count == 1 else 's'}")
     if orbit.distance_of_motion is not None:
         print(orbit.distance_words())
-    _show_multipliers("multipliers", orbit.multipliers, orbit.multiplier_errors)
+    _show_multipliers("multipliers", orbit.multipliers, orbit.multipliers_outside, orbit.multiplier_errors)
     if orbit.observer_multipliers is not None:
         _show_multipliers(f"observer, {orbit.observer_stability_words()}", orbit.observer_multipliers,
-                          orbit.observer_multiplier_errors)
+                          orbit.observer_multipliers_outside, orbit.observer_multiplier_errors)
 
 
 def _pairs(multipliers: Any) -> list[list[float]]:
@@ -82,11 +82,10 @@ def _numbers(errors: Any) -> list[float | None] | None:
     return None if errors is None else [float(error) if np.isfinite(error) else None for error in errors]
 
 
-def _show_multipliers(title: str, multipliers: Any, errors: Any) -> None:
+def _show_multipliers(title: str, multipliers: Any, outside: Any, errors: Any) -> None:
     shown = ", ".join(f"{mu.real:+.4f}{mu.imag:+.4f}i (|μ| {abs(mu):.4f})" for mu in multipliers[:4])
-    outside = sum(abs(mu) > 1.0 for mu in multipliers)
     known = "" if errors is None else f"; each to ± {max(errors[:4]):.0e}"
-    print(f"{title}: {outside} of {len(multipliers)} outside the unit circle; leading {shown}{known}")
+    print(f"{title}: {outside.sum()} of {len(multipliers)} outside the unit circle; leading {shown}{known}")
 
 
 def _search(chosen: Scene, arguments: argparse.Namespace) -> Callable[[Stop], Orbit]:

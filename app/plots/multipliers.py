@@ -13,6 +13,7 @@ from bokeh.models import ColumnDataSource, DataRange1d, FixedTicker, HoverTool, 
 from bokeh.plotting import figure
 
 from granchain_core.orbits import Orbit
+from granchain_core.orbits.unit_circle import outside
 from granchain_core.results.regime import modulus_words
 
 from ..format import duration
@@ -125,7 +126,7 @@ def plane_state(orbit: Orbit | None, observer: bool = False, rank: int | None = 
         for number, mu in enumerate(multipliers):
             assert orbit is not None
             x, y = _shown(complex(mu), reach)
-            kind = prefix + ("outside" if abs(mu) >= 1.0 else "within")
+            kind = prefix + ("outside" if outside(mu, orbit.scene.has_dissipation) else "within")
             rows[kind].append((x, y, _size(abs(mu), kind), *multiplier_words(complex(mu), orbit), number))
             if abs(mu) > reach:
                 far.append((x, y, f"|μ| {abs(mu):.3g}", "right" if x > 0.4 else "left" if x < -0.4 else "center",
@@ -164,7 +165,7 @@ def _shown(mu: complex, reach: float) -> tuple[float, float]:
 def _size(modulus: float, kind: str) -> float:
     if kind == "observer outside":
         return 11.0
-    return 11.0 * (1.7 if modulus >= 1.0 else 0.62 if modulus < _SMALL_MARK else 1.0)
+    return 11.0 * (1.7 if kind == "outside" else 0.62 if modulus < _SMALL_MARK else 1.0)
 
 
 def _trail(sets: Sequence[np.ndarray]) -> dict[str, dict[str, Any]]:

@@ -20,6 +20,7 @@ from ..execution.stopwatch import Stopwatch
 from ..inputs.checks import whole_number
 from ..integrate.methods import DOP853
 from ..orbits import Orbit, periodic_orbit
+from ..orbits.unit_circle import outside
 from ..results.run import Cost
 from ..scene import Scene
 from ..scene.refusals import require_scene
@@ -129,8 +130,7 @@ class Twin:
     def verdict(self) -> str:
         """"synchronises", "drifts", "breaks down" (it grows apart otherwise) or "neither yet" (docs/observers.md)."""
         if self.rate is None:
-            unstable = self.leading is not None and abs(self.leading) > 1.0
-            return "synchronises" if self.in_step and not unstable else "neither yet"
+            return "synchronises" if self.in_step and not self._leads_outside else "neither yet"
         if self._contradicted or self._uncertain:  # the multiplier's effect will show later
             return "neither yet"
         if self.rate <= 1.0:
@@ -138,11 +138,16 @@ class Twin:
         return "drifts" if is_drift(self.scene, self.translation, self.leading) else "breaks down"
 
     @property
+    def _leads_outside(self) -> bool:
+        """Whether the leading multiplier is outside the unit circle."""
+        return self.leading is not None and bool(outside(self.leading, self.scene.has_dissipation))
+
+    @property
     def _contradicted(self) -> bool:
         """Whether the distance grows with all multipliers inside the unit circle, or shrinks with one outside."""
         if self.rate is None or self.leading is None:
             return False
-        return abs(self.leading) < 1.0 if self.rate > 1.0 else abs(self.leading) > 1.0
+        return abs(self.leading) < 1.0 if self.rate > 1.0 else self._leads_outside
 
     @property
     def _uncertain(self) -> bool:

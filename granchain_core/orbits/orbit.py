@@ -23,6 +23,7 @@ from ..tables.provenance import Attribute
 from ..tables.words import multiplier_columns, state_columns
 from .multiplier_errors import derivative_change, errors_of
 from .stroboscopic_map import FLOW_METHOD
+from .unit_circle import are_certain, nearest_to_circle, outside
 
 #: Multipliers smaller than this fraction of the largest are rounding errors.
 ROUNDING = 1e-13
@@ -112,30 +113,41 @@ class Orbit(Labelled):
 
     @property
     def stable(self) -> bool:
-        """Whether all multipliers are inside the unit circle."""
-        return bool(np.abs(self.multipliers).max() < 1.0)
+        """Whether no multiplier is outside the unit circle; the rule is in unit_circle.py."""
+        return not self.multipliers_outside.any()
+
+    @property
+    def multipliers_outside(self) -> np.ndarray:
+        """Whether each multiplier is outside the unit circle."""
+        return outside(self.multipliers, self.scene.has_dissipation)
+
+    @property
+    def observer_multipliers_outside(self) -> np.ndarray | None:
+        """Whether each of the observer's multipliers is outside the unit circle; None where they are not known."""
+        return None if self.observer_multipliers is None else outside(self.observer_multipliers,
+                                                                      self.scene.has_dissipation)
 
     @property
     def stability_certain(self) -> bool:
         """Whether `stable` is certain in spite of the errors; False if these are not known."""
-        return _is_certain(self.multipliers, self.multiplier_errors)
+        return are_certain(self.multipliers, self.multiplier_errors, self.scene.has_dissipation)
 
     def stability_words(self) -> str:
         """"stable" or "unstable", or the multiplier that is no farther from the unit circle than its error."""
-        return _stability_words(self.multipliers, self.multiplier_errors)
+        return _stability_words(self.multipliers, self.multiplier_errors, self.scene.has_dissipation)
 
     def observer_stability_words(self) -> str | None:
         """Like `stability_words`, for the observer; None where it was not requested."""
         if self.observer_multipliers is None:
             return None
-        return _stability_words(self.observer_multipliers, self.observer_multiplier_errors)
+        return _stability_words(self.observer_multipliers, self.observer_multiplier_errors, self.scene.has_dissipation)
 
     @property
     def observer_stability_certain(self) -> bool | None:
         """Whether `observer_stable` is certain in spite of the errors; None where the observer was not requested."""
         if self.observer_multipliers is None:
             return None
-        return _is_certain(self.observer_multipliers, self.observer_multiplier_errors)
+        return are_certain(self.observer_multipliers, self.observer_multiplier_errors, self.scene.has_dissipation)
 
     @property
     def leading_observer_multiplier(self) -> complex | None:
@@ -144,10 +156,9 @@ class Orbit(Labelled):
 
     @property
     def observer_stable(self) -> bool | None:
-        """Whether the observer's multipliers are all inside the unit circle."""
-        if self.observer_multipliers is None:
-            return None
-        return bool(np.abs(self.observer_multipliers).max() < 1.0)
+        """Like `stable`, for the observer; None where it was not requested."""
+        beyond = self.observer_multipliers_outside
+        return None if beyond is None else not beyond.any()
 
     def tables(self) -> tuple[Table, ...]:
         """`multipliers`, with the observer's where known; `state`; `newton`, the residuals of the search."""
@@ -191,18 +202,11 @@ class Orbit(Labelled):
         return f"the motion comes within {self.distance_of_motion:.2g} of it, relative to its own size"
 
 
-def _is_certain(multipliers: np.ndarray, errors: np.ndarray | None) -> bool:
-    """Whether all multipliers are inside the unit circle by more than their errors, or at least one is outside."""
-    sizes = np.abs(multipliers)
-    return errors is not None and bool((sizes + errors < 1.0).all() or (sizes - errors > 1.0).any())
-
-
-def _stability_words(multipliers: np.ndarray, errors: np.ndarray | None) -> str:
-    sizes = np.abs(multipliers)
-    if errors is None or _is_certain(multipliers, errors):
-        return "stable" if sizes.max() < 1.0 else "unstable"
-    nearest = int(np.argmin(np.abs(sizes - 1.0) - errors))
-    return f"stability not decided (|μ| {modulus_words(sizes[nearest])} ± {errors[nearest]:.0e})"
+def _stability_words(multipliers: np.ndarray, errors: np.ndarray | None, damped: bool) -> str:
+    if errors is None or are_certain(multipliers, errors, damped):
+        return "unstable" if outside(multipliers, damped).any() else "stable"
+    nearest = nearest_to_circle(multipliers, errors, damped)
+    return f"stability not decided (|μ| {modulus_words(abs(multipliers[nearest]))} ± {errors[nearest]:.0e})"
 
 
 def liouville_if_known(multipliers: np.ndarray, log_determinant: float) -> float | None:

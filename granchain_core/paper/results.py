@@ -11,6 +11,7 @@ import numpy as np
 
 from ..experiment import Feature, Measured, Series, Shaker
 from ..observers import Twin
+from ..orbits.unit_circle import outside
 from ..results.run import Run
 from ..scene import Scene
 from ..steady.curve.curve import Curve
@@ -206,7 +207,7 @@ class CoupledRow:
     @property
     def outside(self) -> np.ndarray:
         """The multipliers outside the unit circle."""
-        return self.multipliers[np.abs(self.multipliers) > 1.0]
+        return self.multipliers[outside(self.multipliers, self.twin.scene.has_dissipation)]
 
     @property
     def first_beads(self) -> tuple[np.ndarray, np.ndarray]:

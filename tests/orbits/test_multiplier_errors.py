@@ -13,6 +13,8 @@ from scipy.optimize import linear_sum_assignment
 
 from app.cli import main
 from granchain_core import Orbit, Scene, orbit, scene
+from granchain_core.attractor_search.sameness import Candidate
+from granchain_core.orbits.branch.point import BranchPoint
 from granchain_core.orbits.multiplier_errors import derivative_change, errors_of
 from granchain_core.orbits.orbit import sorted_multipliers
 from granchain_core.orbits.stroboscopic_map import StroboscopicMap
@@ -57,10 +59,10 @@ def test_the_error_follows_a_known_change_of_the_derivative() -> None:
     np.testing.assert_allclose(errors_of(np.array([-0.3, 0.5, 0.1]), matrix, change), [4e-6, 2e-6, 0.0], atol=1e-15)
 
 
-def test_no_error_is_stated_where_two_multipliers_meet() -> None:
+def test_the_error_is_useless_where_two_multipliers_meet() -> None:
     """In a Jordan block, a change ε of the matrix moves the multipliers by √ε, so first order is not valid."""
     errors = errors_of(np.array([0.5, 0.5]), np.array([[0.5, 1.0], [0.0, 0.5]]), np.full((2, 2), 1e-12))
-    assert np.all(errors > 1e-6)
+    assert np.all(errors > 1.0)
 
 
 def test_stability_is_undecided_within_the_error_of_the_leading_multiplier(known_orbit: Orbit) -> None:
@@ -81,6 +83,30 @@ def test_stability_is_undecided_within_the_error_of_the_leading_multiplier(known
     outside.__dict__["multiplier_errors"] = np.full(4, 0.05)
     assert outside.stability_certain and outside.stability_words() == "unstable"  # one outside is enough
     assert not replace(known_orbit, monodromy=None).stability_certain
+
+
+def undamped(known_orbit: Orbit, size: float) -> Orbit:
+    """Return the orbit without damping, with the leading pair `size` and 1/`size` and all others on the circle."""
+    on_circle = np.full(len(known_orbit.multipliers) - 2, 1.0j)
+    return replace(known_orbit, scene=known_orbit.scene.evolve(D=0.0), multipliers=np.array([size, *on_circle, 1.0 / size]))
+
+
+@pytest.mark.parametrize("size", [1.0 - 1e-9, 1.0 + 1e-9])
+def test_without_damping_an_orbit_of_a_branch_and_of_newtons_method_are_stable_by_one_rule(known_orbit: Orbit, size: float) -> None:
+    """A pair 1 ± 1e-9 counts as on the circle; with damping, 1 + 1e-9 is outside."""
+    free = replace(undamped(known_orbit, size), monodromy=None)
+    point = BranchPoint(0.0, np.zeros(0), np.zeros(1), 0.0, free.multipliers, *np.zeros(3), np.zeros(0), np.zeros(0), (0.0,), 0.0,
+                        np.zeros((0, 4)), damped=False)
+    candidate = Candidate(None, np.zeros((1, 2, free.scene.N)), free)  # type: ignore[arg-type]
+    assert free.stable and point.stable and not candidate.unstable
+    assert free.stability_words() == "stable"  # its errors are not known
+    free.__dict__["multiplier_errors"] = np.full(len(free.multipliers), 1e-8)
+    assert free.stability_certain and free.stability_words() == "stable"
+    free.__dict__["multiplier_errors"] = np.full(len(free.multipliers), 1e-5)
+    assert not free.stability_certain
+    damped = replace(known_orbit, multipliers=free.multipliers)
+    assert not damped.stable and not replace(point, damped=True).stable
+    assert not replace(free, multipliers=np.array([1.001, 0.999])).stable
 
 
 def test_the_command_line_prints_and_saves_the_errors(capsys: pytest.CaptureFixture[str]) -> None:

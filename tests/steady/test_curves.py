@@ -118,12 +118,11 @@ def test_a_failing_frequency_does_not_lose_the_curve(monkeypatch: pytest.MonkeyP
 
 @pytest.mark.parametrize("start", ["rest", "up", "down"])
 @pytest.mark.parametrize("count", [2, 20])
-def test_a_curve_of_the_stiffest_foundation_is_computed_or_says_why_not(start: str, count: int) -> None:
-    """k = 1e10 N/m is valid, and every point has a force or a sentence, whatever its neighbours do."""
+def test_a_curve_of_the_stiffest_foundation_is_computed(start: str, count: int) -> None:
+    """k = 1e10 N/m is valid, and every point has a force, whatever its neighbours do."""
     curve = resonance_curve(scene("sec2").evolve(k=1e10, N=2), np.linspace(2000.0, 2500.0, count), start)
     assert len(curve.points) == count
-    assert all(p.failure or np.isfinite(p.max_output_force) for p in curve.points)
-    assert not any(p.failure for p in curve.points), curve.points[0].failure
+    assert [p.failure for p in curve.points if not np.isfinite(p.max_output_force)] == []
 
 
 @pytest.mark.parametrize("start", ["rest", "up", "down"])

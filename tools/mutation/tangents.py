@@ -8,6 +8,7 @@ from .mutant import Mutant
 _TIME, _STEP, _EVENTS = "kernels/flow/event_time.py", "kernels/flow/attempt.py", "kernels/flow/events.py"
 _FLOW, _TANGENT, _SALTATION = "kernels/flow/run.py", "kernels/flow/tangent.py", "kernels/flow/velocity_tangent.py"
 _MAP, _ORBIT = "orbits/stroboscopic_map.py", "orbits/orbit.py"
+_CIRCLE = "orbits/unit_circle.py"
 _NORMAL_FORMS, _CRITICALITY = "orbits/branch/normal_forms.py", "orbits/branch/criticality.py"
 
 #: Tangents in w that jump where those in v should have: exactly the effect of a forgotten saltation on them.
@@ -93,8 +94,8 @@ ORBITS = (
            k.ORBIT_CLAIMS),
     Mutant("multipliers-by-real-part", _ORBIT, "np.argsort(-np.abs(multipliers), kind", "np.argsort(-multipliers.real, kind",
            "the leading multiplier is the rightmost, not the largest", ("tests/orbits/test_tangents.py", "-k", "sorted_by_modulus")),
-    Mutant("stable-by-real-part", _ORBIT, "return bool(np.abs(self.multipliers).max() < 1.0)",
-           "return bool(self.multipliers.real.max() < 1.0)", "an orbit that alternates away is called stable",
+    Mutant("stable-by-real-part", _CIRCLE, "np.abs(multipliers) >= least_modulus_outside(damped)",
+           "np.real(multipliers) >= least_modulus_outside(damped)", "an orbit that alternates away is called stable",
            ("tests/orbits/test_modes.py", "-k", "doubling_left_unstable")),
     Mutant("residual-of-displacements", "steady/returns.py", "float(np.abs(change / sizes(x, least_displacement)).max())",
            "float(np.abs(change / sizes(x))[: len(x) // 2].max())",

@@ -13,6 +13,7 @@ from granchain_core import Settled
 from granchain_core.integrate.methods import RK4_SPLIT
 from granchain_core.orbits import Orbit
 from granchain_core.orbits.modes import Mode
+from granchain_core.orbits.unit_circle import nearest_to_circle
 from granchain_core.results.regime import exponent_words, modulus_words
 from granchain_core.steady.poincare import Section
 from granchain_core.steady.regime_criteria import LONGEST_LOCKED_PERIOD
@@ -68,14 +69,17 @@ def verdict(orbit: Orbit) -> str:
     leading = complex(orbit.multipliers[0])
     size = abs(leading)
     if orbit.multiplier_errors is not None and not orbit.stability_certain:
-        nearest = int(np.argmin(np.abs(np.abs(orbit.multipliers) - 1.0) - orbit.multiplier_errors))
+        nearest = nearest_to_circle(orbit.multipliers, orbit.multiplier_errors, orbit.scene.has_dissipation)
         return (f"Not decided: a |μ| is {modulus_words(abs(orbit.multipliers[nearest]))} ± "
                 f"{short_error(orbit.multiplier_errors[nearest])}, no farther from 1 than its error, for one period of "
                 f"the orbit ({period_words(orbit)}).{_observed(orbit)}")
-    if size < 1.0:
+    if orbit.stable and not orbit.scene.has_dissipation:
+        return (f"Stable: without damping, a disturbance neither grows nor shrinks in one period of the orbit "
+                f"({period_words(orbit)}).{_observed(orbit)}")
+    if orbit.stable:
         return (f"Stable: a disturbance shrinks to {modulus_words(size)} of itself in one period of the orbit "
                 f"({period_words(orbit)}).{_observed(orbit)}")
-    outside = int((np.abs(orbit.multipliers) >= 1.0).sum())
+    outside = int(orbit.multipliers_outside.sum())
     rest = "" if outside <= 1 + (leading.imag != 0.0) else f" {outside} multipliers are outside the circle."
     return (f"Unstable: a disturbance grows {modulus_words(size)}-fold in one period of the orbit "
             f"({period_words(orbit)}) and {_leaves(leading)}.{rest}{_observed(orbit)}")

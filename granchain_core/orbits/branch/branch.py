@@ -26,10 +26,11 @@ from ...tables import Labelled, Table, amplitude_attribute, provenance
 from ...tables.provenance import Attribute
 from ..find_orbit import periodic_orbit
 from ..stroboscopic_map import FLOW_METHOD
+from ..unit_circle import ON_CIRCLE
 from .axis import STATIC_OVERLAP, KnobAxis
 from .equations import BranchEquations
 from .half_branch import HalfBranch, HalfContinuation
-from .point import ON_CIRCLE, BranchPoint, branch_point, state_at
+from .point import BranchPoint, branch_point, state_at
 from .special import SpecialPoint
 from .tables import branch_tables
 

@@ -16,6 +16,7 @@ from ...kernels.status import FULL
 from ...scene import Scene
 from ...scene.state import State
 from ..orbit import liouville_error, sorted_multipliers
+from ..unit_circle import least_modulus_outside, outside
 from .equations import BranchEquations, Solved
 
 #: Tolerance per step of the run that records forces and contacts; errors are about 1e-9.
@@ -24,9 +25,6 @@ _TOLERANCE = 1e-11
 _ROUGH_TOLERANCE = 1e-9
 #: Initial room for extrema of overlaps, per contact and period.
 _FIRST_ROOM = 32
-#: A multiplier this near to the unit circle counts as on it if there is no damping. The multipliers of a stable orbit
-#: then lie on the circle, and where two meet, they are known only to about the root of the map's error.
-ON_CIRCLE = 1e-6
 #: Number of closings stored for a contact that is always closed; 0 is stored for one that is always open.
 _CLOSED = -1
 #: Columns of an extremum (`OrbitRecord`): contact, +1 for a maximum and −1 for a minimum of the overlap, time, overlap.
@@ -69,13 +67,8 @@ class BranchPoint:
 
     @property
     def unstable_multipliers(self) -> int:
-        """Number of multipliers outside the unit circle; without damping, by more than `ON_CIRCLE`."""
-        return int((np.abs(self.multipliers) >= self._circle).sum())
-
-    @property
-    def _circle(self) -> float:
-        """Least modulus of a multiplier that counts as outside the unit circle."""
-        return 1.0 if self.damped else 1.0 + ON_CIRCLE
+        """Number of multipliers outside the unit circle; without damping, by `ON_CIRCLE` or more."""
+        return int(outside(self.multipliers, self.damped).sum())
 
     @property
     def stable(self) -> bool:
@@ -91,7 +84,7 @@ class BranchPoint:
     def doubling_sign(self) -> int:
         """Sign of det(M + I) of the monodromy matrix M: it changes where a real multiplier passes −1."""
         real = self.multipliers.real[self.multipliers.imag == 0.0]
-        return -1 if (real <= -self._circle).sum() % 2 else 1
+        return -1 if (real <= -least_modulus_outside(self.damped)).sum() % 2 else 1
 
     @property
     def signature(self) -> tuple[int, ...]:
