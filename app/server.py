@@ -16,7 +16,7 @@ import panel as pn
 from bokeh.server.server import Server
 from bokeh.settings import settings
 
-from .curve.sweep import CURVES_SHARED
+from .curve.computation import CURVES_SHARED
 from .dashboard.entry import open_web_page
 from .dashboard.picture_work import PICTURES_SHARED
 from .library_internals import check_releases

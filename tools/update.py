@@ -2,13 +2,7 @@
 
     python -m tools.update
 
-- tables in the docs: thresholds (docs/regimes.md, rotation-number.md, orbits.md, fit.md, accuracy.md, constants.md),
-  methods (docs/method.md), hard cases (docs/hard-cases.md), knobs (docs/model.md), equations and scenes (README.md),
-  commands (README.md, docs/command-line.md), drives by a formula (docs/scenes.md), marks of figures (docs/marks.md),
-  special points and their names in AUTO and MatCont (docs/branches.md, glossary.md), library internals
-  (docs/libraries.md), names of Numba and LLVM (docs/compiling.md), metrics (docs/deployment.md), the map of the code
-  (docs/design.md), the dashboard's messages (docs/dashboard.md), worker pools and times of the connection
-  (docs/dashboard-server.md);
+- tables in the readme and the docs: `_TABLES` lists them with their pages;
 - the table of steps in each recipe docs/add-….md;
 - numbers from the code in sentences of the docs (tools/numbers.py);
 - a row for every new scene in the test of share links (tools/links.py);

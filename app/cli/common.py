@@ -11,7 +11,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from granchain_core import BadInput, Cancelled, Scene, scene
 from granchain_core.execution.stop import Stop
@@ -20,6 +20,9 @@ from granchain_core.scene.validity import missing_impurity
 from . import ending
 from .compiling import announce_compiling
 from .foundation import kappa_changed_by_amplitude
+
+if TYPE_CHECKING:
+    from granchain_core import Run
 
 T = TypeVar("T")
 
@@ -47,6 +50,18 @@ def chosen_scene(arguments: argparse.Namespace) -> Scene:
     say_if(kappa_changed_by_amplitude(preset, chosen, changes))
     say_if(missing_impurity(chosen))
     return chosen
+
+
+def run_to_start_from(path: str, chosen: Scene) -> Run:
+    """Return the recorded run of --start FILE. Raises `BadInput` if its chain has another number of beads."""
+    from granchain_core.store import load
+
+    run = load(path)
+    beads = run.displacement.shape[1]
+    if beads != chosen.N:
+        raise BadInput(f"--start {path} holds a chain of {beads} beads and the scene has {chosen.N}; add --set "
+                       f"N={beads}.")
+    return run
 
 
 def say(*args: object) -> None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from granchain_core import BadInput, Scene
 
-from .common import in_background, say, show_json, unbroken
+from .common import in_background, run_to_start_from, say, show_json, unbroken
 from .data_options import with_answers
 from .forces import errors_in_words, errors_json, forces_in_words, forces_json, scene_json, status_in_words
 from .picture import write_picture
@@ -129,12 +129,8 @@ def _last_of(path: str, chosen: Scene) -> Beginning:
     """Return the last sample of a recorded run as a beginning."""
     from granchain_core.fitting import Beginning
     from granchain_core.scene.state import State
-    from granchain_core.store import load
 
-    run = load(path)
-    if run.displacement.shape[1] != chosen.N:
-        raise BadInput(f"--start {path} holds a chain of {run.displacement.shape[1]} beads and the scene has "
-                       f"{chosen.N}; add --set N={run.displacement.shape[1]}.")
+    run = run_to_start_from(path, chosen)
     return Beginning(State(run.displacement[-1], run.velocity[-1]), float(run.drive_displacement[-1]),
                      f"the last sample of {path}")
 

@@ -13,7 +13,7 @@ from granchain_core.inputs.checks import check_range
 from granchain_core.precompile.pieces import ORBIT_KERNELS
 from granchain_core.scene.state import State
 
-from .common import chosen_scene, in_background, say, say_if, show_json
+from .common import chosen_scene, in_background, run_to_start_from, say, say_if, show_json
 from .compiling import compiling_beside
 from .options import add_json, add_out, add_scene, whole
 from .picture import add_option as add_picture
@@ -104,7 +104,6 @@ def _start(chosen: Scene, name: str, seed: int) -> State | None:
     """Return the state in which Newton's method starts: None for the settled motion, the last sample of a file."""
     from granchain_core.orbits import random_state
     from granchain_core.scene.state import rest
-    from granchain_core.store import load
 
     if name == "settled":
         return None
@@ -113,10 +112,7 @@ def _start(chosen: Scene, name: str, seed: int) -> State | None:
     if name == "random":
         check_range("--seed", seed, 0, 2**63 - 1)
         return random_state(chosen, seed)
-    run = load(name)
-    if run.displacement.shape[1] != chosen.N:
-        raise BadInput(f"--start {name} holds a chain of {run.displacement.shape[1]} beads and the scene has "
-                       f"{chosen.N}; add --set N={run.displacement.shape[1]}.")
+    run = run_to_start_from(name, chosen)
     if others := _other_values(chosen, run.scene):
         say(f"--start {name} was recorded with {others}: its last state is only where Newton's method begins.")
     phase = round(float(run.time[-1]) * run.scene.f * run.samples) % run.samples / run.samples

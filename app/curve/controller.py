@@ -10,7 +10,7 @@ from granchain_core.experiment import Difference, Measured, stated_features
 from granchain_core.precompile.pieces import CURVE_KERNELS
 from granchain_core.steady.curve.order import CURVE_STARTS
 
-from ..plots.curve import SWEEPS
+from ..plots.curve import CURVE_STYLES
 from ..serve.compiling.compiler import COMPILER, PICTURE_PIECES, Requests
 from ..serve.computing.worker_pools import CURVES
 from ..session.activities import Activity
@@ -21,12 +21,12 @@ from ..session.progress import COMPUTING, OFF, READY, ActivityState
 from ..session.scene_facts import rig_beads, slider_range, without_frequency
 from ..session.share import joined
 from ..session.task import Task
+from .computation import CurveComputation, Progress
 from .curve_bar import CHOICES, CurveBar, shown_progress
 from .drafts import Drafts
 from .peak_names import PeakNames, stated_name
 from .reports import Reports
 from .request import CurveRequest
-from .sweep import Progress, Sweep
 from .view import CurveFigure
 
 #: Time for which the knobs must rest before a curve starts [s]: nobody reads a curve while dragging.
@@ -183,7 +183,7 @@ class CurveController:
 
     def activities(self) -> list[Activity]:
         """Return name, state and detail of the curve from every start at this moment."""
-        return [(f"resonance curve, {SWEEPS[name].words}", *self._state(name)) for name in CURVE_STARTS]
+        return [(f"resonance curve, {CURVE_STYLES[name].words}", *self._state(name)) for name in CURVE_STARTS]
 
     def _state(self, start: str) -> tuple[ActivityState, str]:
         """Return state and detail of the curve from one start."""
@@ -239,7 +239,7 @@ class CurveController:
             self._notify_compared(None)
         self._drafts.drop()
         if missing:
-            self._task.start(Sweep(scene, missing, self._reports.add, lambda: self._host.busy,
+            self._task.start(CurveComputation(scene, missing, self._reports.add, lambda: self._host.busy,
                                    self._host.session.cpu_time))
         else:
             self._task.cancel()

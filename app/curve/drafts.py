@@ -11,7 +11,7 @@ from granchain_core.steady.curve.resonance_curve import draft_curve
 from ..serve.computing.latest_wins import LatestWins
 from ..serve.computing.turns import TurnFlag
 from ..session.host import PageHost
-from .sweep import COARSE, grid
+from .computation import COARSE, grid
 from .view import CurveFigure
 
 

@@ -32,7 +32,7 @@ from ..frames import samples_for
 from ..serve.computing.cpu_time import CpuTime
 from ..serve.computing.shared import Shared
 from ..serve.computing.turns import TurnFlag
-from ..serve.computing.worker_pools import ANALYSES, SWEEPS
+from ..serve.computing.worker_pools import ANALYSES, CURVE_WORK
 from ..session.host import WorkHost
 from ..session.scene_facts import without_frequency
 from ..session.task import Job, Task, report_nothing
@@ -94,7 +94,7 @@ def _extremum_names(extremes: Sequence[tuple[str, CurvePoint]], scene: Scene,
 
 #: Names for all sessions: when a class of students looks at one curve, its dozen extrema are settled only once, which
 #: takes a second.
-NAMES_SHARED: Shared[dict[str, Any] | None] = Shared(SWEEPS, 2_000_000, lambda name: 1000, turns=False)
+NAMES_SHARED: Shared[dict[str, Any] | None] = Shared(CURVE_WORK, 2_000_000, lambda name: 1000, turns=False)
 
 
 class PeakNames:

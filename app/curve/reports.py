@@ -8,7 +8,7 @@ import time
 from collections.abc import Callable
 
 from ..session.host import PageHost
-from .sweep import Progress
+from .computation import Progress
 
 #: Interval between drawings of a growing curve [s]; each draws all its points.
 CURVE_EVERY = 0.1

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from granchain_core import Scene
 
-from .sweep import Progress
+from .computation import Progress
 
 
 @dataclass

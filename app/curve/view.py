@@ -16,7 +16,7 @@ from ..format import prefixed
 from ..frames import round_up
 from ..parts.figures.figure_style import bare_axis, bare_plot
 from ..plots.axes import knob_scale
-from ..plots.curve import SWEEPS, curve_columns, curve_line, curve_marks, curve_tooltips
+from ..plots.curve import CURVE_STYLES, curve_columns, curve_line, curve_marks, curve_tooltips
 from ..plots.force_lines import OUTPUT
 from ..plots.measured import COLUMNS, TOOLTIPS, measured_columns
 from ..plots.theme import GREY
@@ -33,8 +33,8 @@ class CurveFigure:
     """
 
     def __init__(self, choose: Callable[[object], None]) -> None:
-        self._points: dict[str, list[CurvePoint]] = {name: [] for name in SWEEPS}
-        self._grey_points: dict[str, list[CurvePoint]] = {name: [] for name in SWEEPS}
+        self._points: dict[str, list[CurvePoint]] = {name: [] for name in CURVE_STYLES}
+        self._grey_points: dict[str, list[CurvePoint]] = {name: [] for name in CURVE_STYLES}
         self._scale = (1.0, "")
         self._whole = False
         #: Whether a curve from rest is being computed, or will be computed unasked.
@@ -46,8 +46,8 @@ class CurveFigure:
         self._measured = ColumnDataSource({name: [] for name in COLUMNS})
         self._features = ColumnDataSource({name: [] for name in ("frequency", "top", "label", "source")})
         self._measurement: Measured | None = None
-        self._renderers: dict[str, list[GlyphRenderer]] = {name: [] for name in SWEEPS}
-        self._shown_starts = set(SWEEPS)
+        self._renderers: dict[str, list[GlyphRenderer]] = {name: [] for name in CURVE_STYLES}
+        self._shown_starts = set(CURVE_STYLES)
         self.figure = self._frame(choose)
         self._pinned = PinnedCurves(self.figure)
         self._grey_sources: dict[str, ColumnDataSource] = {}
@@ -70,7 +70,8 @@ class CurveFigure:
 
     def _line(self, start: str, grey: bool) -> ColumnDataSource:
         source = ColumnDataSource(curve_columns([], 1.0))
-        style, overrides = SWEEPS[start], {"line_color": GREY, "line_width": 1.8, "line_alpha": 0.45} if grey else {}
+        style = CURVE_STYLES[start]
+        overrides = {"line_color": GREY, "line_width": 1.8, "line_alpha": 0.45} if grey else {}
         renderers = [self.figure.add_glyph(source, Line(
             **{**curve_line(start), "line_color": style.colour, **overrides}), level=style.level)]
         if not grey:
@@ -128,7 +129,7 @@ class CurveFigure:
     def begin(self, starts: list[str]) -> None:
         """Turn the present curves of these starts grey, because new ones follow."""
         self._whole = self._whole and "rest" not in starts
-        for name in SWEEPS:
+        for name in CURVE_STYLES:
             if name in starts:
                 self._grey_points[name] = self._points[name] or self._grey_points[name]
                 self._points[name] = []
@@ -197,7 +198,7 @@ class CurveFigure:
     def clear(self) -> None:
         """Remove all curves, because another scene was opened."""
         self._whole = False
-        for name in SWEEPS:
+        for name in CURVE_STYLES:
             self._points[name], self._grey_points[name] = [], []
             self._draw(name)
             self._draw_grey(name)
@@ -256,7 +257,7 @@ class CurveFigure:
         scale = prefixed(high)
         if scale != self._scale:
             self._scale = scale
-            for name in SWEEPS:
+            for name in CURVE_STYLES:
                 self._draw(name)
                 self._draw_grey(name)
             self.mark_motion(*self._shown)
@@ -283,5 +284,5 @@ class CurveFigure:
                 sources[start] = self._line(start, grey=sources is self._grey_sources)
         if start in sources:
             ordered = sorted(points, key=lambda point: point.frequency)
-            larger = SWEEPS[start].larger // 2  # the figure is small, and its points are close to each other
+            larger = CURVE_STYLES[start].larger // 2  # the figure is small, and its points are close to each other
             set_properties(sources[start], data=curve_columns(ordered, self._scale[0], larger))

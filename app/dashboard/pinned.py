@@ -8,7 +8,7 @@ from typing import Any
 
 from granchain_core import BadInput, CurvePoint, Run, Scene, Settled, settle
 
-from ..curve.sweep import Progress, Sweep
+from ..curve.computation import CurveComputation, Progress
 from ..frames import samples_for
 from ..parts.time_figures.pinned_trains import SIGNS
 from ..serve.compiling.compiler import PICTURE_PIECES
@@ -58,7 +58,7 @@ class Pinned:
         others = self._other_curves()
         missing = [key for key in others if key and key not in self._curves and curve_affordable(key)]
         if missing:
-            self._curve_task.start(partial(self._sweep, missing, self._session.cpu_time))
+            self._curve_task.start(partial(self._compute_curves, missing, self._session.cpu_time))
         elif self._session.pins:
             self._curve_task.cancel()
         self._views.curve.pinned_curves([self._curves.get(key, []) if key else [] for key in others])
@@ -112,13 +112,13 @@ class Pinned:
             settled = settle(pin.scene, start=pin.initial_state, samples=samples_for(pin.scene), stop=job.stop)
             job.next_tick(self._settled, pin, settled.run)
 
-    def _sweep(self, missing: Sequence[Scene], cpu_time: CpuTime, job: Job) -> None:
+    def _compute_curves(self, missing: Sequence[Scene], cpu_time: CpuTime, job: Job) -> None:
         """Compute the curves of pins, once the present curve is done."""
         for key in missing:
             job.compile(key, *PICTURE_PIECES)
             job.give_way(lambda: self._host.busy or self._host.curve_computing)
             parts: list[Progress] = []
-            Sweep(key, ["rest"], parts.append, lambda: self._host.busy, cpu_time)(job)
+            CurveComputation(key, ["rest"], parts.append, lambda: self._host.busy, cpu_time)(job)
             job.next_tick(self._swept, key, [point for progress in parts for point in progress.points])
 
     # To the browser

@@ -24,7 +24,7 @@ from .themed import apply_theme, empty_figure, themed
 
 
 @dataclass(frozen=True)
-class SweepStyle:
+class CurveStyle:
     """How a curve is drawn, depending on its start; there are no dashes, which mean unstable on branches.
 
     Attributes
@@ -68,32 +68,33 @@ class SweepStyle:
     @property
     def line_words(self) -> str:
         """The description of the line and the marks."""
-        width = "broad " if self.width > SWEEPS["rest"].width else "thin " if self.width < SWEEPS["rest"].width else ""
+        usual = CURVE_STYLES["rest"].width
+        width = "broad " if self.width > usual else "thin " if self.width < usual else ""
         return f"{width}{self.colour_word} line{'' if self.filled else ' with hollow marks'}"
 
 
 #: The style of a curve by its start.
-SWEEPS = {
-    "rest": SweepStyle("from rest", "from rest ─", "output", "green", 2.2, 0.9, "glyph", True, 0,
+CURVE_STYLES = {
+    "rest": CurveStyle("from rest", "from rest ─", "output", "green", 2.2, 0.9, "glyph", True, 0,
                        "every frequency started from rest"),
-    "up": SweepStyle("sweep up", "sweep up ━", "naive", "amber", 7.0, 0.65, "underlay", True, 0,
+    "up": CurveStyle("sweep up", "sweep up ━", "naive", "amber", 7.0, 0.65, "underlay", True, 0,
                      "frequency rising, the state carried along"),
-    "down": SweepStyle("sweep down", "sweep down ─○", "second", "violet", 1.4, 0.9, "glyph", False, 6,
+    "down": CurveStyle("sweep down", "sweep down ─○", "second", "violet", 1.4, 0.9, "glyph", False, 6,
                        "frequency falling, the state carried along"),
 }
 #: The meaning of the lines in a sentence.
-KEY = "; ".join(f"{style.line_words}: {style.words}" for style in SWEEPS.values()).capitalize() + "."
+KEY = "; ".join(f"{style.line_words}: {style.words}" for style in CURVE_STYLES.values()).capitalize() + "."
 #: The lines of a tooltip for the columns of `forces_in_words`.
 FORCES = [("largest output force", "@total"), ("its elastic part", "@elastic"), ("largest input force", "@input")]
 
 
-def curve(sweeps: Sequence[Curve], theme: Theme, elastic: bool = False, measured: Measured | None = None) -> figure:
-    """Draw curves over one frequency axis, one for each way of sweeping; a failed computation has no point.
+def curve(curves: Sequence[Curve], theme: Theme, elastic: bool = False, measured: Measured | None = None) -> figure:
+    """Draw curves over one frequency axis, one for each start; a failed computation has no point.
 
     With `elastic`, draw the elastic part of the output force, as the paper does. A `measured` curve is drawn over it.
     """
     drawn = "max_output_force_elastic" if elastic else "max_output_force"
-    largest = max((getattr(p, drawn) for sweep in sweeps for p in sweep.points if math.isfinite(p.max_output_force)),
+    largest = max((getattr(p, drawn) for shown in curves for p in shown.points if math.isfinite(p.max_output_force)),
                   default=1.0)
     if measured is not None:
         largest = max(largest, float(measured.bars[1].max()))
@@ -101,25 +102,27 @@ def curve(sweeps: Sequence[Curve], theme: Theme, elastic: bool = False, measured
     plot = empty_figure(name="curve", min_border=4, y_range=DataRange1d(start=0, range_padding=0.06))
     lines: dict[str, LegendItem] = {}
     regimes: dict[str, LegendItem] = {}
-    for sweep in sweeps:
-        points = [p for p in sweep.points if math.isfinite(p.max_output_force)]
-        style, columns = SWEEPS[sweep.start], curve_columns(points, scale.factor, 3 + SWEEPS[sweep.start].larger, drawn)
-        source = ColumnDataSource(name=sweep.start, data=columns)
-        line = plot.line(**curve_line(sweep.start), source=source, level=style.level)
-        marks = plot.scatter(**curve_marks(sweep.start), source=source)
+    for shown in curves:
+        points = [p for p in shown.points if math.isfinite(p.max_output_force)]
+        style = CURVE_STYLES[shown.start]
+        columns = curve_columns(points, scale.factor, 3 + style.larger, drawn)
+        source = ColumnDataSource(name=shown.start, data=columns)
+        line = plot.line(**curve_line(shown.start), source=source, level=style.level)
+        marks = plot.scatter(**curve_marks(shown.start), source=source)
         themed(line, line_color=style.role, line_width=style.width)
-        plot.add_tools(HoverTool(renderers=[marks], tooltips=curve_tooltips(sweep.start)))
-        lines.setdefault(sweep.start, LegendItem(label=f"{style.words}: {style.line_words}", renderers=[line]))
+        plot.add_tools(HoverTool(renderers=[marks], tooltips=curve_tooltips(shown.start)))
+        lines.setdefault(shown.start, LegendItem(label=f"{style.words}: {style.line_words}", renderers=[line]))
         for row, name in enumerate(columns["regime"]):
             regimes.setdefault(name, LegendItem(label=name, renderers=[marks], index=row))
     if measured is not None:
         measured_over(plot, measured, scale.factor)
     plot.xaxis.axis_label, plot.yaxis.axis_label = knob_scale("f").label, scale.label
-    shown = [regimes[name] for name in REGIME_MARKS if name in regimes]
-    items = [*(lines[start] for start in SWEEPS if start in lines), *(plot.legend[0].items if plot.legend else ())]
+    kinds = [regimes[name] for name in REGIME_MARKS if name in regimes]
+    measured_items = plot.legend[0].items if plot.legend else ()
+    items = [*(lines[start] for start in CURVE_STYLES if start in lines), *measured_items]
     for legend in list(plot.legend):
         plot.center.remove(legend)
-    for name, some in (("lines", items), ("regimes", shown)):
+    for name, some in (("lines", items), ("regimes", kinds)):
         if some:
             plot.add_layout(Legend(name=name, items=some, orientation="horizontal", location="left", padding=0,
                                    margin=2, spacing=14, ncols=len(some) if len(some) < 7 else 4), "below")
@@ -128,14 +131,14 @@ def curve(sweeps: Sequence[Curve], theme: Theme, elastic: bool = False, measured
 
 def curve_line(start: str) -> dict[str, Any]:
     """Return the properties of the line through a curve, here and on the page."""
-    style = SWEEPS[start]
+    style = CURVE_STYLES[start]
     return {"x": "frequency", "y": "force", "line_width": style.width, "line_alpha": style.alpha}
 
 
 def curve_marks(start: str) -> dict[str, Any]:
     """Return the properties of a curve's marks, here and on the page."""
     return {"x": "frequency", "y": "force", "marker": "marker", "size": "size", "line_color": "colour",
-            "line_width": 1.5, "fill_color": "colour" if SWEEPS[start].filled else None}
+            "line_width": 1.5, "fill_color": "colour" if CURVE_STYLES[start].filled else None}
 
 
 def line_pieces(points: Sequence[CurvePoint]) -> list[list[int]]:
@@ -178,7 +181,8 @@ def curve_columns(points: Sequence[CurvePoint], factor: float, larger: int = 0,
 
 def curve_tooltips(start: str) -> list[tuple[str, str]]:
     """Return the lines of a tooltip for `curve_columns`."""
-    return [("drive frequency", "@frequency{0.0} Hz"), *FORCES, ("motion", "@sentence"), ("start", SWEEPS[start].words)]
+    return [("drive frequency", "@frequency{0.0} Hz"), *FORCES, ("motion", "@sentence"),
+            ("start", CURVE_STYLES[start].words)]
 
 
 def forces_in_words(points: Sequence[CurvePoint]) -> dict[str, list[str]]:

@@ -45,8 +45,9 @@ _DOP853_SETTING = dop853_setting(1e-11)
 class Candidate:
     """A result that may be the same steady state as another, with its section (P, 2, N).
 
-    The section has the n strobes of a periodic orbit, or a record of strobes of any other motion. `longer` has longer
-    records of a motion that is not periodic, by their number of states.
+    The section has the n strobes (u, w) of a periodic orbit, or a record of strobes (u, v) of any other motion; only
+    sections of one kind are compared. `longer` has longer records of a motion that is not periodic, by their number of
+    states.
     """
 
     result: SteadyState
@@ -173,7 +174,7 @@ def _same(a: Candidate, b: Candidate) -> bool:
 
 
 def _scale(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """The largest displacement and w of two sections, (1, 2, 1)."""
+    """The largest displacement of two sections, and their largest w or v, (1, 2, 1)."""
     largest = np.maximum(np.abs(a).max(axis=(0, 2)), np.abs(b).max(axis=(0, 2)))
     return np.where(largest > 0.0, largest, 1.0)[None, :, None]
 

@@ -1,4 +1,4 @@
-"""Stability boundaries in the plane of two knobs agree with multipliers and with the scaling law."""
+"""Bifurcation curves in the plane of two knobs agree with multipliers and with the scaling law."""
 
 from __future__ import annotations
 
@@ -20,16 +20,17 @@ pytestmark = pytest.mark.quick
 NEAR = {"period_doubling": (508.0, 1), "neimark_sacker": (1226.0, 1), "fold": (1951.0, 5)}
 
 
-def near(kind: str) -> tuple[Scene, np.ndarray, int]:
+def near(kind: str) -> tuple[Scene, State, int]:
     """Return a scene near such a point, and the state and period of its orbit."""
     frequency, period = NEAR[kind]
     shown = scene("sec2").evolve(f=frequency)
-    return shown, granchain_core.orbit(shown, period).state, period  # type: ignore[return-value]
+    return shown, granchain_core.orbit(shown, period).state, period
 
 
 @pytest.fixture(scope="module")
 def points() -> dict[str, BifurcationPoint]:
-    return {kind: bifurcation_point(near(kind)[0], kind, *near(kind)[1:]) for kind in NEAR}
+    starts = {kind: near(kind) for kind in NEAR}
+    return {kind: bifurcation_point(shown, kind, state, period) for kind, (shown, state, period) in starts.items()}
 
 
 @pytest.mark.parametrize(("kind", "condition"), [
@@ -74,7 +75,7 @@ def test_a_curve_goes_through_its_rows_and_scales(points: dict[str, BifurcationP
     assert [point.y for point in curve] == rows
     assert all(abs(abs(point.multiplier) - 1.0) <= 1e-6 for point in curve)
     assert curve[1].x == pytest.approx(points["neimark_sacker"].x, rel=1e-9)
-    # the curve at another D, point by point
+    # the curve of the scaled chain (A0, f and D differ), point by point
     s = 2.0
     other = shown.scaled(s)
     again = points_of_curve(other, "neimark_sacker", granchain_core.orbit(other, 1).state, [s * row for row in rows], period)
@@ -121,15 +122,15 @@ def test_wrong_requests_are_one_sentence() -> None:
         bifurcation_point(scene("sec2"), "fold", granchain_core.orbit(scene("sec2")).state)
 
 
-def test_a_diagram_shows_where_its_bifurcation_curves_are() -> None:
+def test_a_parameter_map_shows_where_its_bifurcation_curves_are() -> None:
     found = parameter_map(scene("sec2"), ("f", np.linspace(480.0, 640.0, 9)), ("A0", [4.5e-7, 5e-7]))
     curves = bifurcation_curves(found, rows=[1])
     told = {(curve.kind, curve.period): curve for curve in curves}
     # period 1 doubles at 512 Hz, and the orbit of period 2 near 572 Hz, into one of period 4 or more
     first = told["period_doubling", 1]
     assert [point.y for point in first.points] == [4.5e-7, 5e-7]
-    assert first.points[1].x == pytest.approx(bifurcation_point(*near("period_doubling")[:1], "period_doubling",
-                                                                near("period_doubling")[1]).x, rel=1e-6)
+    shown, start, _ = near("period_doubling")
+    assert first.points[1].x == pytest.approx(bifurcation_point(shown, "period_doubling", start).x, rel=1e-6)
     assert 0.0 < first.points[1].x - first.points[0].x < 20.0  # f ∝ A0^{1/4} nearly: 13 Hz
     with pytest.raises(BadInput, match="rows are numbers from 0 to 1"):
         bifurcation_curves(found, rows=[2])

@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
+from app.curve.computation import Progress
 from app.curve.controller import CurveController
 from app.curve.curve_bar import CurveBar
-from app.curve.sweep import Progress
 from app.curve.view import CurveFigure
 from app.serve.computing.cpu_time import CpuTime
 from app.serve.computing.latest_wins import LatestWins

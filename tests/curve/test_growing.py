@@ -6,11 +6,11 @@ from collections.abc import Callable
 
 import pytest
 
+from app.curve.computation import Progress
 from app.curve.controller import CurveController
 from app.curve.curve_bar import CurveBar
 from app.curve.reports import CURVE_EVERY
 from app.curve.request import CurveRequest
-from app.curve.sweep import Progress
 from app.curve.view import CurveFigure
 from app.session.session import Session
 from granchain_core import CurvePoint, scene

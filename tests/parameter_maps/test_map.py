@@ -80,7 +80,7 @@ def test_scenes_that_batches_cannot_run_are_settled_one_by_one() -> None:
                                                          rel=2.0 * cell["error_estimate"])
 
 
-def test_the_first_cells_are_spread_over_the_whole_diagram() -> None:
+def test_the_first_cells_are_spread_over_the_whole_map() -> None:
     grid = Grid(scene("sec2"), Axis.of("f", np.linspace(30, 3000, 33)), Axis.of("A0", np.linspace(1e-7, 1e-6, 17)))
     order = grid.coarse_first()
     assert sorted(order) == list(range(grid.size))

@@ -212,7 +212,7 @@ LOADING = WorkerPool("loading", 1, "kernels loaded before a session needs them")
 CURVES = WorkerPool("curves", 200, "a thread for each session that waits for its resonance curve, or for that of a "
                                    "pinned picture")
 #: Each computation uses all cores, which the system divides among them.
-SWEEPS = WorkerPool(
+CURVE_WORK = WorkerPool(
     "sweeps", 8, "the resonance curves, and frequencies for the names of peaks, for all sessions that wait",
     low_priority=True)
 #: One session could start all of this work, and two sessions could fill the pool, so each has a limit.
@@ -227,7 +227,7 @@ MEASUREMENTS = WorkerPool("measurements", 1, "timings of Accuracy and Effects, a
 COMPILATIONS = WorkerPool("compilations", 2, "waiting for processes that compile kernels")
 
 #: All pools.
-POOLS = (SESSION_WORK, PICTURES, ANALYSES, FILES, LOADING, CURVES, SWEEPS, LONG, MEASUREMENTS, COMPILATIONS)
+POOLS = (SESSION_WORK, PICTURES, ANALYSES, FILES, LOADING, CURVES, CURVE_WORK, LONG, MEASUREMENTS, COMPILATIONS)
 #: Pools whose busy threads compute. A thread of `PICTURES` or `SESSION_WORK` computes only while it has a turn, and a
-#: thread of `CURVES` waits for `SWEEPS`.
-COMPUTING = (ANALYSES, SWEEPS, LONG, MEASUREMENTS)
+#: thread of `CURVES` waits for `CURVE_WORK`.
+COMPUTING = (ANALYSES, CURVE_WORK, LONG, MEASUREMENTS)

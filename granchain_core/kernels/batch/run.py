@@ -7,7 +7,7 @@ period, the kernel returns, and the next scene can take over its lane. The index
 The order of one step, `take_steps`:
 
 1. overlaps of both end contacts at the start of the step (effects/preload.py);
-2. `batch_step`: four stages, each a sweep along the chains that computes contacts and beads (step.py);
+2. `batch_step`: four stages, each a pass along the chains that computes contacts and beads (step.py);
 3. `update_batch_peaks`: largest forces and jumps up to the start of the step (step.py, forces/peaks.py);
 4. `correct_contacts`: the step's error at contacts that opened or closed in it (contact_correction.py).
 

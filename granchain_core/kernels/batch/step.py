@@ -1,6 +1,6 @@
-"""One RK4 step of several chains, one per SIMD lane: four stages, each a sweep along the chains.
+"""One RK4 step of several chains, one per SIMD lane: four stages, each a pass along the chains.
 
-In a sweep, no contact waits for another, so that the processor computes several at once. The square-root instruction
+In a pass, no contact waits for another, so that the processor computes several at once. The square-root instruction
 computes one root in three in batches of eight, and two in three in batches of four. The others are computed from an
 estimate and a series, where simd/functions.py has one. This keeps both the divider and the multiply–add units busy.
 """
@@ -45,7 +45,7 @@ class Values(NamedTuple):
 
 
 class LeftBead(NamedTuple):
-    """The bead at which a sweep arrives, in all members: its displacement, and e and G/λ of the contact on its left."""
+    """The bead at which a pass arrives, in all members: its displacement, and e and G/λ of the contact on its left."""
 
     u: Any
     e: Any

@@ -68,7 +68,8 @@ class NormalForm:
         nondegenerate; or "not decided".
     coefficient : float
         |a| of a fold, c of a period doubling (supercritical: c > 0), Re d of a Neimark–Sacker point (supercritical:
-        Re d < 0), for γ in units of the scaled state's root mean square. NaN where it was not computed.
+        Re d < 0), in scaled units: γ is the amplitude along an eigenvector η whose entries have the root mean square 1.
+        NaN where it was not computed.
     error : float
         Difference between two values, one from each side of the point, with different amplitudes. NaN where it was not
         computed.

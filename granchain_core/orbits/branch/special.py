@@ -20,7 +20,8 @@ _BOTH_KNOBS = "the two orbits' knobs"
 class Kind:
     """A kind of special point: its name in results, files and JSON, its words, and its names in AUTO and MatCont.
 
-    `passes` says what changes there, and `interval` defines the stated interval of the knob.
+    `passes` says what changes there, and `interval` defines the stated interval of the knob. `has_normal_form`: its
+    criticality is decided by the coefficient of a normal form (normal_forms.py).
     """
 
     name: str
@@ -29,14 +30,16 @@ class Kind:
     matcont: str
     passes: str
     interval: str = _BOTH_KNOBS
+    has_normal_form: bool = False
 
 
-#: All kinds of special points; bifurcations with a normal form come first.
+#: All kinds of special points.
 KINDS = (
     Kind("fold", "fold", "LP", "LPC", "a real multiplier passes +1 and the branch turns back in the knob",
-         "from the nearer orbit to the farthest point where the tangents of both can meet"),
-    Kind("period_doubling", "period doubling", "PD", "PD", "a real multiplier passes −1"),
-    Kind("neimark_sacker", "Neimark–Sacker", "TR", "NS", "a complex pair passes the unit circle"),
+         "from the nearer orbit to the farthest point where the tangents of both can meet", has_normal_form=True),
+    Kind("period_doubling", "period doubling", "PD", "PD", "a real multiplier passes −1", has_normal_form=True),
+    Kind("neimark_sacker", "Neimark–Sacker", "TR", "NS", "a complex pair passes the unit circle",
+         has_normal_form=True),
     Kind("multiplier_one", "multiplier +1 without a fold", "BP", "BPC",
          "a real multiplier passes +1 and the knob does not turn: not classified; it may be a branch point"),
     Kind("grazing", "grazing", "", "",
@@ -46,8 +49,8 @@ KINDS = (
 MERGED = Kind("period_doubling", "the end `merged` of a doubled branch", "BP", "BPC",
               "a doubled branch meets its parent: one of its own multipliers passes +1")
 SPECIAL_KINDS = tuple(kind.name for kind in KINDS)
-#: Kinds at which the stability of an orbit may change, each with a normal form.
-BIFURCATIONS = SPECIAL_KINDS[:3]
+#: Kinds with a normal form. Stability may also change at `multiplier_one`, which has none here.
+BIFURCATIONS = tuple(kind.name for kind in KINDS if kind.has_normal_form)
 _WORDS = {kind.name: kind.words for kind in KINDS}
 
 

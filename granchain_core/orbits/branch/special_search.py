@@ -194,7 +194,7 @@ def _classified(axis: KnobAxis, a: BranchPoint, b: BranchPoint) -> list[SpecialP
     interval = min(low, a.knob, b.knob), max(high, a.knob, b.knob)
     knob = 0.5 * (interval[0] + interval[1])
     for mu in passing:
-        kind = "neimark_sacker" if mu.imag != 0.0 else "fold" if mu.real > 0.0 else "period_doubling"
+        kind = "neimark_sacker" if mu.imag != 0.0 else "multiplier_one" if mu.real > 0.0 else "period_doubling"
         special_points.append(SpecialPoint(kind, knob=knob, interval=interval, before=a, after=b, multiplier=mu))
     for contact in np.flatnonzero(a.closings != b.closings):
         special_points.append(SpecialPoint("grazing", knob=knob, interval=interval, before=a, after=b,
@@ -228,18 +228,15 @@ def _gained(a: BranchPoint, b: BranchPoint, contact: int) -> str:
 def _merged(special_points: list[SpecialPoint]) -> list[SpecialPoint]:
     """The special points, with the turn of a fold and the passage of its multiplier through 1 joined to one point.
 
-    They are two points if a bracket ended between them. A multiplier that passes 1 without a turn is `multiplier_one`.
+    They are two points, a fold without a multiplier and a `multiplier_one`, if a bracket ended between them.
     """
     merged: list[SpecialPoint] = []
     for point in special_points:
         last = merged[-1] if merged else None
-        if last is not None and point.kind == last.kind == "fold" and point.before is last.after \
-                and (point.multiplier is None) != (last.multiplier is None):
-            turn = point if point.before.knob_direction != point.after.knob_direction else last
-            merged[-1] = SpecialPoint("fold", knob=turn.knob, interval=turn.interval, before=last.before,
-                                      after=point.after, multiplier=point.multiplier or last.multiplier)
+        turn, passage = (last, point) if point.kind == "multiplier_one" else (point, last)
+        if last is not None and turn is not None and passage is not None and point.before is last.after \
+                and (turn.kind, passage.kind) == ("fold", "multiplier_one") and turn.multiplier is None:
+            merged[-1] = replace(turn, before=last.before, after=point.after, multiplier=passage.multiplier)
         else:
             merged.append(point)
-    return [replace(point, kind="multiplier_one")
-            if point.kind == "fold" and point.before.knob_direction == point.after.knob_direction else point
-            for point in merged]
+    return merged

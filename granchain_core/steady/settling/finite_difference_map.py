@@ -115,7 +115,8 @@ def fixed_point(stroboscopic_map: FiniteDifferenceMap, x: np.ndarray) -> FixedPo
 
 def _newton(stroboscopic_map: FiniteDifferenceMap, x: np.ndarray) -> FixedPoint | None:
     start, change, relative = x, stroboscopic_map(x) - x, stroboscopic_map.relative
-    residual, matrix, here = relative(change, start), stroboscopic_map.derivative(x), True
+    residual, matrix = relative(change, start), stroboscopic_map.derivative(x)
+    matrix_is_current = True
     for _ in range(_MOST_ITERATIONS):
         if residual <= FIXED_STEP_RESIDUAL_GOAL:
             break
@@ -123,17 +124,18 @@ def _newton(stroboscopic_map: FiniteDifferenceMap, x: np.ndarray) -> FixedPoint 
         for halving in range(_HALVINGS):
             trial = x + step / 2**halving
             after = stroboscopic_map(trial) - trial
-            if relative(after, start) < residual:
+            new_residual = relative(after, start)
+            if new_residual < residual:
                 break
         else:
-            if here:
+            if matrix_is_current:
                 break
-            matrix, here = stroboscopic_map.derivative(x), True
+            matrix, matrix_is_current = stroboscopic_map.derivative(x), True
             continue
-        gained = relative(after, start) / residual
-        x, change, residual, here = trial, after, gained * residual, False
-        if gained > _RENEWAL_FRACTION and residual > FIXED_STEP_RESIDUAL_GOAL:
-            matrix, here = stroboscopic_map.derivative(x), True
+        slow = new_residual > _RENEWAL_FRACTION * residual
+        x, change, residual, matrix_is_current = trial, after, new_residual, False
+        if slow and residual > FIXED_STEP_RESIDUAL_GOAL:
+            matrix, matrix_is_current = stroboscopic_map.derivative(x), True
     if residual > ACCEPTED_FIXED_STEP_RESIDUAL:
         return None
-    return FixedPoint(x, matrix if here else stroboscopic_map.derivative(x), residual)
+    return FixedPoint(x, matrix if matrix_is_current else stroboscopic_map.derivative(x), residual)

@@ -19,7 +19,7 @@ import waiting
 from listening import SECRET, Listening
 
 from app import server
-from app.curve.sweep import CURVES_SHARED
+from app.curve.computation import CURVES_SHARED
 from app.dashboard.picture_work import PICTURES_SHARED
 from app.pages.analysis import questions
 from app.serve.computing.worker_pools import LONG

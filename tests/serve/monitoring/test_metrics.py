@@ -141,7 +141,7 @@ def test_renamed_metrics_keep_their_former_names_too() -> None:
 
 
 def test_pools_whose_threads_wait_for_others_do_not_count_as_computing() -> None:
-    """Threads of PICTURES and SESSION_WORK wait for turns, those of CURVES for SWEEPS."""
+    """Threads of PICTURES and SESSION_WORK wait for turns, those of CURVES for CURVE_WORK."""
     assert set(POOLS) - set(COMPUTING) == {SESSION_WORK, PICTURES, CURVES, FILES, LOADING, COMPILATIONS}
 
 

@@ -14,14 +14,14 @@ from granchain_core.execution.stop import Stop
 
 from ..serve.computing.cpu_time import CpuTime
 from ..serve.computing.shared import Shared
-from ..serve.computing.worker_pools import SWEEPS
+from ..serve.computing.worker_pools import CURVE_WORK
 from ..session.scene_facts import slider_range, without_frequency
 from ..session.task import Job
 
 #: Frequencies of the first pass over a curve from rest.
 COARSE = 75
-#: Frequencies of a sweep, which has only one pass: each point starts where the last one ended.
-_SWEEP = 150
+#: Frequencies of a sweep up or down, which has only one pass: each point starts where the last one ended.
+_POINTS_OF_SWEEP = 150
 #: Further passes over a curve from rest, each between the points of the earlier ones.
 _FINER_PASSES = 2
 
@@ -62,7 +62,7 @@ def midpoints(points: list[CurvePoint], low_step: float) -> np.ndarray:
 
 
 @dataclass(frozen=True)
-class Sweep:
+class CurveComputation:
     """The work of one request on a worker thread: the curves of some starts of one scene, one after another.
 
     It waits while `busy` returns True. Sessions at the same knobs share one computation.
@@ -89,7 +89,7 @@ class Sweep:
 def _computed(scene: Scene, start: str, stop: Stop) -> Iterator[Progress]:
     """Compute one curve, from coarse to fine. Raises `Cancelled`."""
     if start != "rest":
-        yield from _points(scene, grid(scene, _SWEEP), start, stop, 0.0, 1.0)
+        yield from _points(scene, grid(scene, _POINTS_OF_SWEEP), start, stop, 0.0, 1.0)
         yield Progress(start, [], 1.0, complete=True, covers=True)
         return
     points: list[CurvePoint] = []
@@ -127,4 +127,4 @@ def _size(progress: Progress) -> int:
 
 
 #: Curves of all sessions.
-CURVES_SHARED: Shared[Progress] = Shared(SWEEPS, 50_000_000, _size, _whole, turns=False)
+CURVES_SHARED: Shared[Progress] = Shared(CURVE_WORK, 50_000_000, _size, _whole, turns=False)
