@@ -92,7 +92,7 @@ COMMANDS = {
         "scenes.md#drives-other-than-the-harmonic-one"),
     "curve": Command(
         "SCENE --from F --to F --points n", "resonance curve: largest forces over the drive frequency, with --data "
-        "next to a measured curve", "sec2 --from 300 --to 400 --points 11 --picture curve.html", "regimes.md"),
+        "next to a measured curve", "sec2 --from 300 --to 400 --points 11 --picture curve.html", "curve.md"),
     "orbit": Command("SCENE", "periodic orbit by Newton's method and its Floquet multipliers", "sec2 --set f=1130",
                      "orbits.md"),
     "branch": Command(

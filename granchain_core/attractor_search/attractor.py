@@ -36,6 +36,8 @@ class Origin:
 class Attractor:
     """A steady state to which starts lead, or an unstable orbit that a start had not left after three rounds.
 
+    Such an orbit is no attractor: `stable` is False, and its share is that of undecided starts.
+
     Attributes
     ----------
     scene : Scene

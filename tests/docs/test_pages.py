@@ -154,7 +154,7 @@ def test_the_lecture_page_has_rows():
 
 
 @pytest.mark.parametrize("page", [ROOT / "README.md", LECTURE, ROOT / "docs" / "python.md", ROOT / "docs" / "fit.md",
-                                  ROOT / "docs" / "parameter-map.md"], ids=lambda page: page.name)
+                                  ROOT / "docs" / "parameter-map.md", ROOT / "docs" / "curve.md", ROOT / "docs" / "orbits.md"], ids=lambda page: page.name)
 def test_python_examples_run(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):
     """All Python blocks of a page run one after the other in an empty folder."""
     code = "\n".join(block.text for block in blocks(page) if block.language == "python")
