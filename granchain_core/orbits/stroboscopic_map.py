@@ -30,8 +30,9 @@ TOLERANCE = 1e-13
 #: [no threshold] Error of the derivative at that tolerance near grazings, relative to its largest entry; docs/orbits.md
 #: ("Error of the tangents") has the measurements, near grazings and elsewhere.
 TANGENT_ERROR = 1e-6
-#: [no threshold] How closely a point of a bifurcation curve meets its condition on a multiplier, and how far inside the
-#: unit circle a multiplier is known to be inside: about the error of a leading multiplier, measured in the same section.
+#: [no threshold] How closely a point of a bifurcation curve meets its condition on a multiplier, and how far a
+#: multiplier must be inside the unit circle for an observer not to be examined for a drift: about the error of a leading
+#: multiplier, which the same section has.
 MULTIPLIER_ERROR = 1e-6
 #: [step size] flow: first step to try, in scaled time, in a period that is long enough.
 _INITIAL_STEP = 0.1

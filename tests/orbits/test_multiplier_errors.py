@@ -95,7 +95,7 @@ def undamped(known_orbit: Orbit, size: float) -> Orbit:
 def test_without_damping_an_orbit_of_a_branch_and_of_newtons_method_are_stable_by_one_rule(known_orbit: Orbit, size: float) -> None:
     """A pair 1 ± 1e-9 counts as on the circle; with damping, 1 + 1e-9 is outside."""
     free = replace(undamped(known_orbit, size), monodromy=None)
-    point = BranchPoint(0.0, np.zeros(0), np.zeros(1), 0.0, free.multipliers, *np.zeros(3), np.zeros(0), np.zeros(0), (0.0,), 0.0,
+    point = BranchPoint(0.0, np.zeros(0), np.zeros(1), 0.0, free.multipliers, 0.0, 0.0, 0.0, np.zeros(0), np.zeros(0), (0.0,), 0.0,
                         np.zeros((0, 4)), damped=False)
     candidate = Candidate(None, np.zeros((1, 2, free.scene.N)), free)  # type: ignore[arg-type]
     assert free.stable and point.stable and not candidate.unstable
