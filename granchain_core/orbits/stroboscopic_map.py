@@ -30,8 +30,8 @@ TOLERANCE = 1e-13
 #: [no threshold] Error of the derivative at that tolerance near grazings, relative to its largest entry; docs/orbits.md
 #: ("Error of the tangents") has the measurements, near grazings and elsewhere.
 TANGENT_ERROR = 1e-6
-#: [no threshold] How closely a point of a bifurcation curve meets its condition on a multiplier, and how far a
-#: multiplier must be inside the unit circle for an observer not to be examined for a drift: about the error of a leading
+#: [no threshold] How closely a point of a bifurcation curve meets its condition on a multiplier, and how far inside the
+#: unit circle a multiplier must be for an observer not to be examined for a drift: about the error of a leading
 #: multiplier, which the same section has.
 MULTIPLIER_ERROR = 1e-6
 #: [step size] flow: first step to try, in scaled time, in a period that is long enough.
