@@ -10,7 +10,7 @@ from granchain_core.experiment import Difference, Measured, stated_features
 from granchain_core.precompile.pieces import CURVE_KERNELS
 from granchain_core.steady.curve.order import CURVE_STARTS
 
-from ..plots.curve import SWEEPS
+from ..plots.curve import CURVE_STYLES
 from ..serve.compiling.compiler import COMPILER, PICTURE_PIECES, Requests
 from ..serve.computing.worker_pools import CURVES
 from ..session.activities import Activity
@@ -26,7 +26,7 @@ from .drafts import Drafts
 from .peak_names import PeakNames, stated_name
 from .reports import Reports
 from .request import CurveRequest
-from .sweep import Progress, Sweep
+from .sweep import CurveWork, Progress
 from .view import CurveFigure
 
 #: Time for which the knobs must rest before a curve starts [s]: nobody reads a curve while dragging.
@@ -183,7 +183,7 @@ class CurveController:
 
     def activities(self) -> list[Activity]:
         """Return name, state and detail of the curve from every start at this moment."""
-        return [(f"resonance curve, {SWEEPS[name].words}", *self._state(name)) for name in CURVE_STARTS]
+        return [(f"resonance curve, {CURVE_STYLES[name].words}", *self._state(name)) for name in CURVE_STARTS]
 
     def _state(self, start: str) -> tuple[ActivityState, str]:
         """Return state and detail of the curve from one start."""
@@ -239,8 +239,7 @@ class CurveController:
             self._notify_compared(None)
         self._drafts.drop()
         if missing:
-            self._task.start(Sweep(scene, missing, self._reports.add, lambda: self._host.busy,
-                                   self._host.session.cpu_time))
+            self._task.start(CurveWork(scene, missing, self._reports.add, lambda: self._host.busy))
         else:
             self._task.cancel()
 
@@ -259,9 +258,9 @@ class CurveController:
         points: dict[str, list[CurvePoint]] = {}
         for progress in reports:
             points.setdefault(progress.start, []).extend(progress.points)
-        covers = {progress.start for progress in reports if progress.covers}
+        covering = {progress.start for progress in reports if progress.covers_range}
         for start, new in points.items():
-            self._figure.add(start, new, start in covers)
+            self._figure.add(start, new, start in covering)
         for progress in reports:
             if progress.complete:
                 self._completed(progress.start)
@@ -274,7 +273,7 @@ class CurveController:
         if scene is None:
             return
         self._complete_for[start] = scene
-        self._figure.finished(start)
+        self._figure.note_complete(start)
         self._placed()
         if start == "rest":
             self._names.name(self._figure.points("rest"), scene)

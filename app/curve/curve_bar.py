@@ -8,12 +8,12 @@ from typing import Any
 from granchain_core.steady.curve.resonance import STRONG_FRACTION
 
 from ..parts.toolkit.component import Component, text
-from ..plots.curve import SWEEPS
+from ..plots.curve import CURVE_STYLES
 from ..plots.regimes import REGIME_MARKS, SYMBOLS
 from ..scripts import module
 
 #: The curves that can be selected: name, label and meaning.
-CHOICES = (*((name, style.label, f"{style.meaning.capitalize()}.") for name, style in SWEEPS.items()),
+CHOICES = (*((name, style.label, f"{style.meaning.capitalize()}.") for name, style in CURVE_STYLES.items()),
            ("features", "paper’s features ┊", "Frequencies the paper states for its rig; it gives no forces."))
 #: Every mark that a curve may have, for the key and for the tab “regimes”.
 KINDS = [{"name": name, "symbol": SYMBOLS[marker], "colour": colour}

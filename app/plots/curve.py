@@ -68,12 +68,13 @@ class SweepStyle:
     @property
     def line_words(self) -> str:
         """The description of the line and the marks."""
-        width = "broad " if self.width > SWEEPS["rest"].width else "thin " if self.width < SWEEPS["rest"].width else ""
+        usual = CURVE_STYLES["rest"].width
+        width = "broad " if self.width > usual else "thin " if self.width < usual else ""
         return f"{width}{self.colour_word} line{'' if self.filled else ' with hollow marks'}"
 
 
 #: The style of a curve by its start.
-SWEEPS = {
+CURVE_STYLES = {
     "rest": SweepStyle("from rest", "from rest ─", "output", "green", 2.2, 0.9, "glyph", True, 0,
                        "every frequency started from rest"),
     "up": SweepStyle("sweep up", "sweep up ━", "naive", "amber", 7.0, 0.65, "underlay", True, 0,
@@ -82,7 +83,7 @@ SWEEPS = {
                        "frequency falling, the state carried along"),
 }
 #: The meaning of the lines in a sentence.
-KEY = "; ".join(f"{style.line_words}: {style.words}" for style in SWEEPS.values()).capitalize() + "."
+KEY = "; ".join(f"{style.line_words}: {style.words}" for style in CURVE_STYLES.values()).capitalize() + "."
 #: The lines of a tooltip for the columns of `forces_in_words`.
 FORCES = [("largest output force", "@total"), ("its elastic part", "@elastic"), ("largest input force", "@input")]
 
@@ -103,7 +104,8 @@ def curve(sweeps: Sequence[Curve], theme: Theme, elastic: bool = False, measured
     regimes: dict[str, LegendItem] = {}
     for sweep in sweeps:
         points = [p for p in sweep.points if math.isfinite(p.max_output_force)]
-        style, columns = SWEEPS[sweep.start], curve_columns(points, scale.factor, 3 + SWEEPS[sweep.start].larger, drawn)
+        style = CURVE_STYLES[sweep.start]
+        columns = curve_columns(points, scale.factor, 3 + style.larger, drawn)
         source = ColumnDataSource(name=sweep.start, data=columns)
         line = plot.line(**curve_line(sweep.start), source=source, level=style.level)
         marks = plot.scatter(**curve_marks(sweep.start), source=source)
@@ -116,7 +118,7 @@ def curve(sweeps: Sequence[Curve], theme: Theme, elastic: bool = False, measured
         measured_over(plot, measured, scale.factor)
     plot.xaxis.axis_label, plot.yaxis.axis_label = knob_scale("f").label, scale.label
     shown = [regimes[name] for name in REGIME_MARKS if name in regimes]
-    items = [*(lines[start] for start in SWEEPS if start in lines), *(plot.legend[0].items if plot.legend else ())]
+    items = [lines[start] for start in CURVE_STYLES if start in lines] + (plot.legend[0].items if plot.legend else [])
     for legend in list(plot.legend):
         plot.center.remove(legend)
     for name, some in (("lines", items), ("regimes", shown)):
@@ -128,14 +130,14 @@ def curve(sweeps: Sequence[Curve], theme: Theme, elastic: bool = False, measured
 
 def curve_line(start: str) -> dict[str, Any]:
     """Return the properties of the line through a curve, here and on the page."""
-    style = SWEEPS[start]
+    style = CURVE_STYLES[start]
     return {"x": "frequency", "y": "force", "line_width": style.width, "line_alpha": style.alpha}
 
 
 def curve_marks(start: str) -> dict[str, Any]:
     """Return the properties of a curve's marks, here and on the page."""
     return {"x": "frequency", "y": "force", "marker": "marker", "size": "size", "line_color": "colour",
-            "line_width": 1.5, "fill_color": "colour" if SWEEPS[start].filled else None}
+            "line_width": 1.5, "fill_color": "colour" if CURVE_STYLES[start].filled else None}
 
 
 def line_pieces(points: Sequence[CurvePoint]) -> list[list[int]]:
@@ -178,7 +180,8 @@ def curve_columns(points: Sequence[CurvePoint], factor: float, larger: int = 0,
 
 def curve_tooltips(start: str) -> list[tuple[str, str]]:
     """Return the lines of a tooltip for `curve_columns`."""
-    return [("drive frequency", "@frequency{0.0} Hz"), *FORCES, ("motion", "@sentence"), ("start", SWEEPS[start].words)]
+    return [("drive frequency", "@frequency{0.0} Hz"), *FORCES, ("motion", "@sentence"),
+            ("start", CURVE_STYLES[start].words)]
 
 
 def forces_in_words(points: Sequence[CurvePoint]) -> dict[str, list[str]]:

@@ -8,7 +8,7 @@ from bokeh.models import Legend, Line
 
 from app.curve.curve_bar import CHOICES
 from app.plots.branches import LINES, SPECIAL_STYLES
-from app.plots.curve import KEY, SWEEPS, curve
+from app.plots.curve import CURVE_STYLES, KEY, curve
 from app.plots.theme import THEMES
 from granchain_core import Curve, CurvePoint, scene
 from granchain_core.experiment import read_data
@@ -37,7 +37,7 @@ def labels(plot: object, name: str) -> list[str]:
 @pytest.mark.parametrize("starts", [("rest",), ("up", "down"), ("down", "up", "rest"), ("up", "up")])
 def test_a_picture_explains_each_line_and_mark_once(starts: tuple[str, ...], theme: str) -> None:
     plot = curve([swept(start) for start in starts], THEMES[theme])
-    assert labels(plot, "lines") == [f"{style.words}: {style.line_words}" for start, style in SWEEPS.items() if start in starts]
+    assert labels(plot, "lines") == [f"{style.words}: {style.line_words}" for start, style in CURVE_STYLES.items() if start in starts]
     assert labels(plot, "regimes") == ["period 1", "period 2", "period 5+"]
     assert not any(line.line_dash for line in plot.select({"type": Line}))
 
@@ -53,14 +53,14 @@ def test_a_curve_without_a_point_has_no_key() -> None:
 
 
 def test_every_start_looks_different_with_and_without_colour() -> None:
-    assert len({style.colour for style in SWEEPS.values()}) == len({style.width for style in SWEEPS.values()}) == 3
+    assert len({style.colour for style in CURVE_STYLES.values()}) == len({style.width for style in CURVE_STYLES.values()}) == 3
     assert len({(style["marker"], style["filled"]) for style in SPECIAL_STYLES.values()}) == len(SPECIAL_STYLES)
     assert LINES["stable"][1] == "solid" != LINES["unstable"][1]
-    assert all(style.line_words.lower() in KEY.lower() for style in SWEEPS.values())
-    assert [(name, label) for name, label, _ in CHOICES[:3]] == [(name, style.label) for name, style in SWEEPS.items()]
+    assert all(style.line_words.lower() in KEY.lower() for style in CURVE_STYLES.values())
+    assert [(name, label) for name, label, _ in CHOICES[:3]] == [(name, style.label) for name, style in CURVE_STYLES.items()]
 
 
 def test_hollow_marks_surround_the_filled_ones_of_the_other_sweep() -> None:
     plot = curve([swept("up"), swept("down")], THEMES["light"])
     up, down = (plot.select_one({"name": name}).data["size"] for name in ("up", "down"))
-    assert set(np.array(down) - np.array(up)) == {SWEEPS["down"].larger} and SWEEPS["down"].larger > 2
+    assert set(np.array(down) - np.array(up)) == {CURVE_STYLES["down"].larger} and CURVE_STYLES["down"].larger > 2
