@@ -123,5 +123,5 @@ def _size(progress: Progress) -> int:
     return sum(2000 + point.state.displacement.nbytes + point.state.velocity.nbytes for point in progress.points)
 
 
-#: Curves of all sessions. They take no turns: a session waits for at most two at a time, its own and one of a pin.
+#: Curves of all sessions. They take no turns; docs/dashboard-server.md says what that means for visitors.
 CURVES_SHARED: Shared[Progress] = Shared(SWEEPS, 50_000_000, _size, _cached, turns=False)

@@ -16,6 +16,7 @@ from tornado.ioloop import IOLoop
 
 from app.serve.connection import socket_tuning
 from app.serve.connection.socket_tuning import disable_nagle
+from app.serve.document.changes import batched_changes
 from app.serve.document.document_lock import may_change, run_when_locked
 
 
@@ -52,7 +53,8 @@ class Served:
         assert self.document is not None
         self.found = {"locked": may_change(self.document), "streams": socket_tuning._streams(self.document)}
         disable_nagle(self.document)
-        self.answer.text = f"{text}, yes"
+        with batched_changes(self.document):
+            self.answer.text = f"{text}, yes"
 
     def stop(self) -> None:
         """End the server."""
