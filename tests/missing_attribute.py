@@ -9,15 +9,21 @@ from typing import Any
 import pytest
 
 
-def hide(monkeypatch: pytest.MonkeyPatch, module: ModuleType, owner: type, name: str) -> None:
-    """Hide an attribute from `module` alone; the library itself still needs it."""
+def hide(monkeypatch: pytest.MonkeyPatch, module: ModuleType, owner: type, name: str) -> list[str]:
+    """Hide an attribute from `module` alone, because the library itself still needs it.
+
+    The returned list gets the name whenever `module` looks for it and does not find it.
+    """
+    missed: list[str] = []
 
     def found(self: object, attribute: str) -> Any:
         if attribute == name and sys._getframe(1).f_globals.get("__name__") == module.__name__:
+            missed.append(name)
             raise AttributeError(name)
         return object.__getattribute__(self, attribute)
 
     monkeypatch.setattr(owner, "__getattribute__", found)
+    return missed
 
 
 def lose(monkeypatch: pytest.MonkeyPatch, owner: str, name: str) -> None:

@@ -16,7 +16,6 @@ from pathlib import Path
 from app import former_names as own
 from app import library_internals
 from app.former_names import FormerMetric, former_metric
-from app.scripts import FILES
 from app.serve.computing.priorities import ADDED_NICENESS
 from app.serve.computing.worker_pools import POOLS
 from app.serve.monitoring.metrics import HISTOGRAMS, METRICS, STAGE_TIMES, STAGES
@@ -26,6 +25,7 @@ from granchain_core import scene, scene_names
 from granchain_core.integrate import METHODS
 from granchain_core.prescribed_drive.formulas import FORMULAS
 from granchain_core.scene.quantities import QUANTITIES, Quantity
+from tools.connection_times import connection_times
 from tools.thresholds import printed
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -97,8 +97,7 @@ def table_of_libraries() -> str:
 
 def table_of_connection_times() -> str:
     """Return the table of docs/dashboard-server.md: the times in the script that watches the connection."""
-    rows = re.findall(r"^ +(?:const )?([A-Z_]+) = (\d+)[,;] // (.+)$", FILES["connection.js"].read_text(encoding="utf-8"), re.MULTILINE)
-    return "\n".join(["| constant | ms | what it is |", "|---|---|---|", *(f"| `{name}` | {value} | {words} |" for name, value, words in rows)])
+    return "\n".join(["| constant | ms | what it is |", "|---|---|---|", *(f"| `{name}` | {value} | {words} |" for name, (value, words) in connection_times().items())])
 
 
 def table_of_worker_pools() -> str:

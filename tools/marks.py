@@ -7,12 +7,24 @@ from app.plots.branches import LINES, SPECIAL, SPECIAL_STYLES
 from app.plots.curve import CURVE_STYLES
 from app.plots.force_lines import DRIVE, ELASTIC, INPUT, MEASURED, OUTPUT
 from app.plots.regimes import REGIME_MARKS, SYMBOLS
-from app.plots.theme import AMBER, BLUE, DRIVE_COLOUR, GREY, OUTPUT_COLOUR, TEAL, VIOLET
+from app.plots.theme import (
+    AMBER,
+    BLUE,
+    CYAN,
+    DRIVE_COLOUR,
+    GREY,
+    ORANGE,
+    OUTPUT_COLOUR,
+    PINK,
+    PURPLE,
+    RED,
+    TEAL,
+    VIOLET,
+)
 
 #: The names of colours.
 _WORDS = {AMBER: "amber", BLUE: "blue", DRIVE_COLOUR: "red", GREY: "grey", OUTPUT_COLOUR: "green", TEAL: "teal",
-          VIOLET: "violet", "#a855f7": "purple", "#f59e0b": "orange", "#06b6d4": "turquoise", "#ec4899": "pink",
-          "#ef4444": "red"}
+          VIOLET: "violet", PURPLE: "purple", ORANGE: "orange", CYAN: "turquoise", PINK: "pink", RED: "red"}
 #: Characters for marks, by Bokeh's marker and whether it is filled.
 _SIGNS = {("inverted_triangle", True): "▼", ("hex", True): "⬢", ("circle", False): "○", ("square", False): "□",
           ("cross", True): "+"}

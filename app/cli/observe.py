@@ -83,6 +83,7 @@ def _json(seen: Observation) -> dict[str, Any]:
     from granchain_core.observers.observation import written
 
     scene = scene_json(seen.scene)
+    # the given force has the slot of the driver (kernels/effects/given_force.py)
     return {**scene, "effects": ["given force" if e.startswith("driver") else e for e in scene["effects"]],
             "status": seen.status, "input": {
                 "understood": seen.record.understood, "notes": list(seen.record.notes), "samples": len(seen.time),

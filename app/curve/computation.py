@@ -12,7 +12,6 @@ import numpy as np
 from granchain_core import CurvePoint, Scene, iter_curve
 from granchain_core.execution.stop import Stop
 
-from ..serve.computing.cpu_time import CpuTime
 from ..serve.computing.shared import Shared
 from ..serve.computing.worker_pools import CURVE_WORK
 from ..session.scene_facts import slider_range, without_frequency
@@ -30,14 +29,14 @@ _FINER_PASSES = 2
 class Progress:
     """The progress of the curve from one start, `done` from 0 to 1; `points` are new since the last report.
 
-    `covers` says that the points cover the whole range, `complete` that no more will come.
+    `covers_range` says that the points cover the whole range, `complete` that no more will come.
     """
 
     start: str
     points: list[CurvePoint]
     done: float
     complete: bool = False
-    covers: bool = False
+    covers_range: bool = False
 
 
 def grid(scene: Scene, points: int) -> np.ndarray:
@@ -72,14 +71,12 @@ class CurveComputation:
     starts: list[str]
     report: Callable[[Progress], None]
     busy: Callable[[], bool]
-    cpu_time: CpuTime
 
     def __call__(self, job: Job) -> None:
         """Report each point as it comes; reported points stay when the job is cancelled."""
         for start in self.starts:
             key = without_frequency(self.scene), start
-            with closing(CURVES_SHARED.follow(key, partial(_computed, self.scene, start), job.stop,
-                                              self.cpu_time)) as shared:
+            with closing(CURVES_SHARED.follow(key, partial(_computed, self.scene, start), job.stop)) as shared:
                 for progress in shared:
                     job.stop.check()
                     self.report(progress)
@@ -90,7 +87,7 @@ def _computed(scene: Scene, start: str, stop: Stop) -> Iterator[Progress]:
     """Compute one curve, from coarse to fine. Raises `Cancelled`."""
     if start != "rest":
         yield from _points(scene, grid(scene, _POINTS_OF_SWEEP), start, stop, 0.0, 1.0)
-        yield Progress(start, [], 1.0, complete=True, covers=True)
+        yield Progress(start, [], 1.0, complete=True, covers_range=True)
         return
     points: list[CurvePoint] = []
     frequencies = grid(scene, COARSE)
@@ -100,7 +97,7 @@ def _computed(scene: Scene, start: str, stop: Stop) -> Iterator[Progress]:
         for progress in _points(scene, frequencies, start, stop, low, high):
             points += progress.points
             yield progress
-        yield Progress(start, [], high, complete=number == _FINER_PASSES, covers=True)
+        yield Progress(start, [], high, complete=number == _FINER_PASSES, covers_range=True)
         frequencies = midpoints(points, finest)
 
 
@@ -115,10 +112,10 @@ def _points(scene: Scene, frequencies: np.ndarray, start: str, stop: Stop, low: 
     stop.check()
 
 
-def _whole(parts: list[Progress]) -> list[Progress]:
-    """Return a finished curve as it is cached for the next session: all points at once."""
+def _cached(parts: list[Progress]) -> list[Progress]:
+    """Return a complete curve as it is cached for the next session: all points at once."""
     points = [point for progress in parts for point in progress.points]
-    return [Progress(parts[-1].start, points, 1.0, complete=True, covers=True)]
+    return [Progress(parts[-1].start, points, 1.0, complete=True, covers_range=True)]
 
 
 def _size(progress: Progress) -> int:
@@ -126,5 +123,5 @@ def _size(progress: Progress) -> int:
     return sum(2000 + point.state.displacement.nbytes + point.state.velocity.nbytes for point in progress.points)
 
 
-#: Curves of all sessions.
-CURVES_SHARED: Shared[Progress] = Shared(CURVE_WORK, 50_000_000, _size, _whole, turns=False)
+#: Curves of all sessions. They take no turns; docs/dashboard-server.md says what that means for visitors.
+CURVES_SHARED: Shared[Progress] = Shared(CURVE_WORK, 50_000_000, _size, _cached, turns=False)

@@ -239,8 +239,7 @@ class CurveController:
             self._notify_compared(None)
         self._drafts.drop()
         if missing:
-            self._task.start(CurveComputation(scene, missing, self._reports.add, lambda: self._host.busy,
-                                   self._host.session.cpu_time))
+            self._task.start(CurveComputation(scene, missing, self._reports.add, lambda: self._host.busy))
         else:
             self._task.cancel()
 
@@ -259,9 +258,9 @@ class CurveController:
         points: dict[str, list[CurvePoint]] = {}
         for progress in reports:
             points.setdefault(progress.start, []).extend(progress.points)
-        covers = {progress.start for progress in reports if progress.covers}
+        covering = {progress.start for progress in reports if progress.covers_range}
         for start, new in points.items():
-            self._figure.add(start, new, start in covers)
+            self._figure.add(start, new, start in covering)
         for progress in reports:
             if progress.complete:
                 self._completed(progress.start)
@@ -274,7 +273,7 @@ class CurveController:
         if scene is None:
             return
         self._complete_for[start] = scene
-        self._figure.finished(start)
+        self._figure.note_complete(start)
         self._placed()
         if start == "rest":
             self._names.name(self._figure.points("rest"), scene)

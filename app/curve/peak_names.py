@@ -29,7 +29,6 @@ from granchain_core.steady.curve.resonance import (
 )
 
 from ..frames import samples_for
-from ..serve.computing.cpu_time import CpuTime
 from ..serve.computing.shared import Shared
 from ..serve.computing.turns import TurnFlag
 from ..serve.computing.worker_pools import ANALYSES, CURVE_WORK
@@ -118,8 +117,7 @@ class PeakNames:
             places = [] if band is None else [band_name(band)]
             extremes = extreme_points(points)
             key = without_frequency(scene), tuple((kind, point.frequency) for kind, point in extremes)
-            with closing(NAMES_SHARED.follow(key, partial(_extremum_names, extremes, scene), job.stop,
-                                             CpuTime())) as names:
+            with closing(NAMES_SHARED.follow(key, partial(_extremum_names, extremes, scene), job.stop)) as names:
                 for name in names:
                     job.give_way(lambda: self._host.busy)
                     job.stop.check()

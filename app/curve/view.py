@@ -36,7 +36,7 @@ class CurveFigure:
         self._points: dict[str, list[CurvePoint]] = {name: [] for name in CURVE_STYLES}
         self._grey_points: dict[str, list[CurvePoint]] = {name: [] for name in CURVE_STYLES}
         self._scale = (1.0, "")
-        self._whole = False
+        self._rest_complete = False
         #: Whether a curve from rest is being computed, or will be computed unasked.
         self.expected = False
         self._ordered: tuple[np.ndarray, np.ndarray, list[int | None]] | None = None
@@ -128,7 +128,7 @@ class CurveFigure:
 
     def begin(self, starts: list[str]) -> None:
         """Turn the present curves of these starts grey, because new ones follow."""
-        self._whole = self._whole and "rest" not in starts
+        self._rest_complete = self._rest_complete and "rest" not in starts
         for name in CURVE_STYLES:
             if name in starts:
                 self._grey_points[name] = self._points[name] or self._grey_points[name]
@@ -136,11 +136,11 @@ class CurveFigure:
                 self._draw_grey(name)
                 self._draw(name)
 
-    def add(self, start: str, points: list[CurvePoint], covers: bool) -> None:
+    def add(self, start: str, points: list[CurvePoint], covers_range: bool) -> None:
         """Add points; once they cover the range, remove the grey curve."""
         self._ordered = None
         self._points[start] += [point for point in points if np.isfinite(point.max_output_force)]
-        if covers:
+        if covers_range:
             self._grey_points[start] = []
             self._draw_grey(start)
         self._rescale()
@@ -148,9 +148,9 @@ class CurveFigure:
 
     def redraw(self, start: str, points: list[CurvePoint]) -> None:
         """Replace the present curve by a whole new one, while a knob moves."""
-        self._whole = self._whole and start != "rest"
+        self._rest_complete = self._rest_complete and start != "rest"
         self._points[start] = []
-        self.add(start, points, covers=True)
+        self.add(start, points, covers_range=True)
 
     def pin(self, places: Sequence[tuple[str, float, float]]) -> None:
         """Mark pinned motions: name, frequency [Hz] and largest output force [N]."""
@@ -165,9 +165,9 @@ class CurveFigure:
             self._pinned.draw(self._scale[0])
 
     @property
-    def whole(self) -> bool:
+    def rest_complete(self) -> bool:
         """Whether the curve from rest is complete."""
-        return self._whole
+        return self._rest_complete
 
     @property
     def factor(self) -> float:
@@ -179,8 +179,8 @@ class CurveFigure:
         return sorted(self._points[start], key=lambda point: point.frequency)
 
     def place(self, run: Run) -> Place | None:
-        """Return where a run lies on the whole curve from rest; None while that curve is being computed."""
-        if not self._whole:
+        """Return where a run lies on the complete curve from rest; None while that curve is being computed."""
+        if not self._rest_complete:
             return None if self.expected else Place("")
         if self._ordered is None:
             points = self.points("rest")
@@ -189,15 +189,15 @@ class CurveFigure:
         transmission = run.max_output_force / run.max_input_force if run.max_input_force > 0.0 else 0.0
         return place_of(*self._ordered, run.scene.f, run.max_output_force, transmission)
 
-    def finished(self, start: str) -> None:
+    def note_complete(self, start: str) -> None:
         """Note that all points of the curve from this start have been computed."""
-        self._whole = self._whole or start == "rest"
+        self._rest_complete = self._rest_complete or start == "rest"
         if self._measurement is not None:
             self.measured(self._measurement)
 
     def clear(self) -> None:
         """Remove all curves, because another scene was opened."""
-        self._whole = False
+        self._rest_complete = False
         for name in CURVE_STYLES:
             self._points[name], self._grey_points[name] = [], []
             self._draw(name)
@@ -241,7 +241,7 @@ class CurveFigure:
     @property
     def difference(self) -> Difference | None:
         """How the visitor's data differ from the curve from rest; None if one of the two is missing."""
-        if self._measurement is None or not self._whole:
+        if self._measurement is None or not self._rest_complete:
             return None
         points = sorted(self._points["rest"], key=lambda point: point.frequency)
         return compared(self._measurement, np.array([point.frequency for point in points]),

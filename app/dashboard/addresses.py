@@ -9,7 +9,8 @@ from urllib.parse import parse_qsl
 
 from granchain_core import BadInput, State
 
-from ..former_names import TABS, present_tab
+from .. import former_names
+from ..former_names import present_tab
 from ..pages.analysis.questions import read_question
 from ..pages.stories.page import story_places, story_step
 from ..session.initial_state import read_initial_state
@@ -30,7 +31,7 @@ def apply_address(session: Session, query: str) -> tuple[State | None, list[str]
 
     Returns the state in which the motion begins (None for rest), and a sentence for every refused field.
     """
-    names = (*tab_names(), *(row.former for row in TABS))
+    names = (*tab_names(), *(row.former for row in former_names.TABS))
     places = {"tab": names, "page": names, "embed": ("1",)}
     scene, fields, sentences = decode(query, {**places, "story": story_places(overlay_names())})
     session.scene = scene

@@ -8,7 +8,7 @@ from functools import partial
 from bokeh.document import Document
 
 from ..serve.document.changes import batched_changes
-from ..serve.document.document_lock import with_document_lock
+from ..serve.document.document_lock import run_when_locked
 from ..serve.document.locked_callbacks import LockedCallbacks
 from ..serve.document.part_messages import call_with
 from ..serve.monitoring.faults import log_fault, new_fault_id
@@ -25,12 +25,12 @@ class Calls:
         self._closing: list[Callable[[], object]] = []
         self._closed = False
 
-    def with_lock(self, action: Callable[..., None], *args: object) -> None:
+    def run_when_locked(self, action: Callable[..., None], *args: object) -> None:
         """Call `action` now if Bokeh holds the document's lock, otherwise as soon as it does; called on the event loop.
 
-        A call before the page is ready waits for that (`with_document_lock`).
+        A call before the page is ready waits for that (`run_when_locked`).
         """
-        with_document_lock(self._document, partial(self.call_and_report, action, *args))
+        run_when_locked(self._document, partial(self.call_and_report, action, *args))
 
     def next_tick(self, action: Callable[..., None], *args: object) -> None:
         """Call `action` in the next iteration of the event loop; called from any thread."""

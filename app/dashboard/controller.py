@@ -70,7 +70,7 @@ class Controller:
         self.pages = tuple(row.page(self, views.overlays.get(row.name, views.tabs)) for row in PAGES)
         self.curves.on_compared(self._curve_compared)
         self._scenes = SceneChanges(session, views, self.pictures, self.curves, self.pinned, self.pages,
-                                    self.show_message, self.next_tick)
+                                    self.show_sentence, self.next_tick)
         self._looked_at: dict[str, Page | CurveController] = {
             CURVE_NAME: self.curves, **{row.name: page for row, page in zip(PAGES, self.pages, strict=True)}}
         own: Actions = {
@@ -83,7 +83,7 @@ class Controller:
             "gallery": self._send_gallery,
             **self.sentences.actions,
         }
-        playback = Playback(session, views.header, self.pictures, self._compute, self.show_message)
+        playback = Playback(session, views.header, self.pictures, self._compute, self.show_sentence)
         self.owners: dict[str, Actions] = {
             "the dashboard": own, "playback": playback.actions, "links and exports": self.exports.actions,
             "display choices": self.choices.actions, "pins": self.pinned.actions,
@@ -100,14 +100,14 @@ class Controller:
         action = self._actions.get(name) if isinstance(name, str) else None
         if action is None:
             action, message = self._unknown, {"name": quoted(name)}
-        self._calls.with_lock(self._act, str(name), action, message)
+        self._calls.run_when_locked(self._act, str(name), action, message)
 
     def _act(self, name: str, action: Callable[[dict[str, Any]], None], message: dict[str, Any]) -> None:
         self.sentences.action_begins(name)
         action(message)
 
     def _unknown(self, message: dict[str, Any]) -> None:
-        self.show_message(f"The server does not know the request {message['name']}; reload the page.")
+        self.show_sentence(f"The server does not know the request {message['name']}; reload the page.")
 
     def _ready(self, message: dict[str, Any]) -> None:
         compact = check_bool("compact", message.get("compact"))
@@ -144,9 +144,9 @@ class Controller:
         """See `PageHost`."""
         self._calls.on_close(action)
 
-    def show_message(self, sentence: str) -> None:
+    def show_sentence(self, sentence: str) -> None:
         """Show the visitor a message; an empty text removes it. `Sentences` says how long it stays."""
-        self.sentences.show_message(sentence)
+        self.sentences.show_sentence(sentence)
 
     def show_failure(self, error: Exception) -> None:
         """See `PageHost`."""
@@ -244,7 +244,7 @@ class Controller:
     def _compute(self) -> None:
         """Compute a picture because of an action of the visitor; a refusal of the last one no longer applies."""
         if self.session.sentence:
-            self.show_message("")
+            self.show_sentence("")
         self._scenes.request_picture()
 
     def _choose_frequency(self, frequency: object) -> None:

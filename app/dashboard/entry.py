@@ -33,7 +33,7 @@ def open_web_page() -> None:
         controller.views.put_into(document)
     pn.config.exception_handler = _handler(controller)
     if sentences:
-        controller.show_message(" ".join(sentences))
+        controller.show_sentence(" ".join(sentences))
     when_left(document, controller.close)
     pn.state.on_session_destroyed(controller.session_dropped)
     METRICS.session_opened()  # counted after `when_left`, so that its end is counted too

@@ -111,14 +111,15 @@ class PictureWork:
         most = math.inf if insisted else WHOLE_PICTURE
         with closing(PICTURES_SHARED.follow(key, partial(_computed, scene, initial_state, most, stages), stop,
                                             self._cpu_time)) as pictures:
-            for settled in pictures:
-                yield settled
-        if request.account:
+            latest: Settled | None = None
+            for latest in pictures:
+                yield latest
+        if request.account and latest is not None:
             if not COMPILER.await_piece(scene, account_piece(scene), stop):
                 raise Cancelled
             with stop.held():
-                settled = with_account(settled, stop)
-            yield settled
+                latest = with_account(latest, stop)
+            yield latest
 
     def live_step(self, newest_run: Callable[[], LiveRun | None], samples: int | None, speed: float,
                   insisted: Scene | None, stages: PictureStages, stop: TurnFlag) -> Iterator[LiveStep]:

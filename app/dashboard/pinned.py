@@ -12,7 +12,6 @@ from ..curve.computation import CurveComputation, Progress
 from ..frames import samples_for
 from ..parts.time_figures.pinned_trains import SIGNS
 from ..serve.compiling.compiler import PICTURE_PIECES
-from ..serve.computing.cpu_time import CpuTime
 from ..serve.computing.worker_pools import ANALYSES, CURVES
 from ..session.budget import check_first_picture, curve_affordable
 from ..session.host import PageHost
@@ -58,7 +57,7 @@ class Pinned:
         others = self._other_curves()
         missing = [key for key in others if key and key not in self._curves and curve_affordable(key)]
         if missing:
-            self._curve_task.start(partial(self._compute_curves, missing, self._session.cpu_time))
+            self._curve_task.start(partial(self._compute_curves, missing))
         elif self._session.pins:
             self._curve_task.cancel()
         self._views.curve.pinned_curves([self._curves.get(key, []) if key else [] for key in others])
@@ -82,7 +81,7 @@ class Pinned:
         pin = Pin(session.scene, session.initial_state)
         if settled.final:
             self._runs[_key(pin)] = settled.run
-        if self._views.curve.whole:
+        if self._views.curve.rest_complete:
             self._curves[without_frequency(session.scene)] = self._views.curve.points("rest")
         session.pins = (*session.pins, pin)
         self._changed()
@@ -112,13 +111,13 @@ class Pinned:
             settled = settle(pin.scene, start=pin.initial_state, samples=samples_for(pin.scene), stop=job.stop)
             job.next_tick(self._settled, pin, settled.run)
 
-    def _compute_curves(self, missing: Sequence[Scene], cpu_time: CpuTime, job: Job) -> None:
+    def _compute_curves(self, missing: Sequence[Scene], job: Job) -> None:
         """Compute the curves of pins, once the present curve is done."""
         for key in missing:
             job.compile(key, *PICTURE_PIECES)
             job.give_way(lambda: self._host.busy or self._host.curve_computing)
             parts: list[Progress] = []
-            CurveComputation(key, ["rest"], parts.append, lambda: self._host.busy, cpu_time)(job)
+            CurveComputation(key, ["rest"], parts.append, lambda: self._host.busy)(job)
             job.next_tick(self._swept, key, [point for progress in parts for point in progress.points])
 
     # To the browser

@@ -17,12 +17,12 @@ class Playback:
     """Actions of the header that concern time; `compute` requests a picture."""
 
     def __init__(self, session: Session, header: Header, pictures: MainPicture, compute: Callable[[], None],
-                 show_message: Callable[[str], None]) -> None:
+                 show_sentence: Callable[[str], None]) -> None:
         self._session = session
         self._header = header
         self._pictures = pictures
         self._compute = compute
-        self._show_message = show_message
+        self._show_sentence = show_sentence
         self.actions: Actions = {
             "mode": self._mode, "start": self._start, "speed": self._speed, "playing": self._playing,
             "reset": self._reset, "next-period": self._next_period, "reconnected": self._reconnected,
@@ -68,7 +68,7 @@ class Playback:
         if uploaded:
             different.append("your uploaded data are gone")
         but = f", but {' and '.join(different)}" if different else ""
-        self._show_message(f"The connection was lost. Your settings are restored{but}.")
+        self._show_sentence(f"The connection was lost. Your settings are restored{but}.")
 
     def _reset(self, _: dict[str, Any]) -> None:
         if self._pictures.live is not None:

@@ -23,7 +23,7 @@ class SceneChanges:
     """Sets the knobs of one session, opens scenes, and notifies pages and parts of the dashboard."""
 
     def __init__(self, session: Session, views: Views, pictures: MainPicture, curves: CurveController, pinned: Pinned,
-                 pages: Sequence[Page], show_message: Callable[[str], None],
+                 pages: Sequence[Page], show_sentence: Callable[[str], None],
                  next_tick: Callable[[Callable[[], None]], None]) -> None:
         self._session = session
         self._views = views
@@ -31,7 +31,7 @@ class SceneChanges:
         self._curves = curves
         self._pinned = pinned
         self._pages = pages
-        self._show_message = show_message
+        self._show_sentence = show_sentence
         self._next_tick = next_tick
         #: A settled picture that the pages have not been notified of yet.
         self._picture_for_pages: Settled | None = None
@@ -50,7 +50,7 @@ class SceneChanges:
         another = scene.name != session.scene.name
         session.open(scene)
         self._pictures.end_live()
-        self._show_message("")
+        self._show_sentence("")
         if another:
             self.show_preset(state, curves)
             return
@@ -106,7 +106,7 @@ class SceneChanges:
 
     def _scene(self, message: dict[str, Any]) -> None:
         self._session.choose(message.get("name"))
-        self._show_message("")
+        self._show_sentence("")
         self.show_preset(None, "")
 
     def _go(self, message: dict[str, Any]) -> None:
@@ -134,7 +134,7 @@ class SceneChanges:
             if session.curves != curves:
                 session.curves = self._curves.select(session.scene, session.curves)
             self._show_turned_knobs(initial_state)
-        self._show_message(" ".join(refused))
+        self._show_sentence(" ".join(refused))
 
     # Consequences
 
@@ -166,7 +166,7 @@ class SceneChanges:
         """Request a picture for the new knobs, then notify the pages and the curve."""
         self.request_picture(initial_state)
         if self._session.sentence:
-            self._show_message("")
+            self._show_sentence("")
         self._notify_of_scene()
         self._curves.knob_moved(self._session.scene)
 

@@ -1,4 +1,4 @@
-"""Messages to the visitor, their lines in the log, and the button that computes a refused picture anyway."""
+"""Sentences for the visitor, their lines in the log, and the button that computes a refused picture anyway."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ LONGEST_SCRIPT_ERROR = 400
 
 
 class Sentences:
-    """The message above the status line. `compute` requests a picture of the present knobs.
+    """The sentence above the status line. `compute` requests a picture of the present knobs.
 
-    A message stays until the visitor's next valid action of any kind (any message outside `SENT_UNASKED`), or until
-    another replaces it or the visitor closes it. That of a refused picture stays, with its button, until a picture is
+    A sentence stays until the browser sends a valid message outside `SENT_UNASKED`, until another sentence replaces it,
+    or until the visitor closes it. That of a refused picture stays, with its button, until a picture is
     requested or another scene is opened: it says why the picture does not follow the knobs.
     """
 
@@ -49,36 +49,36 @@ class Sentences:
         self.actions: Actions = {"dismiss-sentence": self._dismiss, "insist": self._insist,
                                  "script-error": self._script_error}
 
-    def show_message(self, sentence: str, refused: Scene | None = None) -> None:
-        """Show a message; an empty text removes it.
+    def show_sentence(self, sentence: str, refused: Scene | None = None) -> None:
+        """Show a sentence; an empty text removes it.
 
-        A button next to the message computes the scene that was `refused` because it takes too long.
+        A button next to it computes the scene that was `refused` because it takes too long.
         """
         self._session.sentence = sentence
         self._refused = refused
         self._show()
 
     def action_begins(self, name: str) -> None:
-        """Remove the message because the visitor acts; if the action is refused, its own message follows.
+        """Remove the sentence because the visitor acts; if the action is refused, its own sentence follows.
 
         Both changes leave together (`Calls`).
         """
         if name not in SENT_UNASKED and self._refused is None and self._session.sentence:
-            self.show_message("")
+            self.show_sentence("")
 
     def show_notice(self, notice: str) -> None:
-        """Show a message until the next picture."""
+        """Show a sentence until the next picture."""
         self._session.notice = notice
         self._show()
 
     def show_failure(self, error: Exception) -> None:
-        """Show a failure as a message; the last good picture stays."""
+        """Show a failure as a sentence; the last good picture stays."""
         if isinstance(error, RefusedPicture):
             METRICS.count("refused_pictures")
             if error.scene == self._session.scene:  # otherwise a knob has moved since then
-                self.show_message(str(error), error.scene)
+                self.show_sentence(str(error), error.scene)
         elif isinstance(error, BadInput):
-            self.show_message(str(error))
+            self.show_sentence(str(error))
         elif isinstance(error, ComputationError):
             fault = new_fault_id()
             self.log_failed_computation(error, fault)
@@ -95,10 +95,10 @@ class Sentences:
         fault = fault or new_fault_id()
         log_fault(error, fault, where=self._where())
         if sentence:
-            self.show_message(with_fault_id(sentence, fault))
+            self.show_sentence(with_fault_id(sentence, fault))
 
     def log_failed_computation(self, error: Exception, fault: str) -> None:
-        """Log a computation that could not be finished, under the id shown with its message."""
+        """Log a computation that could not be finished, under the id shown with its sentence."""
         log_failed_computation(error, fault, self._where())
 
     def _where(self) -> dict[str, str]:
@@ -127,9 +127,9 @@ class Sentences:
         """Compute the refused scene although it takes too long; other sessions still get their turns."""
         if self._refused is not None and self._refused == self._session.scene:
             self._session.insisted = self._refused
-            self.show_message("")
+            self.show_sentence("")
             self._compute()
 
     def _dismiss(self, _: dict[str, Any]) -> None:
         self._session.notice = ""
-        self.show_message("")
+        self.show_sentence("")

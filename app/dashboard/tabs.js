@@ -20,7 +20,7 @@ import { watchVisibility } from "./visibility.js";
 // Functions that make the tabs. If a function returns `show`, this redraws the tab when its page publishes something.
 // A tab that `updatesItself` is not rebuilt when the state changes, so the element under the pointer stays. A tab
 // without an overlay needs a function here (tests/dashboard/test_table.py).
-const TABS = {
+const TAB_BODIES = {
   stories: storiesTab,
   "look at": lookAtTab,
   regimes: regimesTab,
@@ -35,7 +35,7 @@ const TABS = {
   data: dataTab,
 };
 
-// A tab without a function in TABS: its page's sentence or placeholder and, for an overlay, a button that opens it.
+// A tab without a function in TAB_BODIES: its page's sentence or placeholder and, for an overlay, a button that opens it.
 function plainTab({ state: { pages } }, { name, placeholder }) {
   const line = paragraph();
   const show = () => {
@@ -148,7 +148,7 @@ class Tabs {
       tab.tabIndex = selected ? 0 : -1;
       if (selected) this.body.ariaLabel = tab.textContent;
     }
-    const make = TABS[this.chosen] ?? plainTab;
+    const make = TAB_BODIES[this.chosen] ?? plainTab;
     const { content, show = () => {}, updatesItself = false } = make(this.model, this.rows.get(this.chosen));
     Object.assign(this, { redraw: show, updatesItself });
     this.body.replaceChildren(...content);

@@ -2,7 +2,9 @@
 
 They are the same on the resonance curve and its key, in the parameter map, the list of attractors, the bifurcation
 diagram, the tab “regimes” and the paper's figures. After a change, run `python -m tools.paper` and
-`python -m tools.screenshots`, because the pictures in docs/paper and docs/dashboard.png show them.
+`python -m tools.screenshots`, because the pictures in docs/paper and docs/dashboard.png show them, and
+`python -m tools.update`, which writes docs/marks.md. The colours are constants of theme.py; a new one also needs its
+name in tools/marks.py.
 """
 
 from __future__ import annotations

@@ -93,7 +93,7 @@ class PageHost(WorkHost, Protocol):
         """
 
     def address_changed(self) -> None:
-        """Send the page its new address, because a field of the link other than a knob has changed."""
+        """Send the browser its new address, because a field of the link other than a knob has changed."""
 
     def open_scene(self, scene: Scene, state: State | None, curves: str) -> None:
         """Open a scene, possibly another preset, settled from `state` or from rest; this ends a live run.

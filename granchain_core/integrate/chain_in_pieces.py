@@ -27,7 +27,7 @@ from .counts import Counts
 from .failure import not_finite
 from .methods import fixed_step_setting
 from .scaling import ScaledChain
-from .stated import Computations, force_differences, least_errors, relative_difference
+from .stated import StatedErrors, force_differences, least_errors, relative_difference
 from .stepper import empty_samples
 
 #: Records with more steps than this are refused: they would take minutes.
@@ -120,7 +120,7 @@ def refined(chain: ChainInPieces, start: State, tell: Callable[[int], None]) -> 
 
     `tell` is called with the number of halvings after each run.
     """
-    scene, computations = chain.scaled.scene, Computations(chain.scaled.scene.cuts_tension)
+    scene, computations = chain.scaled.scene, StatedErrors(chain.scaled.scene.cuts_tension)
     computations.begin(fixed_step_setting())
     before, maxima_before = chain.run(start, 0), chain.maxima
     for halvings in range(1, MOST_HALVINGS + 1):

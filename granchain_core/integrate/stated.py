@@ -64,7 +64,7 @@ def or_whole_motion(stated: np.ndarray) -> np.ndarray:
 
 
 @dataclass(eq=False)
-class Computations:
+class StatedErrors:
     """The errors of several computations of one motion, for several quantities at once.
 
     Two computations may agree by chance (docs/accuracy.md, "Accuracy is measured, not trusted"). So the stated error is

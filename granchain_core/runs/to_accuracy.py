@@ -17,7 +17,7 @@ from ..execution.stopwatch import Stopwatch
 from ..inputs.checks import seconds_allowed, whole_number
 from ..integrate import Counts, Engine, MethodSetting, following_setting, method_for
 from ..integrate.methods import setting_of
-from ..integrate.stated import Computations, force_differences, least_errors, relative_difference
+from ..integrate.stated import StatedErrors, force_differences, least_errors, relative_difference
 from ..kernels.samples import Samples
 from ..results.recorded_motion import MOST_RECORDED, MOST_SAMPLES
 from ..results.regime import Regime
@@ -151,7 +151,7 @@ def _refined(attempt: Callable[[MethodSetting], _Attempt], scene: Scene, setting
     It ends once the error is as small as requested, if finer steps would not help, or before a computation that would
     exceed `budget` seconds.
     """
-    spent, errors = Stopwatch(), Computations(scene.cuts_tension)
+    spent, errors = Stopwatch(), StatedErrors(scene.cuts_tension)
     errors.begin(setting)
     before = attempt(setting)
     while True:

@@ -114,7 +114,7 @@ def test_the_page_opens_with_any_address(query: str, monkeypatch: pytest.MonkeyP
     """The page is requested as by a browser; Panel's own parser answered some of these addresses with a server error.
     """
     seen: list[list[str]] = []
-    monkeypatch.setattr(entry.Controller, "show_message", lambda self, sentence: seen.append([sentence]))
+    monkeypatch.setattr(entry.Controller, "show_sentence", lambda self, sentence: seen.append([sentence]))
 
     async def asked() -> int:
         server = server_at(0, "127.0.0.1")

@@ -24,14 +24,14 @@ def complete(figure: CurveFigure, chain: Scene) -> None:
     """Draw a chain's complete curve of three points."""
     regime = Regime("periodic", 1, None, None, 9)
     figure.add("rest", [CurvePoint(f, 1.0, 1.0, 1.0, regime, ForceErrors(), rest(chain)) for f in (40.0, 60.0, 80.0)], True)
-    figure.finished("rest")
+    figure.note_complete("rest")
 
 
 def test_a_curve_does_not_stay_beside_the_picture_of_a_chain_that_has_none() -> None:
     before, after = scene("fig12-60"), scene("fig12-60").evolve(kappa=50.0)
     assert curve_affordable(before) and not curve_affordable(after)
     host, figure, bar, placed = Host(), CurveFigure(lambda _: None), CurveBar(lambda _: None), []
-    curves = CurveController(host, figure, bar, lambda: placed.append(figure.whole))  # type: ignore[arg-type]
+    curves = CurveController(host, figure, bar, lambda: placed.append(figure.rest_complete))  # type: ignore[arg-type]
     curves.show_preset(before, "auto")
     complete(figure, before)
     assert not bar.state["too_long"]

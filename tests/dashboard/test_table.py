@@ -35,7 +35,7 @@ def test_every_folder_of_a_page_has_its_row() -> None:
 def test_every_tab_without_a_page_over_the_pictures_is_drawn_by_the_browser_itself() -> None:
     """Such a tab has nothing to open; without its own function, it would have one sentence at most."""
     script = (Path(__file__).parents[2] / "app" / "dashboard" / "tabs.js").read_text(encoding="utf-8")
-    listed = script.partition("const TABS = {")[2].partition("};")[0]
+    listed = script.partition("const TAB_BODIES = {")[2].partition("};")[0]
     drawn = {name.strip('"') for name in re.findall(r'("[^"]+"|\w+):', listed)}
     assert {row.name for row in TABS if not getattr(row, "view", None)} <= drawn <= {row.name for row in TABS}
 

@@ -129,8 +129,8 @@ def test_the_misfit_is_in_newtons_and_comes_with_the_whole_curve(dashboard: Dash
     assert after(dashboard, sent(FILE), "understood").startswith("mine.csv: 2 points")
     assert dashboard.views.tabs.state["misfit"] is None
     figure = dashboard.views.curve
-    figure.add("rest", [point(30.0, 4.0), point(50.0, 6.0), point(70.0, 16.0)], covers=True)
-    figure.finished("rest")
+    figure.add("rest", [point(30.0, 4.0), point(50.0, 6.0), point(70.0, 16.0)], covers_range=True)
+    figure.note_complete("rest")
     data_page(dashboard).curve_compared(figure.difference)
     misfit: Any = dashboard.views.tabs.state["misfit"]
     # the model has 5 N at 40 Hz and 11 N at 60 Hz: −0.5 and −1.1 N

@@ -16,7 +16,7 @@ from granchain_core.execution.stopwatch import COMPILER_CLOCK, CompilerClock, St
 from granchain_core.integrate import METHODS, MethodSetting
 from granchain_core.integrate.methods import typical_error
 from granchain_core.integrate.safety_factors import IRREGULAR
-from granchain_core.integrate.stated import Computations
+from granchain_core.integrate.stated import StatedErrors
 from granchain_core.runs import to_accuracy
 from tests.numerics.forces.located import located
 
@@ -24,9 +24,9 @@ REFINES = (4.0, 8.0, 16.0, 32.0)
 STEPS = 10_000
 
 
-def shown(differences: list[float], refines: tuple[float, ...] = REFINES) -> Computations:
+def shown(differences: list[float], refines: tuple[float, ...] = REFINES) -> StatedErrors:
     """Return fixed-step computations, each of which differs from the previous one by the next of these differences."""
-    found = Computations(False)
+    found = StatedErrors(False)
     found.begin(MethodSetting("rk4-split", refines[0]))
     for refine, difference in zip(refines[1:], differences, strict=False):
         setting = MethodSetting("rk4-split", refine)
@@ -51,7 +51,7 @@ def test_the_difference_before_counts_with_every_method_where_tension_is_cut(met
     """The previous difference is divided by the tolerance ratio with error control, and otherwise by 2 (order 1)."""
     coarse = MethodSetting(method, 1.0, 1e-6)
     fine = coarse.finer()
-    found = Computations(cuts_tension=True)
+    found = StatedErrors(cuts_tension=True)
     found.begin(coarse)
     for setting, difference in ((fine, 1e-3), (fine.finer(), 0.0)):
         found.add(setting, STEPS, np.array([difference]), np.zeros(1))
@@ -164,4 +164,4 @@ def test_kernels_that_are_compiled_on_the_way_do_not_exhaust_the_budget(monkeypa
 def test_typical_errors_fall_as_the_differences_are_expected_to() -> None:
     """Both terms of a stated error use the same order, the observed one."""
     coarse, fine = MethodSetting("rk4-split", 1.0), MethodSetting("rk4-split", 8.0)
-    assert typical_error(coarse) / typical_error(fine) == pytest.approx(Computations(False)._falls(coarse, fine), rel=1e-12)
+    assert typical_error(coarse) / typical_error(fine) == pytest.approx(StatedErrors(False)._falls(coarse, fine), rel=1e-12)

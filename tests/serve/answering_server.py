@@ -16,7 +16,8 @@ from tornado.ioloop import IOLoop
 
 from app.serve.connection import socket_tuning
 from app.serve.connection.socket_tuning import disable_nagle
-from app.serve.document.document_lock import has_document_lock, with_document_lock
+from app.serve.document.changes import batched_changes
+from app.serve.document.document_lock import may_change, run_when_locked
 
 
 class Served:
@@ -43,16 +44,17 @@ class Served:
     def _build(self, document: Document) -> None:
         self.document = document
         question, self.answer = Div(name="question"), Div(name="answer")
-        question.on_change("text", lambda _attribute, _old, new: with_document_lock(document, lambda: self.reply(new)))
+        question.on_change("text", lambda _attribute, _old, new: run_when_locked(document, lambda: self.reply(new)))
         document.add_root(question)
         document.add_root(self.answer)
 
     def reply(self, text: str) -> None:
         """Send the answer in the way a picture is sent."""
         assert self.document is not None
-        self.found = {"locked": has_document_lock(self.document), "streams": socket_tuning._streams(self.document)}
+        self.found = {"locked": may_change(self.document), "streams": socket_tuning._streams(self.document)}
         disable_nagle(self.document)
-        self.answer.text = f"{text}, yes"
+        with batched_changes(self.document):
+            self.answer.text = f"{text}, yes"
 
     def stop(self) -> None:
         """End the server."""

@@ -9,13 +9,14 @@ import time
 
 from tornado.httpclient import AsyncHTTPClient, HTTPClientError, HTTPRequest
 
+from ..connection_times import connection_times, retry_growth
 from .started import Started
 from .visitor import Visitor, query_of
 
 #: Pages that are opened at once before the restart.
 _AT_ONCE = 20
-#: Time between attempts to reach the server, first and longest [s], as in app/parts/inline_scripts/connection.js.
-_RETRY_FIRST, _RETRY_LONGEST, _RETRY_GROWTH = 0.4, 5.0, 1.6
+#: Time between attempts to reach the server, first and longest [s], as a browser has them.
+_RETRY_FIRST, _RETRY_LONGEST = (connection_times()[name][0] / 1000 for name in ("RETRY_FIRST", "RETRY_LONGEST"))
 #: Time in which a browser loads the scripts of a page before it opens the websocket, at least and at most [s].
 _SCRIPTS_TIME = (0.5, 1.5)
 #: Time for all pages to come back [s].
@@ -80,4 +81,4 @@ async def _until_ready(address: str, chance: random.Random, back: Back) -> None:
             await client.fetch(HTTPRequest(f"{address}/readiness", request_timeout=2.6, connect_timeout=2.6))
             return
         except (HTTPClientError, OSError):
-            pause = min(_RETRY_GROWTH * pause, _RETRY_LONGEST)
+            pause = min(retry_growth() * pause, _RETRY_LONGEST)

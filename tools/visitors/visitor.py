@@ -14,11 +14,13 @@ from urllib.parse import urlencode, urlsplit
 from tornado.httpclient import AsyncHTTPClient, HTTPRequest
 from tornado.websocket import WebSocketClientConnection, WebSocketClosedError, websocket_connect
 
+from ..connection_times import connection_times
+
 _TOKEN = re.compile(r'"token":"([^"]+)"')
 _ESM_MODEL = re.compile(r'"name":"[^"]*ReactiveESM[^"]*","id":"([^"]+)"')
 _NUMBER = re.compile(r'"number",(\d+)')
-#: Time between two pings of a visible page [s], as in app/parts/inline_scripts/connection.js.
-_PING_EVERY = 0.6
+#: Time between two pings of a visible page [s], as a browser has it.
+_PING_EVERY = connection_times()["PING_EVERY"][0] / 1000
 #: Largest message that a page may get [bytes]: the chain of 10,000 beads.
 _LARGEST = 200_000_000
 

@@ -56,7 +56,7 @@ def page_grid(scene: Scene) -> Grid:
 
 
 class MapPage(Page):
-    """The page, which computes its map while the tab is on the screen."""
+    """The page, which computes its map while its tab is open."""
 
     def __init__(self, host: PageHost, view: Component) -> None:
         self._host = host

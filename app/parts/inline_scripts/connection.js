@@ -10,6 +10,7 @@
     RETRY_FIRST = 400, // between the first two attempts to reach a lost server
     RETRY_LONGEST = 5000, // between two attempts at most
     SILENT_SOCKET = 3000; // how long the socket may stay silent once the server answers HTTP again
+  const RETRY_GROWTH = 1.6; // each attempt comes later than the one before by this factor
   const LOST = "Connection lost – trying again … The pictures may be out of date.";
   const FULL = "The server is full – your page will open with your settings as soon as there is room …";
   const BACK = "Connected again – restoring your settings …";
@@ -196,7 +197,7 @@
       this.#sinceTry = 0;
       if (this.#lost) showBanner(full ? FULL : LOST);
       // Each attempt comes later, and at a random time, so that not all pages reach the server at once.
-      this.#pause = alive ? RETRY_FIRST : Math.min(1.6 * this.#pause, RETRY_LONGEST);
+      this.#pause = alive ? RETRY_FIRST : Math.min(RETRY_GROWTH * this.#pause, RETRY_LONGEST);
       this.#retryAfter = this.#pause * (0.5 + 0.5 * Math.random());
       if (!alive) this.#sinceReached = null;
       else if (this.#closed || this.#sinceReached > SILENT_SOCKET) this.#reload();

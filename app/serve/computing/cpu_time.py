@@ -18,7 +18,7 @@ class CpuTime:
 
     @property
     def used(self) -> float:
-        """The time used [s]; half of it is forgotten every five seconds."""
+        """The time used [s]; half of it is forgotten after each `_HALF_LIFE`."""
         return self._used * math.exp2((self._at - self._clock()) / _HALF_LIFE)
 
     def charge(self, seconds: float) -> None:

@@ -49,7 +49,7 @@ class Shared(Generic[Item]):
 
     `kept` chooses the items of a finished computation that are kept, and `size` returns the memory of an item. All kept
     items together take at most `memory` bytes; the least recently used computation is dropped first. With `turns`, the
-    computations take turns (turns.py).
+    computations take turns (turns.py); without, the threads of the pool are given first come, first served.
     """
 
     def __init__(self, pool: WorkerPool, memory: int, size: Callable[[Item], int],
@@ -62,11 +62,13 @@ class Shared(Generic[Item]):
         self.hits, self.misses = 0, 0
 
     def follow(self, key: Hashable, compute: Callable[[TurnFlag], Iterator[Item]], stop: Stop,
-               cpu_time: CpuTime) -> Generator[Item, None, None]:
+               cpu_time: CpuTime | None = None) -> Generator[Item, None, None]:
         """Yield the items of `compute`, or of the computation with the same key that is under way or finished.
 
-        A computation with the key None is not shared. Raises `Cancelled` when `stop` is set, and errors of `compute`.
+        A computation with the key None is not shared. Only computations that take turns are charged to `cpu_time`.
+        Raises `Cancelled` when `stop` is set, and errors of `compute`.
         """
+        cpu_time = cpu_time or CpuTime()
         with self._lock:
             if key in self._finished:
                 self.hits += 1

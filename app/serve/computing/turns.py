@@ -183,6 +183,7 @@ class Turns:
         return len(are_new) < self._at_once or waited
 
 
+#: A turn for each core, and at least two: on a single core, two computations share it.
 TURNS = Turns(max(2, usable_cores()))
 
 

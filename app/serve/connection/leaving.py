@@ -1,4 +1,4 @@
-"""The end of a connection: notifies the page at once and asks Bokeh to drop the session."""
+"""The end of a connection: notifies the web page's controller at once and asks Bokeh to drop the session."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ INTERNALS = internals(
 )
 
 #: The method to be called when the session ends, by document.
-_PAGES: weakref.WeakKeyDictionary[Document, weakref.WeakMethod[Callable[[], None]]] = weakref.WeakKeyDictionary()
+_CLOSERS: weakref.WeakKeyDictionary[Document, weakref.WeakMethod[Callable[[], None]]] = weakref.WeakKeyDictionary()
 
 
 def when_left(document: Document, close: Callable[[], None]) -> None:
     """Call a method when the session of this document ends; this does not keep the method's object alive."""
-    _PAGES[document] = weakref.WeakMethod(close)
+    _CLOSERS[document] = weakref.WeakMethod(close)
 
 
 def end_session(session: Any) -> None:
-    """End the Bokeh session of a page that was left; no other page can connect to it."""
-    close = _PAGES[session.document]() if session.document in _PAGES else None
+    """End the Bokeh session of a web page that was left; no other web page can connect to it."""
+    close = _CLOSERS[session.document]() if session.document in _CLOSERS else None
     if close is not None:
         close()
     expire = getattr(session, "request_expiration", None)

@@ -17,8 +17,10 @@ INTERNALS = internals(
 )
 
 
-def has_document_lock(document: Document) -> bool:
+def may_change(document: Document) -> bool:
     """Return whether Bokeh is known to hold the document's lock, without which the document must not be changed.
+
+    True for a document without a session, as in tests and while a document is being filled.
 
     While Bokeh holds the lock, it keeps a list of pending writes. A message can arrive while answers to an earlier
     message are still being written; Bokeh then refuses every change. If a release keeps the list elsewhere, a change
@@ -28,14 +30,14 @@ def has_document_lock(document: Document) -> bool:
     return session is None or getattr(session, "_pending_writes", None) is not None
 
 
-def with_document_lock(document: Document, action: Callable[[], None]) -> None:
+def run_when_locked(document: Document, action: Callable[[], None]) -> None:
     """Run `action` as soon as the document may be changed and changes reach the browser.
 
     The browser can send requests before it has reported that all parts are rendered. Until then, Panel drops changes.
     """
     if not pn.state.loaded:
         pn.state.onload(action)
-    elif has_document_lock(document):
+    elif may_change(document):
         action()
     else:
         document.add_next_tick_callback(action)

@@ -1,6 +1,7 @@
 """Messages of the page's own parts, passed to the part without Bokeh's decoding of a change.
 
-Every action of a visitor arrives this way. All other messages go to Bokeh.
+Every action of a visitor arrives this way but one: a click on the resonance curve is Bokeh's event `Tap`
+(`app/curve/view.py`). All other messages go to Bokeh.
 """
 
 from __future__ import annotations

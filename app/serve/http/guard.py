@@ -27,7 +27,7 @@ log = logging.getLogger("granchain.requests")
 
 try:
     from bokeh.server.views.session_handler import SessionHandler
-except ImportError:  # see `_opens_page`
+except ImportError:  # see `_opens_session`
     SessionHandler = None
 
 #: The undocumented parts of Bokeh that are used here.
@@ -81,7 +81,7 @@ class Guard(RequestHandler):
 
     def admit(self) -> None:
         """Make room for the session of a request that opens a page, or refuse the request."""
-        if _opens_page(self) and not self.rules.sessions.make_room():
+        if _opens_session(self) and not self.rules.sessions.make_room():
             self.refuse_session()
 
     def refuse_session(self) -> NoReturn:
@@ -115,7 +115,7 @@ class Guard(RequestHandler):
             log.error("request failed", exc_info=(typ, value, tb), extra=words)
 
 
-def _opens_page(handler: RequestHandler) -> bool:
+def _opens_session(handler: RequestHandler) -> bool:
     """Return whether a request may open a page. Without Bokeh's class of such handlers, any unknown handler may."""
     if SessionHandler is not None:
         return isinstance(handler, SessionHandler)

@@ -10,7 +10,7 @@ from bokeh.server.server import Server
 
 from ..connection.leaving import end_session
 
-#: Time for which the token of a loaded page is valid [s].
+#: Time for which the token of a loaded web page is valid [s].
 TOKEN_LIFETIME = 300
 #: Time for which a connected session is remembered, so that its token cannot be used again [s]; longer than tokens are
 #: valid.
@@ -20,9 +20,9 @@ _SESSIONS_REMEMBERED = 2.0 * TOKEN_LIFETIME
 class Sessions:
     """The sessions of one server.
 
-    A session is *loading* from the request for its page until its websocket connects. A client that fetches pages and
-    never connects would soon take all places. Loading pages therefore have at most half of the places, and the oldest
-    loading page makes room for a new one. A smaller share would evict visitors who open the page at the same moment.
+    A session is *loading* from the request for its web page until its websocket connects. A client that fetches web
+    pages and never connects would soon take all places. Loading sessions therefore have at most half of the places, and
+    the oldest of them makes room for a new one. A smaller share would evict visitors who arrive at the same moment.
     """
 
     def __init__(self, most: int) -> None:
@@ -35,7 +35,7 @@ class Sessions:
 
     @property
     def full(self) -> bool:
-        """Whether no further page can be opened."""
+        """Whether no further session can be opened."""
         loading = len(self._loading())
         return len(self._present()) - loading + min(loading, self.most_loading - 1) >= self.most
 

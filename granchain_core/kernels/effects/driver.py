@@ -57,7 +57,7 @@ def _(driver, theta):
 
 @by_slot
 def driver_velocity(driver, theta):
-    """v_0 at drive phase θ."""
+    """v_0 at drive phase θ. For a measured force (`Sampled` in given_force.py) it is the force: there is no body 0."""
     return 0.0
 
 

@@ -170,24 +170,51 @@ def test_a_release_without_a_needed_name_is_noticed(row: Internal, monkeypatch: 
             assert not changes.is_complete()
 
 
+def writes(monkeypatch: pytest.MonkeyPatch) -> list[bytes]:
+    """Return a list that gets each message that is written without Bokeh from now on."""
+    written: list[bytes] = []
+    write = changes._Socket.write
+
+    def noted(self: changes._Socket, data: bytes) -> None:
+        written.append(data)
+        write(self, data)
+
+    monkeypatch.setattr(changes._Socket, "write", noted)
+    return written
+
+
 @in_a_thread
-def test_actions_are_answered_without_a_needed_part_of_bokeh(served: Served, monkeypatch: pytest.MonkeyPatch) -> None:
-    """In that case, Bokeh sends the changes itself."""
-    monkeypatch.setattr(changes, "_COMPLETE", False)
-    monkeypatch.setattr(changes, "_send", lambda *_: pytest.fail("gathered"))
+def test_an_answer_is_one_message_that_bokeh_does_not_write(served: Served, monkeypatch: pytest.MonkeyPatch) -> None:
+    written = writes(monkeypatch)
     session = pull_session(url=served.address)
     ask(session, "first")
     wait_for(session, "first, yes")
     session.close()
+    assert len(written) == 1
+
+
+@in_a_thread
+def test_actions_are_answered_without_a_needed_part_of_bokeh(served: Served, monkeypatch: pytest.MonkeyPatch) -> None:
+    """In that case, Bokeh sends the changes itself."""
+    monkeypatch.setattr(changes, "_COMPLETE", False)
+    written = writes(monkeypatch)
+    session = pull_session(url=served.address)
+    ask(session, "first")
+    wait_for(session, "first, yes")
+    session.close()
+    assert not written
 
 
 @pytest.mark.parametrize(("owner", "name"), [(ServerSession, "_subscribed_connections"), (WSHandler, "ws_connection"),
                                              (WSHandler, "write_lock")], ids=lambda value: getattr(value, "__name__", value))
 @in_a_thread
 def test_actions_are_answered_without_a_private_name_of_bokeh(owner: type, name: str, served: Served, monkeypatch: pytest.MonkeyPatch) -> None:
-    hide(monkeypatch, changes, owner, name)
+    """In that case as well, Bokeh sends the changes itself."""
+    written = writes(monkeypatch)
+    missed = hide(monkeypatch, changes, owner, name)
     session = pull_session(url=served.address)
     for text in ("first", "second"):
         ask(session, text)
         wait_for(session, f"{text}, yes")
     session.close()
+    assert missed and not written

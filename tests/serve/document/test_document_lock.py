@@ -10,7 +10,7 @@ from event_loop import in_a_thread
 from missing_attribute import hide
 
 from app.serve.document import document_lock
-from app.serve.document.document_lock import with_document_lock
+from app.serve.document.document_lock import run_when_locked
 
 
 @in_a_thread
@@ -25,11 +25,12 @@ def test_a_lock_of_this_release_is_known(served: Served) -> None:
 
 @in_a_thread
 def test_messages_are_answered_where_a_lock_is_not_known(served: Served, monkeypatch: pytest.MonkeyPatch) -> None:
-    hide(monkeypatch, document_lock, ServerSession, "_pending_writes")
+    missed = hide(monkeypatch, document_lock, ServerSession, "_pending_writes")
     session = pull_session(url=served.address)
     for text in ("first", "second"):
         ask(session, text)
         wait_for(session, f"{text}, yes")
+        assert missed and not served.found["locked"]
     session.close()
 
 
@@ -43,6 +44,6 @@ def test_a_message_that_comes_while_the_document_is_not_locked_is_answered(hidde
     session = pull_session(url=served.address)
     document = served.document
     assert document is not None
-    served.loop.add_callback(lambda: with_document_lock(document, lambda: served.reply("later")))
+    served.loop.add_callback(lambda: run_when_locked(document, lambda: served.reply("later")))
     wait_for(session, "later, yes")
     session.close()

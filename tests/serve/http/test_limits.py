@@ -48,42 +48,54 @@ LIMITS = {limit: (value, re.findall(r"`(\w+)`", tests)) for limit, value, _, tes
 #: The rows of the table of what visitors may ask for: what, value, constant and file.
 ASKED_ROWS = re.findall(r"^\| ([^|]+) \| (\d+) \| ([^|]+) \|$",
                         PAGE.split("| a visitor asks for | at most | constant and file |")[1].split("\n\n")[0], re.MULTILINE)
-STATED_LIMITS = {name: value for name, value, _ in ASKED_ROWS}
+#: The section of the promises, without and with the table of their tests.
+PROMISES, _, PROMISE_TABLE = PAGE.split("## What is promised\n")[1].split("`--max-sessions` is the only limit")[0].partition(
+    "| promise | tested by |")
+PROMISE_ROWS = re.findall(r"^\| ([^|`]+) \| ([^|]+) \|$", PROMISE_TABLE, re.MULTILINE)
+
+
+def constants_in(cell: str) -> tuple[str, ...]:
+    """Return the names of constants in a cell, by which rows are found: their words may change."""
+    return tuple(re.findall(r"`(\w+)`", cell))
+
+
+def contains(text: str, value: str) -> bool:
+    """Return whether a text contains a value that is no part of a longer number."""
+    return re.search(rf"(?<![\w.]){re.escape(value)}(?!\w|\.\d)", text) is not None
 
 
 def test_the_limits_of_the_document_are_those_of_the_code() -> None:
-    """They agree literally with the table, so that neither changes without the other."""
-    assert {
-        "a request's head": f"{server.IDLE_TIME} s",
-        "a request's body": f"{server.BODY_TIME} s, {server.LARGEST_BODY // 1000} kB",
-        "a connection that sends nothing": f"{server.IDLE_TIME} s",
-        "a websocket that does not answer pings": f"{server.PING_INTERVAL} to {2 * server.PING_INTERVAL} s",
-        "a websocket message": f"{server.LARGEST_MESSAGE / 1e6:.1f} MB, for an upload of {LARGEST_UPLOAD / 1e6:g} MB in base64; "
-                               f"{LARGEST_PLAIN_CONTENT // 1000} kB without a file",
-        "websocket frames": f"{FRAME_RATE:g} a second, {FRAME_BURST:g} at once, of any kind; one counts once more for every "
-                            f"{FRAME_UNIT // 1000} kB of it; beyond that the connection is closed (1008)",
-        "bytes that wait to be sent to a page": f"{guarded_socket.MOST_UNSENT // 1_000_000} MB when another message is to be "
-                                                "sent, as two pictures of the longest chain; beyond that the connection is closed",
-        "bytes that wait to be sent to all pages": f"{guarded_socket.MOST_UNSENT_TOGETHER // 1_000_000} MB together; beyond "
-                                                   "that the connection with the most is closed",
-        "a page that is being loaded": f"{server.UNCONNECTED_MS // 1000} s; at most half of the sessions",
-        "a link": f"{LONGEST_LINK} characters",
-        "sessions at once": f"{Access().max_sessions}",
-        "long computations of a session at once": f"{LONG.per_owner_limit} ({LONG.purpose}); more wait",
-        "first picture, steady state": f"{FIRST_PICTURE:g} s (estimated), {WHOLE_PICTURE:g} s of processor time",
-        "a resonance curve": f"{UNASKED_CURVE:g} s (estimated); a longer one is left to `granchain curve`",
-        "pictures and curves kept for all visitors": f"{PICTURES_SHARED.memory / 1e6:g} MB and {CURVES_SHARED.memory / 1e6:g} MB",
-    } == {limit: value for limit, (value, _) in LIMITS.items()}
+    """Each row of the table contains the values of its constants, so that neither changes without the other."""
+    values = {
+        ("IDLE_TIME",): [f"{server.IDLE_TIME} s"],
+        ("BODY_TIME", "LARGEST_BODY"): [f"{server.BODY_TIME} s", f"{server.LARGEST_BODY // 1000} kB"],
+        ("PING_INTERVAL",): [f"{server.PING_INTERVAL} to {2 * server.PING_INTERVAL} s"],
+        ("LARGEST_MESSAGE", "LARGEST_UPLOAD", "LARGEST_PLAIN_CONTENT"): [
+            f"{server.LARGEST_MESSAGE / 1e6:.1f} MB", f"{LARGEST_UPLOAD / 1e6:g} MB", f"{LARGEST_PLAIN_CONTENT // 1000} kB"],
+        ("FRAME_RATE", "FRAME_BURST", "FRAME_UNIT"): [
+            f"{FRAME_RATE:g} a second", f"{FRAME_BURST:g} at once", f"{FRAME_UNIT // 1000} kB"],
+        ("MOST_UNSENT",): [f"{guarded_socket.MOST_UNSENT // 1_000_000} MB"],
+        ("MOST_UNSENT_TOGETHER",): [f"{guarded_socket.MOST_UNSENT_TOGETHER // 1_000_000} MB"],
+        ("UNCONNECTED_MS", "Sessions"): [f"{server.UNCONNECTED_MS // 1000} s", "half of the sessions"],
+        ("LONGEST_LINK",): [f"{LONGEST_LINK} characters"],
+        ("USUAL_SESSIONS",): [f"{Access().max_sessions}"],
+        ("LONG",): [f"{LONG.per_owner_limit} ({LONG.purpose})"],
+        ("FIRST_PICTURE", "WHOLE_PICTURE"): [f"{FIRST_PICTURE:g} s (estimated)", f"{WHOLE_PICTURE:g} s of processor time"],
+        ("UNASKED_CURVE",): [f"{UNASKED_CURVE:g} s (estimated)"],
+        ("PICTURES_SHARED", "CURVES_SHARED"): [f"{PICTURES_SHARED.memory / 1e6:g} MB", f"{CURVES_SHARED.memory / 1e6:g} MB"],
+    }
+    assert {constants_in(where) for _, _, where, _ in ROWS} == set(values)
+    for limit, stated, where, _ in ROWS:
+        assert [value for value in values[constants_in(where)] if not contains(stated, value)] == [], limit
 
 
 def test_the_stated_limits_of_pages_are_those_of_the_code() -> None:
     assert {
-        "beads of a chain": QUANTITIES["N"].high, "pins": len(PINS), "beads whose state a link contains": MOST_BEADS_IN_LINK,
-        "points of a measurement": MOST_UPLOADED_POINTS, "points of a branch, each way": MOST_POINTS,
-        "Analysis: beads": questions.MOST_BEADS, "Analysis: values of a knob": questions.MOST_VALUES,
-        "Analysis: starts of each of two knobs": questions.MOST_STARTS, "Analysis: drive periods": questions.MOST_PERIODS,
-        "Analysis: strobes kept": questions.MOST_STROBES,
-    } == {name: int(value) for name, value in STATED_LIMITS.items()}
+        "QUANTITIES": QUANTITIES["N"].high, "PINS": len(PINS), "MOST_BEADS_IN_LINK": MOST_BEADS_IN_LINK,
+        "MOST_UPLOADED_POINTS": MOST_UPLOADED_POINTS, "MOST_POINTS": MOST_POINTS,
+        "MOST_BEADS": questions.MOST_BEADS, "MOST_VALUES": questions.MOST_VALUES, "MOST_STARTS": questions.MOST_STARTS,
+        "MOST_PERIODS": questions.MOST_PERIODS, "MOST_STROBES": questions.MOST_STROBES,
+    } == {" ".join(constants_in(where)): int(value) for _, value, where in ASKED_ROWS}
 
 
 @pytest.mark.parametrize("where", [*(row[2] for row in ROWS), *(row[2] for row in ASKED_ROWS)])
@@ -97,10 +109,23 @@ def test_the_constant_of_a_limit_is_in_the_file_that_the_document_names(where: s
             assert re.search(rf"^(class )?{name}\b", source, re.MULTILINE), (name, place[2])
 
 
-@pytest.mark.parametrize(("limit", "tests"), [(limit, tests) for limit, (_, tests) in LIMITS.items()])
-def test_every_limit_names_its_tests(limit: str, tests: list[str]) -> None:
+@pytest.mark.parametrize(("what", "tests"), [*((limit, tests) for limit, (_, tests) in LIMITS.items()),
+                                             *((promise, list(constants_in(tests))) for promise, tests in PROMISE_ROWS)])
+def test_every_limit_and_every_promise_names_its_tests(what: str, tests: list[str]) -> None:
     sources = "\n".join(path.read_text(encoding="utf-8") for path in TESTS.rglob("test_*.py"))
-    assert tests and all(f"\ndef {test}(" in sources for test in tests), limit
+    assert tests and all(f"\ndef {test}(" in sources for test in tests), what
+
+
+def test_the_table_of_tests_has_every_promise() -> None:
+    """A promise with parts in the list has a row for each part."""
+    promises: list[str] = []
+    for outer, inner in re.findall(r"^(?:- \*\*(.+?)\.\*\*|  - \*(.+?):\*)", PROMISES, re.MULTILINE):
+        if outer:
+            promises.append(outer)
+            heading = outer
+        else:
+            promises = [name for name in promises if name != heading] + [f"{heading}: {inner.lower()}"]
+    assert [name for name, _ in PROMISE_ROWS] == promises
 
 
 @pytest.fixture(scope="module")
