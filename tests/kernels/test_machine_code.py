@@ -94,10 +94,13 @@ def test_the_code_is_vector_code(kernel):
     assert code()[kernel]["nothing"]["packed"]["multiply"] > 100
 
 
-#: Most operands on the stack of a vector instruction, for each root in an inner loop. The largest of all effects are
-#: 0.5 for a batch and 6.5 for a chain, whose loop contains the split step and calls of the sine, around which vectors
-#: are stored.
-MOST_ON_STACK = {"batch": 0.8, "chain": 7.5}
+#: Most operands on the stack of vector instructions, for each root. The largest of all effects are 0.5 in the loops over
+#: the contacts of a batch, and 5.4 in a step of a chain without an event: 43 in a step with a dashpot, 29 to 35 in the
+#: others. Its two registers of each of seven values, stored and read once more, would be another 28, or 3.5 per root.
+#: The split step, which is rare, is not counted, and neither is the sine of a driver without a table.
+MOST_ON_STACK = {"batch": 0.8, "chain": 6.0}
+#: Roots in the counted code. A step of a chain evaluates four slopes, each with two registers for 13 bodies.
+LEAST_ROOTS = {"batch": 16, "chain": 8}
 
 
 @x86
@@ -108,7 +111,8 @@ def test_the_loops_keep_their_values_in_registers(kernel, case):
     a batch of 16 scenes has 1.5 such operands for each root with a dashpot, one of 8 scenes 0.5.
     """
     loops = code()[kernel][case]["loops"]
-    assert loops["roots"] >= 16
+    assert loops["roots"] >= LEAST_ROOTS[kernel]
+    assert kernel == "batch" or loops["roots"] == LEAST_ROOTS[kernel]
     assert loops["on_stack"] <= MOST_ON_STACK[kernel] * loops["roots"]
 
 
