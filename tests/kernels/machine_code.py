@@ -32,12 +32,13 @@ from granchain_core.execution.stop import Stop
 from granchain_core.integrate import Engine, MethodSetting
 from granchain_core.integrate.batch import Batch
 from granchain_core.integrate.scaling import scale_chain
+from granchain_core.integrate.stepper import empty_samples
 from granchain_core.kernels.batch.run import batch_steps
 from granchain_core.kernels.effects.registry import unknown_slots
 from granchain_core.kernels.flow.attempt import FlowProblem
 from granchain_core.kernels.flow.run import run_flow
 from granchain_core.kernels.flow.tangent import new_tangent
-from granchain_core.kernels.rk4.short_chain_steps import run_short_chain
+from granchain_core.kernels.rk4.run import RunRecord, run_steps
 from granchain_core.kernels.samples import KernelIO
 from granchain_core.orbits.stroboscopic_map import StroboscopicMap
 from granchain_core.scene.effects import EFFECTS
@@ -194,7 +195,8 @@ def argument_types(knobs: dict) -> dict[str, tuple]:
     chain = scene("sec2").evolve(**knobs)
     e, block = Engine(chain, MethodSetting("rk4-split"), 1), Batch(chain, Stop())
     stepper = e.stepper
-    one = (stepper.work.simd, stepper.trajectory(e.y), 0, 4, KernelIO(e.log, e.counts.array, e.stop.flag))
+    record = RunRecord(empty_samples(e.scaled, 0), np.zeros((2, 2, e.scaled.bodies)), np.zeros((1, 3)))
+    one = (stepper.method, stepper.trajectory(e.y), 0, stepper.grid, record, KernelIO(e.log, e.counts.array, e.stop.flag))
     return {"chain": tuple(map(numba.typeof, one)), "batch": tuple(map(numba.typeof, (block.members, block.state.motion, 4)))}
 
 
@@ -235,7 +237,7 @@ def main() -> None:
     """Read the types and print the counts."""
     # Every loop is counted once: without this, the compiler would peel a different number of iterations in each case.
     llvmlite.binding.set_option("machine_code", "-unroll-allow-peeling=false")
-    kernels = {"chain": (run_short_chain, False), "batch": (batch_steps, True)}
+    kernels = {"chain": (run_steps, False), "batch": (batch_steps, True)}
     signatures, of_flow = pickle.loads(sys.stdin.buffer.read())
     found = {name: {case: counts(kernel, signatures[case][name], innermost) for case in signatures}
              for name, (kernel, innermost) in kernels.items()}
