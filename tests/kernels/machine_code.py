@@ -2,13 +2,12 @@
 
     NUMBA_CPU_NAME=… NUMBA_CPU_FEATURES=… GRANCHAIN_CACHE=<empty folder> python machine_code.py < types.pickle
 
-The output is {kernel: {case: counts}}. For `chain` (one chain in a register, including its split step) and `batch`
-(eight chains), it counts the vector instructions in the machine code, with only contacts and driver and with one more
-effect. It also counts the instructions with an operand on the stack: for a chain in the loop of steps without the split,
-for a batch in the loops over the contacts (`paths_with_roots`). For `flow` (Dormand and Prince's method
-with tangents), it counts the multiplications in LLVM's optimised code, with no effects and with all; `by_zero` counts
-those by a constant 0. Only freshly compiled code can be read, since kernels that are loaded from the cache contain no
-text.
+The output is {kernel: {case: counts}}. For `chain` (one chain in a vector, with its split step) and `batch` (eight
+chains), it counts the vector instructions in the machine code, with only contacts and driver and with one more effect.
+It also counts those with an operand on the stack: for a chain in the loop of steps, without the split; for a batch in
+the loops over the contacts (`paths_with_roots`). For `flow` (Dormand and Prince's method with tangents), it counts the
+multiplications in LLVM's optimised code, with no effects and with all; `by_zero` counts those by a constant 0. Only
+freshly compiled code can be read, since kernels that are loaded from the cache contain no text.
 
 The caller pickles `types_by_case()`, which needs engines. The program itself only compiles, for the processor that the
 environment names, which may differ from the one that it runs on.

@@ -154,8 +154,8 @@ def _(account, excess, y):
 def step(method, trajectory, j, out):
     """Advance y by step j of the period, with the driver in rows 2j to 2j + 2 of its table.
 
-    workspace.k[0] is dy/dt at y before and after. The largest forces and jumps inside the step go into the log. Returns the time from the last state that the log has
-    covered to the step's end.
+    workspace.k[0] is dy/dt at y before and after. The largest forces and jumps inside the step go into the log. Returns
+    the time from the last state that the log has covered to the step's end.
     """
 
 
