@@ -29,16 +29,24 @@ def table_of_json() -> str:
 #: Functions whose name differs from their command's.
 _FUNCTIONS = {"curve": "resonance_curve", "lyapunov": "lyapunov_spectrum", "rotation": "rotation_number",
               "bifurcation-diagram": "bifurcation_diagram", "map": "parameter_map", "accuracy": "work_precision"}
+#: An option with which a command does what another function does in Python, by command.
+_OPTIONS = {"run": ("run --drive", "drive")}
 #: What a command does in Python with another function before the one of its name.
 _FUNCTION_BEFORE = {"figure": "`granchain_core.paper.compute`, then "}
 
 
 def table_of_functions() -> str:
     """Return the table of README.md: the commands with a function, in the order of `granchain --help`."""
-    unknown = {*_FUNCTIONS} - {*COMMANDS} | {*_FUNCTIONS.values()} - {*granchain.__all__}
+    public = {*_FUNCTIONS.values(), *(function for _, function in _OPTIONS.values())}
+    unknown = {*_FUNCTIONS, *_OPTIONS} - {*COMMANDS} | public - {*granchain.__all__}
     assert not unknown, f"no command or public function: {unknown}"
-    rows = [f"| `{name}` | {_FUNCTION_BEFORE.get(name, '')}`{function}` |" for name in COMMANDS
-            if (function := _FUNCTIONS.get(name, name)) in granchain.__all__]
+    rows = []
+    for name in COMMANDS:
+        function = _FUNCTIONS.get(name, name)
+        if function in granchain.__all__:
+            rows.append(f"| `{name}` | {_FUNCTION_BEFORE.get(name, '')}`{function}` |")
+        if name in _OPTIONS:
+            rows.append("| `{}` | `{}` |".format(*_OPTIONS[name]))
     return "\n".join(["| command | function |", "|---|---|", *rows])
 
 

@@ -41,7 +41,7 @@ class _EndRequest:
     def __init__(self) -> None:
         self.lock = threading.Lock()
         self.status: int | None = None
-        self.tell: Callable[[], None] | None = None
+        self.stop_computation: Callable[[], None] | None = None
         self.folder = ""
         self.written = ""
 
@@ -81,7 +81,7 @@ def _wait(reading: int) -> None:
         if status is None:
             continue
         with _REQUEST.lock:
-            _REQUEST.status, stop_computation = status, _REQUEST.tell
+            _REQUEST.status, stop_computation = status, _REQUEST.stop_computation
             if stop_computation is None:
                 _end()
         stop_computation()
@@ -115,14 +115,14 @@ def asking(stop_computation: Callable[[], None] = lambda: None) -> Iterator[Call
     Yield a function that returns whether a signal has arrived. A block inside another one changes nothing.
     """
     with _REQUEST.lock:
-        before = _REQUEST.tell
+        before = _REQUEST.stop_computation
         if before is None:
-            _REQUEST.tell = stop_computation
+            _REQUEST.stop_computation = stop_computation
     try:
         yield lambda: _REQUEST.status is not None
     finally:
         with _REQUEST.lock:
-            _REQUEST.tell = before
+            _REQUEST.stop_computation = before
 
 
 def status() -> int:

@@ -32,8 +32,8 @@ _OAUTH = {"oauth_key": "PANEL_OAUTH_KEY", "oauth_secret": "PANEL_OAUTH_SECRET",
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `serve`."""
-    parser.add_argument("--port", type=whole, default=5006)
-    parser.add_argument("--address", default="127.0.0.1")
+    parser.add_argument("--port", type=whole, default=5006, help="port to listen on (5006)")
+    parser.add_argument("--address", default="127.0.0.1", help="address to listen on (127.0.0.1: this machine only)")
     parser.add_argument("--allow-websocket-origin", action="append", metavar="HOST",
                         help="a host name, with its port unless that is 80 or 443, under which browsers reach the "
                              "dashboard; repeat it for others; *.example.org is allowed")

@@ -60,7 +60,7 @@ class Room {
 
   // Puts a name into the first box that one of these functions of its width and height finds, or hides it; returns
   // whether it has a place.
-  place(label, ways) {
+  putInBox(label, ways) {
     label.hidden = false;
     const { offsetWidth: wide, offsetHeight: tall } = label;
     let box = null;
@@ -77,7 +77,7 @@ class Room {
     const offLines = (box) =>
       this.offPoints(box) && this.lines.every((at) => at === x || at < box.left || at > box.right);
     const conditions = [offLines, this.offPoints, this.alone];
-    this.place(
+    this.putInBox(
       label,
       conditions.map((free) => (wide, tall) => besideLine(this.bbox, x, free, wide, tall)),
     );
@@ -87,7 +87,7 @@ class Room {
     const { left, right, top, bottom } = this.bbox;
     const above = this.y_scale.compute(height) - ABOVE[kind];
     const middle = this.x_scale.compute(f);
-    const placed = this.place(label, [
+    const placed = this.putInBox(label, [
       (wide, tall) => {
         const lowest = Math.min(bottom, above) - tall;
         const x = middle - wide / 2;
@@ -136,7 +136,7 @@ export class PeakNames {
   // Waits until the figure has its new size: it is laid out one animation frame after its element.
   later() {
     clearTimeout(this.timer);
-    this.timer = setTimeout(() => requestAnimationFrame(() => this.place()), 60);
+    this.timer = setTimeout(() => requestAnimationFrame(() => this.putNames()), 60);
   }
 
   // The frame of the curve's figure; whenever it changes, the names are placed again.
@@ -150,7 +150,7 @@ export class PeakNames {
     return frameOf(view);
   }
 
-  place() {
+  putNames() {
     if (!this.names.length && !this.stated.length) return;
     const frame = this.frame();
     if (!frame) return;
@@ -165,13 +165,13 @@ export class PeakNames {
     this.stated.forEach(({ f }, i) => {
       room.putStated(stated[i], f);
     });
-    const places = this.names.map((place, i) => [place, named[i]]);
-    const valleys = places.filter(([{ kind }]) => kind === "valley");
-    const put = valleysFirst ? valleys.filter(([place, label]) => room.putValley(label, place)) : [];
-    const others = places.filter((place) => !put.includes(place));
+    const pairs = this.names.map((extreme, i) => [extreme, named[i]]);
+    const valleys = pairs.filter(([{ kind }]) => kind === "valley");
+    const put = valleysFirst ? valleys.filter(([valley, label]) => room.putValley(label, valley)) : [];
+    const others = pairs.filter((pair) => !put.includes(pair));
     others.sort(([a], [b]) => ORDER[a.kind] - ORDER[b.kind] || b.force - a.force);
-    for (const [place, label] of others)
-      if (place.kind !== "valley" || !room.putValley(label, place)) room.put(label, place, room.alone);
-    return places.every(([{ kind }, label]) => kind !== "peak" || !label.hidden);
+    for (const [extreme, label] of others)
+      if (extreme.kind !== "valley" || !room.putValley(label, extreme)) room.put(label, extreme, room.alone);
+    return pairs.every(([{ kind }, label]) => kind !== "peak" || !label.hidden);
   }
 }

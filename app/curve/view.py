@@ -41,7 +41,7 @@ class CurveFigure:
         self.expected = False
         self._ordered: tuple[np.ndarray, np.ndarray, list[int | None]] | None = None
         self._shown: tuple[float, float | None] = (0.0, None)
-        self._place: tuple[object, ...] = ()
+        self._mark_state: tuple[object, ...] = ()
         self._motion_source = ColumnDataSource({"frequency": [], "force": []})
         self._measured = ColumnDataSource({name: [] for name in COLUMNS})
         self._features = ColumnDataSource({name: [] for name in ("frequency", "top", "label", "source")})
@@ -206,9 +206,9 @@ class CurveFigure:
     def mark_motion(self, frequency: float, force: float | None) -> None:
         """Mark the present motion; without a force, only its frequency."""
         shown = frequency, None if force is None else float(f"{force:.3g}")
-        if (shown, self._scale) == self._place:
+        if (shown, self._scale) == self._mark_state:
             return
-        self._shown, self._place = shown, (shown, self._scale)
+        self._shown, self._mark_state = shown, (shown, self._scale)
         set_properties(self._frequency_line, location=frequency)
         factor = self._scale[0]
         set_properties(self._motion_source, data={

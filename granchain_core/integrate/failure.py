@@ -1,4 +1,4 @@
-"""The failure of a kernel as a sentence: the bead, the time and the step."""
+"""The failure of a kernel as a sentence with the time; for numbers that are not finite, also the bead and the step."""
 
 from __future__ import annotations
 

@@ -61,6 +61,7 @@ class FixedStep:
         self._no_periods = np.zeros((0, 2, 0)), np.zeros((0, 3))
         self._work: Any = None
         self._type_key: Any = None
+        self._run_steps: Callable[..., Any] = _RUN_STEPS
         self.drive = self._driver_table(scaled)
         self.work = Rk4Workspace(np.zeros((4, scaled.size)), np.zeros(scaled.size), np.zeros(scaled.size),
                                  np.zeros((END_ROWS, scaled.bodies - 1)), scaled.forces(), self.new_simd_workspace())
@@ -124,6 +125,12 @@ class FixedStep:
         return Trajectory(self.scaled.slots, DriveTable(self.drive, 2.0 * np.pi / self.grid, self.h), y,
                           self.work)
 
+    def stay_uncompiled(self) -> None:
+        """Run steps in Python from now on, one by one in scalar code (uncompiled.py)."""
+        self._simd = False
+        self.work = self.work._replace(simd=None)
+        self._run_steps = lambda _key, *arguments: run_steps.py_func(*arguments)
+
     def evaluate_at_phase(self, theta: float, y: np.ndarray, from_velocity: bool) -> None:
         """Recompute the driver's state and dy/dt for y."""
         self._evaluate_slope(theta, y, self.work.k[0], from_velocity)
@@ -146,13 +153,13 @@ class FixedStep:
         if self.grid > part:
             return periods_in_parts(self, y, part, strobes, maxima, out)
         record = RunRecord(self._no_samples, strobes, maxima)
-        status, done = _RUN_STEPS(self._type_key, self.method, self.trajectory(y), 0, self.grid, record, out)
+        status, done = self._run_steps(self._type_key, self.method, self.trajectory(y), 0, self.grid, record, out)
         return status, done
 
     def run(self, y: np.ndarray, first: int, stride: int, samples: Samples, out: KernelIO) -> tuple[int, int]:
         """Call the kernel once from step `first`, keeping every `stride`-th state; return status and rows filled."""
         record = RunRecord(samples, *self._no_periods)
-        status, done = _RUN_STEPS(self._type_key, self.method, self.trajectory(y), first, stride, record, out)
+        status, done = self._run_steps(self._type_key, self.method, self.trajectory(y), first, stride, record, out)
         return status, done
 
     def step_at(self, grid_index: int) -> int | None:

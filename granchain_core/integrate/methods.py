@@ -36,7 +36,7 @@ _ERROR_SPREAD = 8.0
 _TOLERANCE_PER_ACCURACY = 0.1
 #: dop853's largest first tolerance per step, whatever accuracy is requested.
 _LARGEST_TOLERANCE = 1e-3
-#: The next finer tolerance is never below this, unless an eighth of the present one is.
+#: Smallest sixty-fourth of a tolerance (`MethodSetting.finer`).
 _SMALLEST_TOLERANCE = 1e-15
 #: Tolerance below which rounding prevents any further gain.
 _FINEST_TOLERANCE = 2e-15
@@ -59,7 +59,7 @@ class MethodSetting:
         """Return the next finer setting: half the step, or a tolerance small enough to reduce the error in practice.
 
         With error control, the error does not fall regularly with the tolerance. An eighth of the tolerance sometimes
-        left the error unchanged, so the next tolerance is a sixty-fourth.
+        left the error unchanged, so the next tolerance is a sixty-fourth, at least 1e-15; but always at most an eighth.
         """
         if METHODS[self.method].error_control:
             finer = min(max(self.tolerance / 64.0, _SMALLEST_TOLERANCE), self.tolerance / 8.0)
@@ -194,8 +194,9 @@ def _error_controlled(kind: Any, has_account: bool = True) -> MakeStepper:
     return MakeStepper(lambda setting, scaled, samples: kind(setting.tolerance, scaled, samples), has_account)
 
 
-#: The order of DOP853's dense output, on which events are located.
-_DENSE_ORDER = 7.0
+#: The order that error control guarantees for DOP853: its error estimate is ∝ h⁸ in each of the 1/h steps. Where the
+#: motion is smooth, errors are ∝ h⁹; in the few steps next to an event they are as large as the estimate.
+_CONTROLLED_ORDER = 7.0
 #: The smallest exponent a of the damping laws: their forces λ δ^a δ̇ are the least smooth terms at an event.
 _LEAST_SMOOTH = min(law.exponent for law in LAWS.values())
 
@@ -236,13 +237,13 @@ METHODS: dict[str, Method] = {
             naive=True),
         Method(
             name=DOP853, title="DOP853, Dormand–Prince 8(5,3), in (u, w), contact events located",
-            order=8.0, order_at_events=_DENSE_ORDER, observed_smooth=8.5, observed_order=7.5,
+            order=8.0, order_at_events=_CONTROLLED_ORDER, observed_smooth=8.5, observed_order=7.5,
             error_control=True, symplectic=False, restrictions="errors down to about 1e-12",
             reference="Hairer, Nørsett & Wanner 1993, section II.5", stepper=_error_controlled(Dop853Stepper),
             cost=StepCost(2.5e-6, 480e-9, steps_per_time=5.0, power=0.1), usual_error=1.0, observed_with_cut=7.5),
         Method(
             name="dop853-root", title="DOP853 in (u, w), in the root of an overlap next to contact events",
-            order=8.0, order_at_events=_DENSE_ORDER, observed_smooth=8.0, observed_order=7.0,
+            order=8.0, order_at_events=_CONTROLLED_ORDER, observed_smooth=8.0, observed_order=7.0,
             error_control=True, symplectic=False,
             restrictions=f"errors down to about 1e-12; no energy account; only chains of up to {SHORT_CHAIN} beads, "
                          "with a driver that is harmonic or at rest, and without tension cut",

@@ -2,12 +2,12 @@
 
     NUMBA_CPU_NAME=… NUMBA_CPU_FEATURES=… GRANCHAIN_CACHE=<empty folder> python machine_code.py < types.pickle
 
-The output is {kernel: {case: counts}}. For `chain` (one chain in a register, including its split step) and `batch`
-(eight chains), it counts the vector instructions in the machine code, with only contacts and driver and with one more
-effect; in the inner loops, it also counts those with an operand on the stack. For `flow` (Dormand and Prince's method
-with tangents), it counts the multiplications in LLVM's optimised code, with no effects and with all; `by_zero` counts
-those by a constant 0. Only freshly compiled code can be read, since kernels that are loaded from the cache contain no
-text.
+The output is {kernel: {case: counts}}. For `chain` (one chain in a vector, with its split step) and `batch` (eight
+chains), it counts the vector instructions in the machine code, with only contacts and driver and with one more effect.
+It also counts those with an operand on the stack: for a chain in the loop of steps, without the split; for a batch in
+the loops over the contacts (`paths_with_roots`). For `flow` (Dormand and Prince's method with tangents), it counts the
+multiplications in LLVM's optimised code, with no effects and with all; `by_zero` counts those by a constant 0. Only
+freshly compiled code can be read, since kernels that are loaded from the cache contain no text.
 
 The caller pickles `types_by_case()`, which needs engines. The program itself only compiles, for the processor that the
 environment names, which may differ from the one that it runs on.
@@ -31,18 +31,21 @@ from granchain_core.execution.stop import Stop
 from granchain_core.integrate import Engine, MethodSetting
 from granchain_core.integrate.batch import Batch
 from granchain_core.integrate.scaling import scale_chain
+from granchain_core.integrate.stepper import empty_samples
 from granchain_core.kernels.batch.run import batch_steps
 from granchain_core.kernels.effects.registry import unknown_slots
 from granchain_core.kernels.flow.attempt import FlowProblem
 from granchain_core.kernels.flow.run import run_flow
 from granchain_core.kernels.flow.tangent import new_tangent
-from granchain_core.kernels.rk4.short_chain_steps import run_short_chain
+from granchain_core.kernels.rk4.run import RunRecord, run_steps
 from granchain_core.kernels.samples import KernelIO
 from granchain_core.orbits.stroboscopic_map import StroboscopicMap
 from granchain_core.scene.effects import EFFECTS
 
 #: Argument types by case and kernel, and those of the flow by case.
 Types = tuple[dict[str, dict[str, tuple]], dict[str, tuple]]
+#: By block of a function, the blocks that may come next.
+Graph = dict[int, set[int]]
 NOTHING = {knob: value for effect in EFFECTS for knob, value in effect.off.items()}
 #: Instructions by kind; a fused multiplication and addition counts as both.
 KINDS = {"mul": "multiply", "add": "add", "sub": "add", "fmadd": "both", "fmsub": "both", "fnmadd": "both",
@@ -68,25 +71,84 @@ def functions(text: str) -> dict[str, list[str]]:
     return found
 
 
-def inner_loops(lines: list[str]) -> Iterator[list[str]]:
-    """Yield the instructions of each loop that contains no other loop: from a label to the jump back to it."""
-    labels = {line.partition(":")[0]: place for place, line in enumerate(lines) if line.startswith(".L")}
-    jumps = [(labels.get(jump[1], len(lines)), place) for place, line in enumerate(lines)
-             if (jump := re.match(r"j\w+\s+(\.L\w+)", line))]
-    loops = {(first, last) for first, last in jumps if first < last}
-    for first, last in sorted(loops):
-        if not any(first <= a and b <= last for a, b in loops - {(first, last)}):
-            yield [line for line in lines[first : last + 1] if not line.startswith(".L")]
+def blocks_of(lines: list[str]) -> tuple[list[list[str]], Graph]:
+    """Divide a function into blocks without a jump inside; return their instructions, and the next blocks of each."""
+    blocks: list[list[str]] = [[]]
+    labels = {}
+    for line in lines:
+        if line.startswith(".L"):
+            if blocks[-1]:
+                blocks.append([])
+            labels[line.partition(":")[0]] = len(blocks) - 1
+        else:
+            blocks[-1].append(line)
+            if line.startswith(("j", "ret", "ud2")):
+                blocks.append([])
+    following: Graph = {}
+    for i, block in enumerate(blocks):
+        mnemonic, _, operand = (block[-1] if block else "").partition("\t")
+        after = {labels[operand]} if mnemonic.startswith("j") and operand in labels else set()
+        if mnemonic not in ("jmp", "retq", "ret", "ud2") and i + 1 < len(blocks):
+            after.add(i + 1)
+        following[i] = after
+    return blocks, following
 
 
-def stack_traffic(text: str) -> dict[str, int]:
-    """Count the roots in the inner loops that take one, and there the operands on the stack of vector instructions."""
-    loops = [loop for lines in functions(text).values() for loop in inner_loops(lines)]
-    found = [(sum(bool(_ROOT.match(line)) for line in loop), sum(bool(_ON_STACK.search(line)) for line in loop)) for loop in loops]
-    return {"roots": sum(roots for roots, _ in found), "on_stack": sum(on_stack for roots, on_stack in found if roots)}
+def reached(start: int, among: set[int], following: Graph) -> set[int]:
+    """Return the blocks among these to which at least one jump leads from a block."""
+    visited: set[int] = set()
+    todo = [start]
+    while todo:
+        new = following[todo.pop()] & among - visited
+        visited |= new
+        todo += new
+    return visited
 
 
-def counts(kernel, arguments) -> dict:
+def loops_among(among: set[int], following: Graph) -> Iterator[tuple[int, set[int]]]:
+    """Yield (first block, all blocks) of each outermost loop of a function among these blocks."""
+    onward = {block: reached(block, among, following) for block in among}
+    while in_loops := [block for block in onward if block in onward[block]]:
+        loop = {other for other in onward[in_loops[0]] if in_loops[0] in onward.get(other, ())}
+        entries = [block for block in loop if any(block in following[other] for other in following if other not in loop)]
+        yield min(entries), loop
+        onward = {block: onward[block] for block in onward if block not in loop}
+
+
+def usual_path(blocks: list[list[str]], following: Graph, first: int, direct: set[int]) -> list[str]:
+    """Return the instructions of these blocks of a loop from which its next iteration is reached without a call."""
+    before = {block: {other for other in following if block in following[other]} for block in following}
+    direct = {block for block in direct if not any(line.startswith("call") for line in blocks[block])}
+    path = reached(first, direct, following) & reached(first, direct, before)
+    return [line for block in sorted(path) for line in blocks[block]]
+
+
+def paths_with_roots(lines: list[str], innermost: bool) -> Iterator[list[str]]:
+    """Yield the usual path of each outermost loop that takes a root on it, or of each innermost one that does.
+
+    The usual path of a loop is what it executes without an inner loop and without a call. In a short chain's loop of
+    steps it is a step without an event, with the driver's motion from its table: the split step has a loop and calls
+    the sine, so neither the split nor what leads only to it and back belongs to the path.
+    """
+    blocks, following = blocks_of(lines)
+    todo = [set(following)]
+    while todo:
+        for first, loop in loops_among(todo.pop(), following):
+            inner = set().union(*(part for _, part in loops_among(loop - {first}, following)))
+            path = usual_path(blocks, following, first, loop - inner)
+            if any(_ROOT.match(line) for line in path) and not (innermost and inner):
+                yield path
+            else:
+                todo.append(loop - {first})
+
+
+def stack_traffic(text: str, innermost: bool) -> dict[str, int]:
+    """Count the roots on the usual paths of loops, and the operands on the stack of vector instructions there."""
+    lines = [line for function in functions(text).values() for path in paths_with_roots(function, innermost) for line in path]
+    return {"roots": sum(bool(_ROOT.match(line)) for line in lines), "on_stack": sum(bool(_ON_STACK.search(line)) for line in lines)}
+
+
+def counts(kernel, arguments, innermost: bool) -> dict:
     """Count packed arithmetic by kind in the kernel and the functions it calls, and the stack traffic of its loops."""
     kernel.compile(arguments)
     text = kernel.inspect_asm(kernel.signatures[-1])
@@ -103,7 +165,7 @@ def counts(kernel, arguments) -> dict:
                 kind = KINDS[packed.group(1)]
                 for one in ("multiply", "add") if kind == "both" else (kind,):
                     found[one] += 1
-    return {"packed": dict(found), "loops": stack_traffic(text)}
+    return {"packed": dict(found), "loops": stack_traffic(text, innermost)}
 
 
 _PRODUCT = re.compile(r"= fmul (?:\w+ )*(?:double|<\d+ x double>) (.*)$", re.MULTILINE)
@@ -132,7 +194,8 @@ def argument_types(knobs: dict) -> dict[str, tuple]:
     chain = scene("sec2").evolve(**knobs)
     e, block = Engine(chain, MethodSetting("rk4-split"), 1), Batch(chain, Stop())
     stepper = e.stepper
-    one = (stepper.work.simd, stepper.trajectory(e.y), 0, 4, KernelIO(e.log, e.counts.array, e.stop.flag))
+    record = RunRecord(empty_samples(e.scaled, 0), np.zeros((2, 2, e.scaled.bodies)), np.zeros((1, 3)))
+    one = (stepper.method, stepper.trajectory(e.y), 0, stepper.grid, record, KernelIO(e.log, e.counts.array, e.stop.flag))
     return {"chain": tuple(map(numba.typeof, one)), "batch": tuple(map(numba.typeof, (block.members, block.state.motion, 4)))}
 
 
@@ -173,9 +236,10 @@ def main() -> None:
     """Read the types and print the counts."""
     # Every loop is counted once: without this, the compiler would peel a different number of iterations in each case.
     llvmlite.binding.set_option("machine_code", "-unroll-allow-peeling=false")
-    kernels = {"chain": run_short_chain, "batch": batch_steps}
+    kernels = {"chain": (run_steps, False), "batch": (batch_steps, True)}
     signatures, of_flow = pickle.loads(sys.stdin.buffer.read())
-    found = {name: {case: counts(kernel, signatures[case][name]) for case in signatures} for name, kernel in kernels.items()}
+    found = {name: {case: counts(kernel, signatures[case][name], innermost) for case in signatures}
+             for name, (kernel, innermost) in kernels.items()}
     found["flow"] = {case: products(run_flow, of_flow[case]) for case in of_flow}
     print(json.dumps(found))
 

@@ -94,10 +94,14 @@ def test_the_code_is_vector_code(kernel):
     assert code()[kernel]["nothing"]["packed"]["multiply"] > 100
 
 
-#: Most operands on the stack of a vector instruction, for each root in an inner loop. The largest of all effects are
-#: 0.5 for a batch and 6.5 for a chain, whose loop contains the split step and calls of the sine, around which vectors
-#: are stored.
-MOST_ON_STACK = {"batch": 0.8, "chain": 7.5}
+#: Most operands on the stack of vector instructions, for each root. The largest of all effects are 0.5 in the loops
+#: over the contacts of a batch, and 9 in a step of a chain without an event: 72 in a step with a dashpot, 58 to 64 in
+#: the others. Two registers of each of the chain's seven values, stored and read once more, would be another 28, or 3.5
+#: for each root. The split step, which is rare, is not counted, and neither is the sine of a driver without a table.
+#: (`run_short_chain`, compiled without `run_steps`, which contains it, has only 29 to 43.)
+MOST_ON_STACK = {"batch": 0.8, "chain": 10.0}
+#: Roots in the counted code. A step of a chain evaluates four slopes, each with two registers for 13 bodies.
+LEAST_ROOTS = {"batch": 16, "chain": 8}
 
 
 @x86
@@ -108,7 +112,8 @@ def test_the_loops_keep_their_values_in_registers(kernel, case):
     a batch of 16 scenes has 1.5 such operands for each root with a dashpot, one of 8 scenes 0.5.
     """
     loops = code()[kernel][case]["loops"]
-    assert loops["roots"] >= 16
+    assert loops["roots"] >= LEAST_ROOTS[kernel]
+    assert kernel == "batch" or loops["roots"] == LEAST_ROOTS[kernel]
     assert loops["on_stack"] <= MOST_ON_STACK[kernel] * loops["roots"]
 
 

@@ -121,6 +121,8 @@ def _flags(*more: str) -> str:
 COMPILED = (
     Mutant("fastmath", "kernels/compiling/jit.py", '{"fastmath": set(FAST_MATH)', '{"fastmath": True',
            "the compiler may assume that there is no NaN and no infinity", k.FASTMATH, optimised=True),
+    Mutant("fastmath-in-vectors", "kernels/compiling/jit.py", f"FAST_MATH = {_flags()}", 'FAST_MATH = ("fast",)',
+           "operations on vectors, too, may assume that there is no NaN and no infinity", k.VECTORS, optimised=True),
     Mutant("fastmath-nnan", "kernels/compiling/jit.py", _flags(), _flags("nnan"),
            "the compiler may assume that there is no NaN", k.FASTMATH, optimised=True),
     Mutant("fastmath-ninf", "kernels/compiling/jit.py", _flags(), _flags("ninf"),

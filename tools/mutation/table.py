@@ -22,7 +22,7 @@ DEMANDED: dict[str, tuple[str, ...]] = {
     "t += dt": ("t-plus-dt", "batch-t-plus-dt"),
     "absolute coordinates": ("absolute-coordinates",),
     "`if d > 0` hiding NaN": ("if-d-above-0-hides-nan", "nan-hidden-in-vectors", "nan-hidden-in-batches"),
-    "fastmath": ("fastmath", "fastmath-nnan", "fastmath-ninf"),
+    "fastmath": ("fastmath", "fastmath-in-vectors", "fastmath-nnan", "fastmath-ninf"),
     "step over a touch": ("step-over-a-touch", "flow-steps-over-a-touch", "wide-steps-over-touch"),
 }
 

@@ -19,7 +19,7 @@ Options:
     kernel depends on the sign of a zero: comparisons see none, and `copysign` (rk4/contact_events.py) takes the rate of
     an overlap, whose sign matters only if it is not 0.
   - `arcp` and `contract`: a quotient may become a product with an inverse, and a product and a sum one instruction.
-    Both change the last bit only.
+    Both change the rounding of single operations.
   - No `nnan`/`ninf`: comparisons and selects see a NaN.
 * Numba does not notice edits of *imported* kernels. The folder of compiled code is therefore named by a hash of all
   kernel sources (sources.py).

@@ -149,9 +149,10 @@ def tried_step(method, problem, t, time, h, aim, counts):
 def flow_step(method, problem, t, last_closing, counts):
     """Take one accepted step from y at local time t, at most to the period's end; `last_closing` is a time (−∞: none).
 
-    Each attempt is an accepted step (`tried_step`) and the first contact that changes in it (`first_event`). It is the
-    step if none does, and if one closes, up to there (`locate_change`). If one opens, the next attempt aims at that
-    opening; next to a closing, whose root of time it needs, it is a shorter step instead.
+    Each attempt is an accepted step (`tried_step`) and the first contact that changes in it (`first_event`). If no
+    contact changes, the attempt is the step. If one closes, the step ends there (`locate_change`). If one opens, the
+    next attempt aims at that opening. But if a contact has closed at t, the step needs the time variable of that
+    closing; it is then made shorter instead.
 
     Returns (status, time, size, contact); size 0 with a contact means that it changes at t itself.
     workspace.next_step[0] is the next step to try, in t.

@@ -47,7 +47,7 @@ class LongChain(NamedTuple):
 
 @inline_numba
 def steps_without_events(simd, trajectory, j, count, peaks):
-    """Take up to `count` steps from half-step index 2j of the drive; return the number of steps taken."""
+    """Take up to `count` steps from step j of the period; return the number of steps taken."""
     slots, drive, y, _ = trajectory
     h, now, before, blocks = drive.h, simd.now, simd.before, simd.inverse_mass.shape[0]
     bodies = slots.chain.inverse_mass.size

@@ -1,7 +1,7 @@
 """A short chain: RK4 split at contact events, in one vector (equations/chain_in_vector.py).
 
-A step evaluates three slopes and the slope at its end, which is the first of the next step. Nothing is evaluated twice,
-and only the forces at the two ends of the chain go through memory.
+A step evaluates three slopes and the slope at its end, which is the first of the next step. Nothing is evaluated twice.
+Between contact events, only the forces at the two ends of the chain are written to arrays.
 """
 
 from __future__ import annotations

@@ -152,16 +152,16 @@ def _(account, excess, y):
 
 @by_type_inlined
 def step(method, trajectory, j, out):
-    """Advance y by one step from half-step index 2j of the drive; workspace.k[0] is dy/dt at y before and after.
+    """Advance y by step j of the period, with the driver in rows 2j to 2j + 2 of its table.
 
-    The largest forces and jumps inside the step go into the log. Returns the time from the last state that the log has
-    covered to the step's end.
+    workspace.k[0] is dy/dt at y before and after. The largest forces and jumps inside the step go into the log. Returns
+    the time from the last state that the log has covered to the step's end.
     """
 
 
 @internal
 def whole_step(trajectory, j):
-    """Take an RK4 step from half-step index 2j to workspace.end; return the driver's displacement and velocity."""
+    """Take an RK4 step, step j of the period, to workspace.end; return the driver's displacement and velocity."""
     slots, drive, y, workspace = trajectory
     ua, va = tabulated_displacement(slots, drive, 2 * j + 1), tabulated_velocity(slots, drive, 2 * j + 1)
     ub, vb = tabulated_displacement(slots, drive, 2 * j + 2), tabulated_velocity(slots, drive, 2 * j + 2)

@@ -271,6 +271,6 @@ def failed(job: BatchJob) -> SteadyState:
 
     Which bead failed, and when, is found when the chain is settled alone (starts.py).
     """
+    failure = not_finite(f"at {job.scene.f:g} Hz", advice="lower the damping")
     return SteadyState(job.scene, maxima=np.full(3, np.nan), regime=Regime.unsettled(job.periods_run), errors=None,
-                       state=job.scaled.to_si(job.y), failure=not_finite(f"at {job.scene.f:g} Hz"), status="not-finite",
-                       number=job.number)
+                       state=job.scaled.to_si(job.y), failure=failure, status="not-finite", number=job.number)

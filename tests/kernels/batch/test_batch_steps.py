@@ -16,7 +16,7 @@ from granchain_core.kernels.batch_size import BATCH_SIZE
 from granchain_core.scene.state import rest
 
 FREQUENCIES = (200.0, 340.0, 615.0, 1130.0, 1576.0, 2000.0, 2500.0, 3000.0)
-#: Scenes per case. The width of a batch is BATCH_SIZE, which depends on the processor.
+#: Scenes per case. The batch size, BATCH_SIZE, depends on the processor.
 SCENES = len(FREQUENCIES)
 PERIODS = 3
 #: Refinements of the time step, over a decade.

@@ -1,4 +1,4 @@
-"""docs/add-a-batch-width.md is followed to the letter in a copy of the repository."""
+"""docs/add-a-batch-size.md is followed to the letter in a copy of the repository."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import pytest
 from documents import ROOT
 from edited_tree import copied, edited_copy, files_of, follow
 
-PAGE = ROOT / "docs" / "add-a-batch-width.md"
+PAGE = ROOT / "docs" / "add-a-batch-size.md"
 #: The start of a process with batches of two: the size is read when the kernels are imported.
 _OF_TWO = "import os; os.environ['GRANCHAIN_BATCH_SIZE'] = '2'; "
 
