@@ -72,7 +72,8 @@ def test_files_named_in_the_source_exist():
             for path in sorted((ROOT / folder).rglob("*.py"))
             for name in re.findall(rf"\b({_FOLDERS}/[\w./-]+\.(?:py|md|npz|css|js))\b", path.read_text(encoding="utf-8"))
             # except those that docs/add-an-effect.md and docs/add-a-command.md write
-            if not (ROOT / name).exists() and not name.endswith(("test_drag.py", "test_quadratic_drag.py", "test_beads.py"))]
+            if not (ROOT / name).exists() and not name.endswith(("test_drag.py", "test_quadratic_drag.py", "test_cubic_spring.py",
+                                                                "test_beads.py"))]
     assert lost == []
 
 

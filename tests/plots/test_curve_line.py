@@ -46,7 +46,7 @@ def lines_of(figure: CurveFigure) -> list[ColumnDataSource]:
 
 def test_the_page_and_its_grey_copies_break_the_line() -> None:
     page = CurveFigure(lambda _: None)
-    page.add("rest", points(NAMES), covers=False)
+    page.add("rest", points(NAMES), covers_range=False)
     page.begin(["rest"])
     page.pinned_curves([points(NAMES)])
     grey, pinned = lines_of(page)
