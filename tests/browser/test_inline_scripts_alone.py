@@ -19,8 +19,21 @@ def answers() -> Answers:
     return Answers()
 
 
+@pytest.fixture(scope="module")
+def origin(profile: BrowserContext) -> Iterator[None]:
+    """Keep a page open at the address, and with it the process that renders all pages there.
+
+    Without it, the process ends with the page of each test, and calls to the next page may then never return.
+    """
+    page = profile.new_page()
+    page.route(f"{ORIGIN}**", Answers())
+    page.goto(ORIGIN)
+    yield
+    page.close()
+
+
 @pytest.fixture
-def page(profile: BrowserContext, answers: Answers) -> Iterator[Page]:
+def page(profile: BrowserContext, answers: Answers, origin: None) -> Iterator[Page]:
     """A page with the inline scripts at an address; the test advances the clock, and the server has sent a link."""
     page = profile.new_page()
     page.route(f"{ORIGIN}**", answers)

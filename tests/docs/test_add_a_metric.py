@@ -45,7 +45,7 @@ print("| `granchain_uploads_total` | counter | Measurements that visitors upload
 
 
 def test_the_tests_of_metrics_pass_and_name_what_is_forgotten(tree: Path) -> None:
-    tests = ("-m", "pytest", "-p", "no:cacheprovider", "tests/serve/monitoring/test_metrics.py", "-k", "table or names")
+    tests = ("-m", "pytest", "-p", "no:cacheprovider", "tests/serve/monitoring/test_metrics.py", "-k", "in_the_table or names_and_kinds")
     assert "2 passed" in follow(tree, *tests, own_kernels=False)
     file = tree / "app" / "pages" / "data" / "page.py"
     text = file.read_text(encoding="utf-8")
