@@ -143,7 +143,7 @@ class Method:
     restrictions, reference : str
         Its restrictions; its source.
     stepper : MakeStepper
-        Makes the method's `Stepper`; it also has its variables, and whether it supports the energy account.
+        Makes the method's `Stepper`, and says whether it supports the energy account.
     cost : StepCost
         Time of a step.
     usual_error : float

@@ -26,6 +26,5 @@ RUN_FORCES_THAT_JUMP = 3.0
 #: compared, and their difference is also enlarged by 1/(1 − the contraction factor) (`errors_of_map`).
 ORBIT_FORCES = 2.0
 #: [safety factor] Errors due to the interpolation between samples of a driver's measured motion. The factor multiplies
-#: the larger of the differences from every second sample over 2^order − 1, with an order of 1 to 2. Found by
-#: trial.
+#: the larger of the differences from every second sample over 2^order − 1, with an order of 1 to 2. Found by trial.
 SAMPLED_DRIVE = 2.5
