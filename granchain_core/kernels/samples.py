@@ -8,7 +8,7 @@ import numpy as np
 
 from .compiling.dispatch import by_slot
 from .compiling.jit import brief_kernel, internal
-from .effects.energy_account import LOST, WORK, EnergyAccount, account_ends
+from .effects.energy_account import DRIVER_WORK, LOST_ENERGY, EnergyAccount, account_ends
 from .equations.motion import contact_force, stored_energy
 from .forces.largest import ForceLog
 
@@ -54,8 +54,8 @@ def write_account(account, slots, row, y, dy, samples):
 def _(account, slots, row, y, dy, samples):
     samples.energy[row, 0] = stored_energy(slots, y, dy)
     work, lost = account_ends(slots, y, dy)
-    samples.energy[row, 1] = y[WORK] + work
-    samples.energy[row, 2] = y[LOST] + lost
+    samples.energy[row, 1] = y[DRIVER_WORK] + work
+    samples.energy[row, 2] = y[LOST_ENERGY] + lost
 
 
 @brief_kernel

@@ -21,7 +21,7 @@ FULL = 6
 TOO_MANY_EVENTS = 7
 #: A step of the flow was aimed at an opening, but the contact does not open there: the step is tried again. This status
 #: never leaves the kernels of the flow.
-LOST = -1
+OPENING_MISSED = -1
 
 #: Most contact events per contact within `EVENT_WINDOW`; more end the run with CHATTER. The log of the flow has room
 #: for this many per contact and drive period, and for `MOST_EVENTS_OF_ORBIT` (integrate/failure.py) in all.

@@ -31,7 +31,7 @@ def _(tangent, slots, c, closes):
 FLOW = (
     Mutant("tsuji-in-square-root-time", _TIME, "return 2 if twice == int(twice) else 4", "return 2",
            "next to an event of Tsuji's law, nothing is smooth in the flow's time", k.MONODROMY_TSUJI),
-    Mutant("rate-of-root-time", _TIME, "return 2.0 * s if time.power == 2", "return 1.9 * s if time.power == 2",
+    Mutant("rate-of-root-time", _TIME, "return 2.0 * s if transform.power == 2", "return 1.9 * s if transform.power == 2",
            "dt/ds is not the derivative of t(s)", k.ROUTES),
     Mutant("flow-without-last-contact", "kernels/effects/contact.py", "if frozen.closed[c] != 0 else 0.0",
            "if c < frozen.closed.size - 1 and frozen.closed[c] != 0 else 0.0",
@@ -40,7 +40,7 @@ FLOW = (
            "the flow's slope has a kink inside its steps", k.MONODROMY),
     Mutant("flow-steps-over-a-touch", _STEP, "if not (crossed or may_turn(d0, s0, d1, s1, sign)):", "if not crossed:",
            "a touch inside a step of the flow is not seen, nor is its contribution to the derivative", k.FLOW_TOUCH),
-    Mutant("flow-driver-stands", _STEP, "beta * time_at(step.time, x * step.h)", "beta * time_at(step.time, step.h)",
+    Mutant("flow-driver-stands", _STEP, "beta * t_at(step.transform, x * step.h)", "beta * t_at(step.transform, step.h)",
            "the driver stands still while its contact is looked for", k.MONODROMY),
     Mutant("flow-event-tolerance-loose", _EVENTS, "_LARGEST_EVENT_OVERLAP = 1e-14", "_LARGEST_EVENT_OVERLAP = 1e-7",
            "the flow's events are located to 1e-7", k.MONODROMY),

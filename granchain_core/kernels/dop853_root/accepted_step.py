@@ -31,8 +31,9 @@ ATTEMPTS = 60
 class RunContext(NamedTuple):
     """Data shared by the steps of a run: chain, method, workspace, counters, and p of the time transformation.
 
-    `last` is the number of the last contact, and of beads. Grid points are `spacing` apart, and a point that is missed
-    by at most `near` counts as passed. Every `every`-th point is recorded, none if `every` is 0.
+    `last` is the number of the last contact, and of beads; `period` that of the drive. Grid points are `spacing` apart,
+    and a point that is missed by at most `near` counts as passed. Every `every`-th point is recorded, none if `every`
+    is 0.
     """
 
     slots: Any
@@ -44,6 +45,7 @@ class RunContext(NamedTuple):
     out: Any
     power: int
     last: int
+    period: float
     spacing: float
     near: float
     every: int

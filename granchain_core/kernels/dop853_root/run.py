@@ -1,6 +1,6 @@
 """Runs along a short chain with error control, in which an attempt may pass a contact event.
 
-The order of one step, `run_dop853_root`:
+The order of one step, `take_steps`:
 
 1. `nearest_event` (changes.py) chooses a contact whose event is near enough to transform the time for it, or none;
 2. `accepted_step` (accepted_step.py) tries steps from the nominal size dt: `size_in_xi` (changes.py) gives the size in
@@ -190,68 +190,88 @@ def write_beads(context, start, y, bodies):
         y[i], y[bodies + i] = state[DISPLACEMENT, i], state[W, i]
 
 
-@kernel
-def run_dop853_root(method, work, trajectory, sample_range, samples, out):
-    """Run over a range of the grid, like `run_error_controlled` (error_control/run.py), on the workspace `work`."""
-    slots, drive, y, workspace = trajectory
-    points, grid, every, counts = sample_range.points, sample_range.grid, sample_range.every, out.counts
-    bodies, period = slots.chain.inverse_mass.size, drive.period
-    context = RunContext(slots, chain_values(work.chain, slots), slots.driver, drive.beta, method, work, out,
-                         smooth_power(slots.dissipation), bodies - 2, period / grid, GOAL_TOLERANCE * period, every)
-    g, done, row, dt = sample_range.first, 0, 1, workspace.next_step[0]
-    events, most_events, idle = 0, EVENTS_PER_CONTACT * (bodies - 1), 0
-    start = start_of_run(context, g * context.spacing, y, bodies)
-    since = start.t
-    if every > 0:
-        evaluate(slots, drive.beta, start.t, y, workspace.k[0], workspace.forces)
-        write_sample(slots, 0, y, workspace.k[0], workspace.forces.e, samples)
-    while done < points:
+@inline_numba
+def with_change_recorded(context, start, contact):
+    """`StepStart` after a contact has changed at a step's end; the velocity of a closing is recorded."""
+    start = with_contact_toggled(context, start, contact)
+    if (start.bits >> contact) & 1 != 0 and context.every > 0:
+        record_closing(context.slots.dissipation, at(start.rates.rate, contact), contact, context.last,
+                       context.beta * start.t, context.out.log)
+    return start
+
+
+@inline_numba
+def take_steps(context, scale, start, dt, sample_range, samples):
+    """Take steps from `start`, of size dt at first, until they have passed all points of the range.
+
+    Returns (status, start of the next step, its size, points left, next free row of `samples`).
+    """
+    period, counts, left = context.period, context.out.counts, sample_range.points
+    g, row, since = sample_range.first, 1, start.t
+    events, most_events, idle = 0, EVENTS_PER_CONTACT * (context.last + 1), 0
+    while left > 0:
         start = with_driver_in_place(context, start)  # within a period, its oscillator is as accurate as the beads
-        while done < points and not start.t >= period:
-            if out.stop[0] != 0:
-                return CANCELLED, row if every > 0 else done
+        while left > 0 and not start.t >= period:
+            if context.out.stop[0] != 0:
+                return CANCELLED, start, dt, left, row
             if start.t - since > EVENT_WINDOW:
                 events, since = 0, start.t
-            dt = min(dt, method.largest_step)
-            units = new_units(context, start.point, workspace.scale)
-            target = nearest_event(start.rates, start.closed, workspace.scale[0], dt)
+            dt = min(dt, context.method.largest_step)
+            units = new_units(context, start.point, scale)
+            target = nearest_event(start.rates, start.closed, scale[0], dt)
             if target >= 0 and at(start.rates.overlap, target) <= 0.0 and at(start.rates.rate, target) < 0.0:
                 # opened by rounding, or by another event at the same time
                 start, events = with_contact_toggled(context, start, target), events + 1
                 if events > most_events:
-                    return CHATTER, row if every > 0 else done
+                    return CHATTER, start, dt, left, row
                 continue
-            if is_too_small(dt, start.t, drive.beta):
-                return STEP_TOO_SMALL, row if every > 0 else done
+            if is_too_small(dt, start.t, context.beta):
+                return STEP_TOO_SMALL, start, dt, left, row
             status, checked, dt = accepted_step(context, start, target, dt, units, g)
             if status != DONE:
-                return status, row if every > 0 else done
-            end = end_of_step(context, start, checked, g, points - done)
+                return status, start, dt, left, row
+            end = end_of_step(context, start, checked, g, left)
             idle = idle + 1 if end.contact < 0 and end.time <= start.t else 0
             if idle > ATTEMPTS:
-                return STEP_TOO_SMALL, row if every > 0 else done
+                return STEP_TOO_SMALL, start, dt, left, row
             forces = start.forces
-            if every > 0:
+            if context.every > 0:
                 forces, row = record_step(context, start, checked, end, g, row, samples)
             dt *= growth(checked.step, end)
-            g, done = g + end.passed, done + end.passed
+            g, left = g + end.passed, left - end.passed
             counts[STEPS] += 1
             start = StepStart(end.time, end.point, end.rates, forces, start.bits, start.closed)
             if end.contact >= 0:
                 events += 1
                 counts[EVENTS] += 1
                 if events > most_events:
-                    return CHATTER, row if every > 0 else done
-                start = with_contact_toggled(context, start, end.contact)
-                if (start.bits >> end.contact) & 1 != 0 and every > 0:
-                    record_closing(slots.dissipation, at(start.rates.rate, end.contact), end.contact, context.last,
-                                   drive.beta * start.t, out.log)
+                    return CHATTER, start, dt, left, row
+                start = with_change_recorded(context, start, end.contact)
         if start.t >= period:
             start = StepStart(start.t - period, start.point, start.rates, start.forces, start.bits, start.closed)
-            g, events, since = g - grid, 0, start.t
-    write_beads(context, start, y, bodies)
-    workspace.next_step[0] = dt
-    evaluate(slots, drive.beta, start.t, y, workspace.k[0], workspace.forces)
-    if first_not_finite(y, bodies) != 0:
-        return NOT_FINITE, row if every > 0 else done
-    return DONE, row if every > 0 else done
+            g, events, since = g - sample_range.grid, 0, start.t
+    return DONE, start, dt, left, row
+
+
+@kernel
+def run_dop853_root(method, work, trajectory, sample_range, samples, out):
+    """Run over a range of the grid, like `run_error_controlled` (error_control/run.py), on the workspace `work`."""
+    slots, drive, y, workspace = trajectory
+    points, grid, every = sample_range.points, sample_range.grid, sample_range.every
+    bodies, period = slots.chain.inverse_mass.size, drive.period
+    context = RunContext(slots, chain_values(work.chain, slots), slots.driver, drive.beta, method, work, out,
+                         smooth_power(slots.dissipation), bodies - 2, period, period / grid, GOAL_TOLERANCE * period,
+                         every)
+    start = start_of_run(context, sample_range.first * context.spacing, y, bodies)
+    if every > 0:
+        evaluate(slots, drive.beta, start.t, y, workspace.k[0], workspace.forces)
+        write_sample(slots, 0, y, workspace.k[0], workspace.forces.e, samples)
+    status, start, dt, left, row = take_steps(context, workspace.scale, start, workspace.next_step[0], sample_range,
+                                              samples)
+    if status == DONE:
+        write_beads(context, start, y, bodies)
+        workspace.next_step[0] = dt
+        evaluate(slots, drive.beta, start.t, y, workspace.k[0], workspace.forces)
+        if first_not_finite(y, bodies) != 0:
+            status = NOT_FINITE
+    return status, row if every > 0 else points - left

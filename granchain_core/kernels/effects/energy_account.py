@@ -25,7 +25,7 @@ from .preload import overlap
 from .tension import contact_primitive, lost_in, unless_force_free
 
 #: Places of W and Q in the state, which they end, and of their rates in its slope.
-WORK, LOST = -2, -1
+DRIVER_WORK, LOST_ENERGY = -2, -1
 
 
 class EnergyAccount(NamedTuple):
@@ -54,8 +54,8 @@ def _(account, slots, y, dy, e):
         if c == 0:
             work = e[0] * dy[0] - times_primitive(slots.dissipation, G, acceleration)
     dy[bodies] = 0.0
-    dy[WORK] = work
-    dy[LOST] = lost
+    dy[DRIVER_WORK] = work
+    dy[LOST_ENERGY] = lost
 
 
 @by_slot
@@ -76,8 +76,8 @@ def add_to_account(account, y, work, lost):
 
 @add_to_account.of(EnergyAccount)
 def _(account, y, work, lost):
-    y[WORK] += work
-    y[LOST] += lost
+    y[DRIVER_WORK] += work
+    y[LOST_ENERGY] += lost
 
 
 @internal

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from ..compiling.dispatch import by_slot
 from ..compiling.jit import inline_llvm, internal
-from ..effects.energy_account import LOST, EnergyAccount
+from ..effects.energy_account import LOST_ENERGY, EnergyAccount
 from ..effects.foundation import add_foundation_force, add_foundation_slope, foundation_energy
 
 
@@ -64,4 +64,4 @@ def _(account, slots, y, dy):
     lost = 0.0
     for i in range(1, slots.chain.inverse_mass.size - 1):
         lost += power_lost_on_bead(slots, i, y[i], dy[i])
-    dy[LOST] += lost
+    dy[LOST_ENERGY] += lost

@@ -87,10 +87,11 @@ def _(tension):
 
 @inline_numba
 def locate_event(method, step, limit, c, counts):
-    """Shorten or lengthen a step so that it ends just past the event of contact c; return its size.
+    """Shorten or lengthen a step so that it ends just past the event of contact c.
 
-    An event that turns out to lie beyond `limit` is left to the next step. The same applies if the event is approached
-    so slowly that the step would become long enough to pass other events.
+    Returns its size, and whether the contact has changed at its end. An event that turns out to lie beyond `limit` is
+    left to the next step. The same applies if the event is approached so slowly that the step would become long enough
+    to pass other events. The target doubles after each correction, because rounding may keep the overlap from it.
     """
     slots, _, y, workspace = step.trajectory
     slope = workspace.k[stages(workspace)]
@@ -111,7 +112,7 @@ def locate_event(method, step, limit, c, counts):
         attempt(method, Step(step.trajectory, step.t, h))
         counts[EVALUATIONS] += stages(workspace)
         target *= 2.0
-    return h
+    return h, (overlap(slots.preload, workspace.end, c) > 0.0) != before
 
 
 @internal
@@ -150,7 +151,8 @@ def located_step(method, trajectory, t, limit, counts):
             break
         h *= x
     if aimed >= 0:
-        h = locate_event(method, step, limit, aimed, counts)
+        h, changed = locate_event(method, step, limit, aimed, counts)
+        aimed = aimed if changed else -1
         next_step[0] = min(next_step[0], _FIRST_STEP_FACTOR * method.tolerance**0.4)
     elif not kinked and (h < limit - t or factor < 1.0 or next_step[0] <= h):
         next_step[0] = h * factor  # the motion is smooth on both sides of a kink: the next step need not start small

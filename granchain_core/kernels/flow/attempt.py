@@ -30,7 +30,7 @@ from ..error_control.step import (
     turning_point,
 )
 from ..status import DONE, EVALUATIONS, NOT_FINITE, REJECTED, STEP_TOO_SMALL
-from .event_time import Time, dt_ds_at, slope_in_s, time_at
+from .event_time import TimeTransform, dt_ds_at, slope_in_s, t_at
 
 
 class ContactStatus(NamedTuple):
@@ -56,16 +56,16 @@ class FlowProblem(NamedTuple):
 
 
 class FlowStep(NamedTuple):
-    """A step of a trajectory, of size h in the transformed time s of `time`."""
+    """A step of a trajectory, of size h in s."""
 
     trajectory: Trajectory
-    time: Time
+    transform: TimeTransform
     h: float
 
 
 @drive_phase.of(FlowStep)
 def _(step, x):
-    return step.trajectory.drive.beta * time_at(step.time, x * step.h)
+    return step.trajectory.drive.beta * t_at(step.transform, x * step.h)
 
 
 @by_slot
@@ -77,30 +77,30 @@ def record_stage(tangent, state, slope, stage):
 
 
 @internal
-def attempt_in_time(method, problem, time, h):
+def attempt_in_s(method, problem, transform, h):
     """Try a step of size h in s from y; the result is in workspace.end, its slope in t in workspace.slope.
 
     Returns the error in units of the tolerance.
     """
     trajectory, contacts, tangent = problem
     slots, drive, y, workspace = trajectory
-    dt_ds = dt_ds_at(time, 0.0)
+    dt_ds = dt_ds_at(transform, 0.0)
     for i in range(y.size):
         workspace.k[0, i] = dt_ds * contacts.slope_at_start[i]
     record_stage(tangent, y, contacts.slope_at_start, 0)
     for s in range(1, STAGES + 1):
         combine(y, h, workspace.k, s, workspace.end)
-        slope_in_s(slots, drive.beta, time, C[s] * h, workspace.end, s, workspace)
+        slope_in_s(slots, drive.beta, transform, C[s] * h, workspace.end, s, workspace)
         record_stage(tangent, workspace.end, workspace.slope, s)
     return error_norm(method.tolerance, h, y, workspace, slots.chain.inverse_mass.size)
 
 
 @inline_numba
-def accepted_in_time(method, problem, time, h, counts):
+def accepted_in_s(method, problem, transform, h, counts):
     """Shrink a step until its error is tolerable; return (status, size, factor for the next step)."""
     rejected = False
     while True:
-        error = attempt_in_time(method, problem, time, h)
+        error = attempt_in_s(method, problem, transform, h)
         counts[EVALUATIONS] += STAGES
         if not np.isfinite(error):
             return NOT_FINITE, h, 1.0
@@ -109,29 +109,29 @@ def accepted_in_time(method, problem, time, h, counts):
         counts[REJECTED] += 1
         rejected = True
         h = shrunk(method, h, error)
-        if is_too_small(time_at(time, h) - time.start, time.start, problem.trajectory.drive.beta):
+        if is_too_small(t_at(transform, h) - transform.start, transform.start, problem.trajectory.drive.beta):
             return STEP_TOO_SMALL, h, 1.0
 
 
 @inline_numba
-def prepare_dense_in_time(step):
+def prepare_dense_in_s(step):
     """Fill workspace.dense for the step in s from y to workspace.end; restore the end's slope in workspace.slope."""
     slots, drive, y, workspace = step.trajectory
-    time, h = step.time, step.h
+    transform, h = step.transform, step.h
     for s in range(STAGES + 1, ALL_STAGES):
         combine(y, h, workspace.k, s, workspace.stage)
-        slope_in_s(slots, drive.beta, time, C[s] * h, workspace.stage, s, workspace)
+        slope_in_s(slots, drive.beta, transform, C[s] * h, workspace.stage, s, workspace)
     dense_coefficients(h, y, workspace)
-    evaluate(slots, drive.beta, time_at(time, h), workspace.end, workspace.slope, workspace.forces)
+    evaluate(slots, drive.beta, t_at(transform, h), workspace.end, workspace.slope, workspace.forces)
 
 
 @inline_numba
-def first_event(problem, time, h, excluded, counts):
+def first_event(problem, transform, h, excluded, counts):
     """Return (contact, fraction) of the first change of any contact but `excluded` in the step; (−1, 2) if none."""
     trajectory, contacts, _ = problem
     slots, _, y, workspace = trajectory
-    step, contact, first, ready = FlowStep(trajectory, time, h), -1, 2.0, False
-    dt = time_at(time, h) - time.start
+    step, contact, first, ready = FlowStep(trajectory, transform, h), -1, 2.0, False
+    dt = t_at(transform, h) - transform.start
     for c in range(contacts.closed.size):
         if c == excluded:
             continue
@@ -144,7 +144,7 @@ def first_event(problem, time, h, excluded, counts):
         if not (crossed or may_turn(d0, s0, d1, s1, sign)):
             continue
         if not ready:
-            prepare_dense_in_time(step)
+            prepare_dense_in_s(step)
             counts[EVALUATIONS] += DENSE_EVALUATIONS + 1
             ready = True
         signed_overlap, low, high = Overlap(c, sign), 0.0, 1.0

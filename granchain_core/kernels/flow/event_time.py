@@ -24,7 +24,7 @@ from ..error_control.step import evaluate
 AFTER, PLAIN, BEFORE = 1, 0, -1
 
 
-class Time(NamedTuple):
+class TimeTransform(NamedTuple):
     """The transformed time s of a step from `start`, next to `event`: its value `s` at the start, and p, the `power`.
 
     `ds` below is the magnitude of the change of s since the start. If the kind is `PLAIN`, s is t.
@@ -58,45 +58,45 @@ def nonnegative_root(value, power):
 
 
 @internal
-def time_from(kind, event, start, power):
+def transform_from(kind, event, start, power):
     """Return the time transformation of a step from `start`, next to `event`."""
-    return Time(kind, event, start, nonnegative_root(kind * (start - event), power), power)
+    return TimeTransform(kind, event, start, nonnegative_root(kind * (start - event), power), power)
 
 
 @internal
-def time_at(time, ds):
+def t_at(transform, ds):
     """The time t after s has changed by ds."""
-    if time.kind == PLAIN:
-        return time.start + ds
-    s = time.s + time.kind * ds
+    if transform.kind == PLAIN:
+        return transform.start + ds
+    s = transform.s + transform.kind * ds
     s *= s
-    if time.power == 4:
+    if transform.power == 4:
         s *= s
-    return time.event + time.kind * s
+    return transform.event + transform.kind * s
 
 
 @internal
-def dt_ds_at(time, ds):
+def dt_ds_at(transform, ds):
     """|dt/ds| after s has changed by ds."""
-    if time.kind == PLAIN:
+    if transform.kind == PLAIN:
         return 1.0
-    s = time.s + time.kind * ds
-    return 2.0 * s if time.power == 2 else 4.0 * s * s * s
+    s = transform.s + transform.kind * ds
+    return 2.0 * s if transform.power == 2 else 4.0 * s * s * s
 
 
 @internal
-def size_of(time, dt):
+def size_in_s(transform, dt):
     """The change ds after which dt has passed since the step's start."""
-    if time.kind == PLAIN:
+    if transform.kind == PLAIN:
         return dt
-    distance = time.kind * (time.start + dt - time.event)
-    return time.kind * (nonnegative_root(distance, time.power) - time.s)
+    distance = transform.kind * (transform.start + dt - transform.event)
+    return transform.kind * (nonnegative_root(distance, transform.power) - transform.s)
 
 
 @internal
-def slope_in_s(slots, beta, time, ds, state, row, workspace):
+def slope_in_s(slots, beta, transform, ds, state, row, workspace):
     """Compute slope `row` in s, at `state`; leave the slope in t in workspace.slope."""
-    evaluate(slots, beta, time_at(time, ds), state, workspace.slope, workspace.forces)
-    dt_ds = dt_ds_at(time, ds)
+    evaluate(slots, beta, t_at(transform, ds), state, workspace.slope, workspace.forces)
+    dt_ds = dt_ds_at(transform, ds)
     for i in range(state.size):
         workspace.k[row, i] = dt_ds * workspace.slope[i]

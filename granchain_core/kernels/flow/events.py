@@ -1,6 +1,6 @@
 """Event location for the flow: steps that end at an opening, at a closing, or at neither.
 
-A step returns (status, time, size, contact that changed at its end or −1); its final state is in workspace.end.
+A step returns (status, transform, size, contact that changed at its end or −1); its final state is in workspace.end.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ from ..compiling.jit import inline_numba, internal
 from ..dop853.tableau import STAGES
 from ..effects.preload import overlap
 from ..error_control.step import is_too_small, shrunk
-from ..status import DONE, EVALUATIONS, LOST, NOT_FINITE, REJECTED, STEP_TOO_SMALL
-from .attempt import accepted_in_time, attempt_in_time, first_event
-from .event_time import AFTER, BEFORE, PLAIN, dt_ds_at, size_of, smooth_power, time_at, time_from
+from ..status import DONE, EVALUATIONS, NOT_FINITE, OPENING_MISSED, REJECTED, STEP_TOO_SMALL
+from .attempt import accepted_in_s, attempt_in_s, first_event
+from .event_time import AFTER, BEFORE, PLAIN, dt_ds_at, size_in_s, smooth_power, t_at, transform_from
 
 #: [step size] flow: largest overlap at a located event, in units of the largest displacement: a few rounding errors.
 _LARGEST_EVENT_OVERLAP = 1e-14
@@ -46,7 +46,7 @@ def next_opening(slots, y, contacts):
 
 
 @inline_numba
-def locate_change(method, problem, time, h, c, counts):
+def locate_change(method, problem, transform, h, c, counts):
     """Repeat a step, first with size h, until it ends where contact c opens or closes; return the size.
 
     The first size is the root on the dense output, and Newton's method improves it. Where the bodies hardly move
@@ -54,18 +54,18 @@ def locate_change(method, problem, time, h, c, counts):
     output.
     """
     slots, _, _, workspace = problem.trajectory
-    attempt_in_time(method, problem, time, h)
+    attempt_in_s(method, problem, transform, h)
     counts[EVALUATIONS] += STAGES
     for _ in range(_LOCATION_ATTEMPTS):
         d = overlap(slots.preload, workspace.end, c)
-        speed = (workspace.slope[c] - workspace.slope[c + 1]) * dt_ds_at(time, h)
+        speed = (workspace.slope[c] - workspace.slope[c + 1]) * dt_ds_at(transform, h)
         located = abs(d) <= _LARGEST_EVENT_OVERLAP * max(1.0, workspace.scale[0])
         if located or speed == 0.0 or abs(d) > 0.5 * h * abs(speed):
             break
         if h - d / speed == h:
             break
         h -= d / speed
-        attempt_in_time(method, problem, time, h)
+        attempt_in_s(method, problem, transform, h)
         counts[EVALUATIONS] += STAGES
     return h
 
@@ -74,43 +74,43 @@ def locate_change(method, problem, time, h, c, counts):
 def step_to_opening(method, problem, t, goal, c, counts):
     """Step from t towards the opening of contact c, estimated at `goal`: onto it, or part of the way.
 
-    Returns (status, time, size, c or −1); the status is LOST if the contact does not open there.
+    Returns (status, transform, size, c or −1); the status is OPENING_MISSED if the contact does not open there.
     """
     slots, drive, _, workspace = problem.trajectory
     power, farthest = smooth_power(slots.dissipation), goal + 3.0 * (goal - t)
-    time = time_from(BEFORE, goal, t, power)
+    transform = transform_from(BEFORE, goal, t, power)
     error, located = np.inf, False
     for _ in range(_LOCATION_ATTEMPTS):
-        error = attempt_in_time(method, problem, time, time.s)
+        error = attempt_in_s(method, problem, transform, transform.s)
         counts[EVALUATIONS] += STAGES
         if not np.isfinite(error):
-            return NOT_FINITE, time, 0.0, -1
+            return NOT_FINITE, transform, 0.0, -1
         d, speed = overlap(slots.preload, workspace.end, c), workspace.slope[c] - workspace.slope[c + 1]
         if not speed < 0.0:
-            return LOST, time, 0.0, -1
+            return OPENING_MISSED, transform, 0.0, -1
         located = abs(d) <= _LARGEST_EVENT_OVERLAP * max(1.0, workspace.scale[0]) or goal - d / speed == goal
         if located:
             break
         goal -= d / speed
         if not t < goal < farthest:
-            return LOST, time, 0.0, -1
-        time = time_from(BEFORE, goal, t, power)
+            return OPENING_MISSED, transform, 0.0, -1
+        transform = transform_from(BEFORE, goal, t, power)
     if not located:
-        return LOST, time, 0.0, -1
-    h = size_of(time, min(goal, drive.period) - t)
+        return OPENING_MISSED, transform, 0.0, -1
+    h = size_in_s(transform, min(goal, drive.period) - t)
     if goal > drive.period:
         located = False
-        error = attempt_in_time(method, problem, time, h)
+        error = attempt_in_s(method, problem, transform, h)
         counts[EVALUATIONS] += STAGES
     while error > 1.0:
         located = False
         counts[REJECTED] += 1
         h = shrunk(method, h, error)
-        if is_too_small(time_at(time, h) - t, t, drive.beta):
-            return STEP_TOO_SMALL, time, h, -1
-        error = attempt_in_time(method, problem, time, h)
+        if is_too_small(t_at(transform, h) - t, t, drive.beta):
+            return STEP_TOO_SMALL, transform, h, -1
+        error = attempt_in_s(method, problem, transform, h)
         counts[EVALUATIONS] += STAGES
-    return DONE, time, h, c if located else -1
+    return DONE, transform, h, c if located else -1
 
 
 class Aim(NamedTuple):
@@ -133,16 +133,16 @@ def first_aim(slots, y, contacts, t, dt, last_closing):
 
 
 @inline_numba
-def tried_step(method, problem, t, time, h, aim, counts):
-    """Take an accepted step from t, of size h in `time` at most, or towards the opening of `aim`.
+def tried_step(method, problem, t, transform, h, aim, counts):
+    """Take an accepted step from t, of size h in s at most, or towards the opening of `aim`.
 
-    Returns (status, time, size, contact that opens at its end or −1, factor for the next step).
+    Returns (status, transform, size, contact that opens at its end or −1, factor for the next step).
     """
     if aim.active:
-        status, time, h, located = step_to_opening(method, problem, t, aim.goal, aim.target, counts)
-        return status, time, h, located, 1.0
-    status, h, factor = accepted_in_time(method, problem, time, h, counts)
-    return status, time, h, -1, factor
+        status, transform, h, located = step_to_opening(method, problem, t, aim.goal, aim.target, counts)
+        return status, transform, h, located, 1.0
+    status, h, factor = accepted_in_s(method, problem, transform, h, counts)
+    return status, transform, h, -1, factor
 
 
 @internal
@@ -154,7 +154,7 @@ def flow_step(method, problem, t, last_closing, counts):
     next attempt aims at that opening. But if a contact has closed at t, the step needs the time variable of that
     closing; it is then made shorter instead.
 
-    Returns (status, time, size, contact); size 0 with a contact means that it changes at t itself.
+    Returns (status, transform, size, contact); size 0 with a contact means that it changes at t itself.
     workspace.next_step[0] is the next step to try, in t.
     """
     trajectory, contacts, _ = problem
@@ -162,37 +162,37 @@ def flow_step(method, problem, t, last_closing, counts):
     next_step, limit = workspace.next_step, drive.period
     dt = min(next_step[0], method.largest_step, limit - t)
     aim = first_aim(slots, y, contacts, t, dt, last_closing)
-    usual = time_from(AFTER if last_closing > -np.inf else PLAIN, last_closing, t, smooth_power(slots.dissipation))
-    time, h = usual, size_of(usual, dt)
+    usual = transform_from(AFTER if last_closing > -np.inf else PLAIN, last_closing, t, smooth_power(slots.dissipation))
+    transform, h = usual, size_in_s(usual, dt)
     for _ in range(_STEP_ATTEMPTS):
-        status, time, h, located, factor = tried_step(method, problem, t, time, h, aim, counts)
-        if status == LOST:
-            aim, time, h = Aim(False, -1, t, True), usual, size_of(usual, dt)
+        status, transform, h, located, factor = tried_step(method, problem, t, transform, h, aim, counts)
+        if status == OPENING_MISSED:
+            aim, transform, h = Aim(False, -1, t, True), usual, size_in_s(usual, dt)
             continue
         if not aim.active:
-            dt = min(dt, time_at(time, h) - t)
+            dt = min(dt, t_at(transform, h) - t)
         if status != DONE:
-            return status, time, h, -1
-        contact, x = first_event(problem, time, h, located, counts)
+            return status, transform, h, -1
+        contact, x = first_event(problem, transform, h, located, counts)
         if contact < 0:
             if not aim.active:
-                next_step[0] = next_dt(time, h, factor, next_step[0], limit)
-            return DONE, time, h, located
+                next_step[0] = next_dt(transform, h, factor, next_step[0], limit)
+            return DONE, transform, h, located
         if x * h == 0.0:
-            return DONE, time, 0.0, contact
+            return DONE, transform, 0.0, contact
         if contacts.closed[contact] == 0 or aim.lost:
-            return DONE, time, locate_change(method, problem, time, h * x, contact, counts), contact
+            return DONE, transform, locate_change(method, problem, transform, h * x, contact, counts), contact
         if t > last_closing:
-            aim = Aim(True, contact, time_at(time, x * h), False)
+            aim = Aim(True, contact, t_at(transform, x * h), False)
         else:
             h *= _FIRST_STEP_PART * x
-            dt = time_at(time, h) - t
-    return STEP_TOO_SMALL, time, h, -1
+            dt = t_at(transform, h) - t
+    return STEP_TOO_SMALL, transform, h, -1
 
 
 @inline_numba
-def next_dt(time, h, factor, before, limit):
+def next_dt(transform, h, factor, before, limit):
     """The next step in t after an accepted one of size h in s; no shorter than before if only the limit cut that."""
-    end = time_at(time, h)
-    dt = time_at(time, h + h * factor) - end
+    end = t_at(transform, h)
+    dt = t_at(transform, h + h * factor) - end
     return max(dt, before, _SHORTEST_STEP) if end >= limit else max(dt, _SHORTEST_STEP)

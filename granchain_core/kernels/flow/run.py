@@ -15,7 +15,7 @@ from ..equations.motion import copy
 from ..error_control.step import evaluate, new_scale
 from ..samples import first_not_finite
 from ..status import CANCELLED, DONE, EVENTS, NOT_FINITE, STEPS, TOO_MANY_EVENTS, TOO_MANY_STEPS
-from .event_time import time_at
+from .event_time import t_at
 from .events import flow_step
 from .tangent import Tangent, propagate
 
@@ -74,14 +74,14 @@ def run_flow(method, problem, periods, counts, stop):
             if steps > _MOST_STEPS:
                 return TOO_MANY_STEPS, p, trace
             evaluate(slots, drive.beta, t, y, contacts.slope_at_start, workspace.forces)
-            status, time, h, contact = flow_step(method, problem, t, last_closing, counts)
+            status, transform, h, contact = flow_step(method, problem, t, last_closing, counts)
             if status != DONE:
                 return status, p, trace
             if h > 0.0:
-                trace += propagate(tangent, slots, time, h, contacts)
+                trace += propagate(tangent, slots, transform, h, contacts)
                 copy(workspace.end, y)
                 new_scale(y, workspace, bodies)
-                end = time_at(time, h)
+                end = t_at(transform, h)
                 t = period if period - end < _PERIOD_END * period else end
                 counts[STEPS] += 1
             if contact >= 0:

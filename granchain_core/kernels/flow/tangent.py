@@ -93,7 +93,7 @@ def _(tangent, state, slope, stage):
 
 
 @by_slot
-def propagate(tangent, slots, time, h, contacts):
+def propagate(tangent, slots, transform, h, contacts):
     """Propagate the tangents through the accepted step of size h; return its share of ∫ trace, 0 without columns.
 
     Effect absent: nothing, and 0.
@@ -102,25 +102,25 @@ def propagate(tangent, slots, time, h, contacts):
 
 
 @propagate.of(Tangent)
-def _(tangent, slots, time, h, contacts):
+def _(tangent, slots, transform, h, contacts):
     if tangent.matrix.shape[0] == 0:  # no columns: the same kernel serves the motion alone
         return 0.0
-    share = linearise(slots, time, h, contacts, tangent)
+    share = linearise(slots, transform, h, contacts, tangent)
     for stage in range(STAGES + 1):
         for earlier in range(stage):
             tangent.weights[stage, earlier] = h * A[stage, earlier]
     rows = tangent.state.shape[0]
     for first in range(0, tangent.matrix.shape[0], rows):
-        propagate_block(slots, time, h, tangent, first)
+        propagate_block(slots, transform, h, tangent, first)
     return share
 
 
 @inline_numba
-def linearise(slots, time, h, contacts, tangent):
+def linearise(slots, transform, h, contacts, tangent):
     """Write stiffness s and damping g of every contact in every stage, times |dt/ds|; return ∫ trace over the step."""
     trace, inverse_mass, stages = 0.0, slots.chain.inverse_mass, tangent.stages
     for stage in range(STAGES):
-        dt_ds = dt_ds_at(time, C[stage] * h)
+        dt_ds = dt_ds_at(transform, C[stage] * h)
         share = h * A[STAGES, stage]
         for c in range(inverse_mass.size - 1):
             acts = contacts.closed[c] != 0 and c >= tangent.first_contact
@@ -190,12 +190,12 @@ def block_slope(slots, tangent, stage, dt_ds):
 
 
 @inline_numba
-def propagate_block(slots, time, h, tangent, first):
+def propagate_block(slots, transform, h, tangent, first):
     """Propagate eight columns, whose rows begin at `first`, through the step."""
     rows = tangent.state.shape[0]
     for stage in range(STAGES):
         for i in range(rows):
             store(tangent.state, i, stage_value(tangent, stage, i, first))
-        block_slope(slots, tangent, stage, dt_ds_at(time, C[stage] * h))
+        block_slope(slots, tangent, stage, dt_ds_at(transform, C[stage] * h))
     for i in range(rows):
         store(tangent.matrix, first + i, stage_value(tangent, STAGES, i, first))

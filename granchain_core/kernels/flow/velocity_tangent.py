@@ -77,7 +77,7 @@ def velocity_slope(slots, dt_ds, u, v, closed, T, out):
 
 
 @propagate.of(VelocityTangent)
-def _(tangent, slots, time, h, contacts):
+def _(tangent, slots, transform, h, contacts):
     rows, columns = tangent.matrix.shape
     for stage in range(STAGES + 1):
         for i in range(rows):
@@ -87,7 +87,7 @@ def _(tangent, slots, time, h, contacts):
                     value += h * A[stage, earlier] * tangent.slopes[earlier, i, q]
                 tangent.state[i, q] = value
         if stage < STAGES:
-            velocity_slope(slots, dt_ds_at(time, C[stage] * h), tangent.stages.u[stage], tangent.stages.v[stage],
+            velocity_slope(slots, dt_ds_at(transform, C[stage] * h), tangent.stages.u[stage], tangent.stages.v[stage],
                            contacts.closed, tangent.state, tangent.slopes[stage])
     for i in range(rows):
         for q in range(columns):

@@ -15,7 +15,7 @@ from ..compiling.dispatch import by_slot, by_type_inlined
 from ..compiling.jit import inline_numba, internal
 from ..contact_cubic import turns
 from ..effects.driver import driver_displacement, driver_velocity
-from ..effects.energy_account import WORK, EnergyAccount
+from ..effects.energy_account import DRIVER_WORK, EnergyAccount
 from ..effects.preload import overlap
 from ..equations.motion import copy, motion
 from ..forces.crossings import end_approaches, record_crossings
@@ -147,7 +147,7 @@ def correct_work(account, excess, y):
 
 @correct_work.of(EnergyAccount)
 def _(account, excess, y):
-    y[WORK] -= excess
+    y[DRIVER_WORK] -= excess
 
 
 @by_type_inlined
