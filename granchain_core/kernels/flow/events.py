@@ -154,7 +154,8 @@ def flow_step(method, problem, t, last_closing, counts):
     next attempt aims at that opening. But if a contact has closed at t, the step needs the time variable of that
     closing; it is then made shorter instead.
 
-    Returns (status, transform, size, contact); size 0 with a contact means that it changes at t itself.
+    Returns (status, transform, size, contact); size 0 with a contact means that it changes at t itself, or so soon that
+    the time does not resolve it.
     workspace.next_step[0] is the next step to try, in t.
     """
     trajectory, contacts, _ = problem
@@ -177,8 +178,10 @@ def flow_step(method, problem, t, last_closing, counts):
         if contact < 0:
             if not aim.active:
                 next_step[0] = next_dt(transform, h, factor, next_step[0], limit)
+            if located < 0 and t_at(transform, h) <= t:
+                return STEP_TOO_SMALL, transform, h, -1
             return DONE, transform, h, located
-        if x * h == 0.0:
+        if t_at(transform, x * h) <= t:
             return DONE, transform, 0.0, contact
         if contacts.closed[contact] == 0 or aim.lost:
             return DONE, transform, locate_change(method, problem, transform, h * x, contact, counts), contact

@@ -10,6 +10,7 @@ import pytest
 from thrown_bead import thrown_by_a_touch
 
 from granchain_core import State, scene
+from granchain_core.kernels.status import STEPS
 from granchain_core.orbits.stroboscopic_map import Flow, StroboscopicMap
 from granchain_core.scene.laws import LAWS
 
@@ -63,3 +64,20 @@ def test_a_grazing_changes_the_derivative_by_a_power_of_its_depth(law: str, dept
     speed, rest = thrown_by_a_touch(depth, beta), 1.5 * pi / beta  # rest: from the driver's turning point to the end of the period
     change = (beyond.derivative - before.derivative)[0, 0] + 2.0 * speed / depth * rest
     assert change == pytest.approx(-(1.5 + a) * moved / depth, rel=6.0 * sqrt(depth))
+
+
+def test_a_contact_that_has_just_opened_is_not_closed_by_rounding() -> None:
+    """Contact 0 opens for 1.6e-4 periods. Its overlap is −1e-16 after the opening, so the dense output may have a root
+    there. The flow then closed the contact where it separates, and no step of a resolvable size followed.
+    """
+    stroboscopic_map = StroboscopicMap(scene("sec2").evolve(N=3, D=40.0, f=717.7187753351031), 3)
+    start = np.array([-0.5770067302319412, -0.8893510913370697, -1.1354732550357465,
+                      0.34444019444224905, 0.23700809336304424, 0.36818670264588477])
+    counts = stroboscopic_map.engine.counts.array
+    for number in range(25):
+        counts[:] = 0
+        stroboscopic_map.end(start * (1.0 + number * np.finfo(float).eps))
+        events = stroboscopic_map.contact_events
+        opening, closing = events[(events[:, 0] > -2) & (events[:, 0] < 2)][-2:]
+        assert (opening[0], closing[0]) == (-1, 1) and closing[1] - opening[1] == pytest.approx(1.565e-4, rel=1e-2)
+        assert counts[STEPS] < 1000
