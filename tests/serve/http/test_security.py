@@ -1,6 +1,6 @@
 """The promises of docs/security.md for a public server: headers, hosts, errors, signing in, metrics.
 
-Promises about sessions are tested in test_sessions.py, those about limits in test_limits.py.
+Promises about sessions are tested in test_sessions.py, those about limits in test_limits.py and test_frames.py.
 """
 
 from __future__ import annotations
