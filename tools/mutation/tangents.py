@@ -40,7 +40,7 @@ FLOW = (
            "the flow's slope has a kink inside its steps", k.MONODROMY),
     Mutant("flow-steps-over-a-touch", _STEP, "if not (crossed or may_turn(d0, s0, d1, s1, sign)):", "if not crossed:",
            "a touch inside a step of the flow is not seen, nor is its contribution to the derivative", k.FLOW_TOUCH),
-    Mutant("flow-closes-by-rounding", _STEP, "if sign * s0 < 0.0:", "if sign * s0 < 0.0 and changed_back:",
+    Mutant("flow-closes-by-rounding", _STEP, "elif sign * s0 < 0.0 or sign * d0 >= 0.0:", "elif sign * d0 >= 0.0:",
            "the overlap of a contact that has just opened is rounding, whose root closes it again", k.FLOW_ROUNDING),
     Mutant("flow-driver-stands", _STEP, "beta * t_at(step.transform, x * step.h)", "beta * t_at(step.transform, step.h)",
            "the driver stands still while its contact is looked for", k.MONODROMY),

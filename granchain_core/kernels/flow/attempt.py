@@ -152,12 +152,10 @@ def first_event(problem, transform, h, excluded, counts):
             high = turning_point(signed_overlap, step)
             if value_at(signed_overlap, step, high) <= 0.0:
                 continue
-        else:
-            changed_back = sign * d0 >= 0.0  # a contact that has just changed: rounding has the wrong sign
-            if sign * s0 < 0.0:  # it moves away first; just after a change, d0 is rounding and no root
-                low = turning_point(Overlap(c, -sign), step)
-            if low == 0.0 or value_at(signed_overlap, step, low) >= 0.0:
-                if changed_back:
+        elif sign * s0 < 0.0 or sign * d0 >= 0.0:  # it moves away first, or has just changed: d0 may be rounding
+            low = turning_point(Overlap(c, -sign), step) if sign * s0 < 0.0 else 1.0
+            if low == 1.0 or value_at(signed_overlap, step, low) >= 0.0:
+                if sign * d0 >= 0.0:
                     return c, 0.0
                 low = 0.0
         x = crossing(signed_overlap, step, low, high)
