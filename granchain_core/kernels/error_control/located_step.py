@@ -91,7 +91,7 @@ def locate_event(method, step, limit, c, counts):
 
     Returns its size, and whether the contact has changed at its end. An event that turns out to lie beyond `limit` is
     left to the next step. The same applies if the event is approached so slowly that the step would become long enough
-    to pass other events. The target doubles after each correction, because rounding may keep the overlap from it.
+    to pass other events. The target doubles after each correction: rounding may keep the overlap from reaching it.
     """
     slots, _, y, workspace = step.trajectory
     slope = workspace.k[stages(workspace)]

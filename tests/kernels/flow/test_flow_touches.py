@@ -67,17 +67,22 @@ def test_a_grazing_changes_the_derivative_by_a_power_of_its_depth(law: str, dept
 
 
 def test_a_contact_that_has_just_opened_is_not_closed_by_rounding() -> None:
-    """Contact 0 opens for 1.6e-4 periods. Its overlap is −1e-16 after the opening, so the dense output may have a root
-    there. The flow then closed the contact where it separates, and no step of a resolvable size followed.
+    """Contact 0 opens for 1.6e-4 periods. Its overlap just after the opening is rounding, −1e-16, where the dense
+    output may have a root as well. Closed there, the contact would separate at once, and the flow would not advance.
+
+    The start is a point of Newton's method for an orbit of period 3; the others differ from it by rounding, which moves
+    the gap by 3e-8 of its length (measured).
     """
     stroboscopic_map = StroboscopicMap(scene("sec2").evolve(N=3, D=40.0, f=717.7187753351031), 3)
     start = np.array([-0.5770067302319412, -0.8893510913370697, -1.1354732550357465,
                       0.34444019444224905, 0.23700809336304424, 0.36818670264588477])
-    counts = stroboscopic_map.engine.counts.array
+    counts, gaps = stroboscopic_map.engine.counts.array, []
     for number in range(25):
         counts[:] = 0
         stroboscopic_map.end(start * (1.0 + number * np.finfo(float).eps))
         events = stroboscopic_map.contact_events
-        opening, closing = events[(events[:, 0] > -2) & (events[:, 0] < 2)][-2:]
-        assert (opening[0], closing[0]) == (-1, 1) and closing[1] - opening[1] == pytest.approx(1.565e-4, rel=1e-2)
-        assert counts[STEPS] < 1000
+        opening, closing = events[np.abs(events[:, 0]) == 1.0][-2:]
+        assert (opening[0], closing[0]) == (-1.0, 1.0)
+        gaps.append(closing[1] - opening[1])
+        assert counts[STEPS] < 2000  # measured: 848 in three periods
+    assert min(gaps) > 1e-4 and np.ptp(gaps) < 1e-6 * gaps[0]
